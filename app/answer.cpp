@@ -3,6 +3,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <atomic>
 #include <csignal>
 #include <cstdio>
 #include <cstring>
@@ -13,8 +14,20 @@
 
 namespace trephine {
 
+namespace {
+std::atomic<bool> in_lines{false};
+}  // namespace
+
+void reportInLines() {
+  in_lines = true;
+}
+
 void reportToTerminal(double fraction, const std::string& step) {
   static const bool terminal = ::isatty(STDERR_FILENO) != 0;
+  if (in_lines) {
+    std::fprintf(stderr, "%.4f %s\n", fraction, step.c_str());
+    return;
+  }
   if (terminal) std::fprintf(stderr, "\r%-12s %3.0f %%\033[K", step.c_str(), 100.0 * fraction);
   if (terminal && fraction >= 1.0) std::fprintf(stderr, "\r\033[K");
 }

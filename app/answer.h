@@ -24,6 +24,8 @@ int printOutcome(const std::string& name, const Json& answer, const std::string&
 
 // A Progress's report: a line on stderr that is written over, where that is a terminal.
 void reportToTerminal(double fraction, const std::string& step);
+// From here on it is a line for each report, "0.25 step", for a program that reads them.
+void reportInLines();
 
 Json errorJson(const Error& error);
 

@@ -1,12 +1,16 @@
 // `commission`: whether this machine is fit, as JSON, in lines and as a page to be printed.
 #include <algorithm>
 #include <cstdio>
+#include <tuple>
 
 #include "app/answer.h"
 #include "app/lab_commands.h"
 #include "base/crash_report.h"
 #include "base/file.h"
+#include "base/log.h"
+#include "base/system.h"
 #include "lab/commission/commission.h"
+#include "lab/commission/start_check.h"
 #include "library/case_library.h"
 
 namespace trephine {
@@ -14,6 +18,7 @@ namespace trephine {
 int commissionCommand(const CommissionArguments& arguments, const Policy& policy, bool json,
                       const Progress& progress) {
   const char* name = "commission";
+  if (arguments.say_progress) reportInLines();
   const auto storage = storageOf(arguments.storage, policy);
   if (!storage) return printError(name, storage.error(), json);
   const std::filesystem::path out = arguments.out;
@@ -21,6 +26,7 @@ int commissionCommand(const CommissionArguments& arguments, const Policy& policy
   CommissionOptions options;
   options.storage = *storage;
   options.seconds = arguments.seconds;
+  options.patience_s = arguments.patience_s;
   for (const ListedCase& one : CaseLibrary(*storage).list()) {
     for (const int edge : one.record.grid.size) {
       options.largest_edge = std::max(options.largest_edge, edge);
@@ -30,15 +36,23 @@ int commissionCommand(const CommissionArguments& arguments, const Policy& policy
   if (!made) return printError(name, made.error(), json);
   std::vector<CommissionChange> changes;
   const auto state = stateFolder();
-  const std::filesystem::path last = state ? *state / "commission.json" : "";
-  if (state) {
-    if (const auto before = readCommissioning(last)) changes = changesSince(*before, *made);
-  }
+  const auto before = lastCommissioning(state.value_or(std::filesystem::path()), policy.folder);
+  if (before) changes = changesSince(*before, *made);
   const std::string text = toJson(*made).dump(1) + "\n";
   Status written = writeTextFile(out / "commission.json", text);
   if (written) written = writeTextFile(out / "commission.html", toHtml(*made, changes));
+  const std::string recommended = toJson(made->recommended).dump(2) + "\n";
+  if (written) written = writeTextFile(out / "recommended.json", recommended);
   if (!written) return printError(name, written.error(), json);
-  if (state && makeFolder(*state)) (void)writeTextFile(last, text);  // the next compares with it
+  // The next compares with it, and what is recommended here stands from now on.
+  for (const auto& [folder, file, words] :
+       {std::tuple(state, "commission.json", &text),
+        std::tuple(configFolder(), "recommended.json", &recommended)}) {
+    if (!folder) continue;
+    Status kept = makeFolder(*folder);
+    if (kept) kept = writeTextFile(*folder / file, *words);
+    if (!kept) spdlog::warn("{}", kept.error().sentence());
+  }
   if (json) {
     printAnswer(name, toJson(*made));
   } else {

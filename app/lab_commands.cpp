@@ -140,7 +140,10 @@ int explainCommand(const std::string& scene_file, const Policy& policy, bool jso
                    const Progress& progress) {
   Result<Scene> scene = readScene(scene_file);
   if (!scene) return printError("explain", scene.error(), json);
-  Result<Json> answer = explainScene(*scene, progress);
+  const auto recommended =
+      recommendedHere(policy, configFolder().value_or(std::filesystem::path()));
+  if (!recommended) return printError("explain", recommended.error(), json);
+  Result<Json> answer = explainScene(*scene, *recommended, progress);
   if (!answer) return printError("explain", answer.error(), json);
   const Locks locked = locksOf(policy, *scene);
   Json& locks = (*answer)["locks"] = Json::array();

@@ -105,7 +105,8 @@ int listStorageCommand(const std::string& storage, bool open, const Policy& poli
                        const Progress&);
 struct CommissionArguments {
   std::string out, storage;
-  double seconds = 5.0;
+  double seconds = 5.0, patience_s = 15.0;
+  bool say_progress = false;
 };
 int commissionCommand(const CommissionArguments& arguments, const Policy& policy, bool json,
                       const Progress&);

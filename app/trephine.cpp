@@ -114,6 +114,7 @@ int run(int argc, char** argv) {
   });
   QObject::connect(&window, &MainWindow::usable, &window, [&] {
     window.sayProblem();
+    window.checkAtStart();
     if (!crashes) return;
     if (const auto left = takeLeftBehind(*crashes)) window.offerLeftBehind(*left);
   });

@@ -135,6 +135,12 @@ int run(int argc, char** argv) {
   commission_command
       ->add_option("--seconds", commissioning.seconds, "Of each row of lateness, 0.2 to 60")
       ->capture_default_str();
+  commission_command
+      ->add_option("--wait", commissioning.patience_s,
+                   "Seconds until somebody holds the arms, 0: they are not tried")
+      ->capture_default_str();
+  constexpr const char* kHidden = "";  // not in the help
+  commission_command->add_flag("--progress", commissioning.say_progress)->group(kHidden);
 
   auto* structures_command = app.add_subcommand("structures", "Organs and bones of a case");
   structures_command->require_subcommand(1);
@@ -273,7 +279,6 @@ int run(int argc, char** argv) {
   devices_command->add_option("--trials", devices.trials, "Of each trouble, with a bench")
       ->capture_default_str();
   devices_command->add_option("--out", out, "Folder for the table")->required();
-  constexpr const char* kHidden = "";  // not in the help
   devices_command->add_option("--one", devices.one)->group(kHidden);
   devices_command->add_option("--wait", devices.wait_s)->group(kHidden);
   devices_command->add_option("--recording", devices.recording)->group(kHidden);

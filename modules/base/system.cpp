@@ -41,6 +41,13 @@ std::filesystem::path pluginFolder() {
   return fromEnvironment("TREPHINE_PLUGINS", shipped);
 }
 
+std::optional<std::filesystem::path> configFolder() {
+  const fs::path own = fromEnvironment("XDG_CONFIG_HOME", {}), home = fromEnvironment("HOME", {});
+  if (own.is_absolute()) return own / "trephine";
+  if (home.is_absolute()) return home / ".config" / "trephine";
+  return {};
+}
+
 void keepToOwnFolders() {
   ::unsetenv("TREPHINE_RESOURCES");
   ::unsetenv("TREPHINE_PLUGINS");

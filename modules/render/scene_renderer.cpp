@@ -90,6 +90,12 @@ void SceneRenderer::detach() {
   parts_->release();
 }
 
+std::array<int, 2> SceneRenderer::screenSize() const {
+  if (!parts_->window) return {0, 0};
+  const int* size = parts_->window->GetScreenSize();
+  return {size[0], size[1]};
+}
+
 std::string SceneRenderer::openGlDescription() const {
   if (!parts_->window) return "none";
   parts_->window->MakeCurrent();

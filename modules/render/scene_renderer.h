@@ -69,6 +69,8 @@ class SceneRenderer {
   Status attach(RenderHost host);
   void detach();  // before the context goes
   std::string openGlDescription() const;
+  // Of all screens together, in pixels; {0, 0} before there is a window.
+  std::array<int, 2> screenSize() const;
 
   // Draws what this mirror holds from now on. The camera stays where the place in the patient is
   // the same. Full upload at the next paint.

@@ -4,6 +4,7 @@
 #include <condition_variable>
 #include <map>
 #include <mutex>
+#include <utility>
 
 #include "base/rt/thread.h"
 #include "haptics/device_calls.h"
@@ -32,11 +33,14 @@ struct ArmTrial::Engine {
   std::vector<Opened> devices;
   std::vector<TrephineCapabilities> capabilities;
   std::vector<ForceTest> tests;
+  std::vector<ArmAnswer> answers;
+  std::array<std::uint64_t, kMostTried> sequences{};
   std::array<Vec3, kMostTried> first_m{};
   std::array<SilenceRule, kMostTried> silences{};
   TriedArms arms{};
   rt::LatestValue<TriedArms> seen;
   std::atomic<double> asked_N[kMostTried]{};  // for the next test of each; 0: none
+  std::atomic<double> patience_s[kMostTried]{};  // for the next answer of each; 0: none
   std::atomic<bool> end_force{false}, stop{false};
   DeviceCalls calls;  // those of the thread
   std::mutex mutex;
@@ -140,16 +144,31 @@ bool ArmTrial::Engine::tick(std::int64_t now_ns) {
       const std::size_t i = of.arms[n];
       take(i, states[n]);
       if (const double most_N = asked_N[i].exchange(0.0); most_N > 0.0) tests[i].ask(most_N);
+      if (const double patience = patience_s[i].exchange(0.0); patience > 0.0) {
+        const TrephineCapabilities& of_arm = capabilities[i];
+        answers[i].ask(of_arm.apparent_mass_kg, of_arm.latency_s,
+                       std::min(of_arm.continuous_force_N, of_arm.peak_force_N), patience,
+                       of_arm.encoder_step_m);
+      }
       if (end) tests[i].end();
+      if (end) answers[i] = ArmAnswer();
       TriedArm& arm = arms[i];
       if (silences[i].tick(states[n].sequence, kPeriod_s, now_ns)) arm.flags |= TREPHINE_ARM_LOST;
       const bool away = arm.flags & (TREPHINE_ARM_LOST | TREPHINE_ARM_ERROR);
       const bool no_hand = arm.flags & TREPHINE_ARM_NO_HAND;
-      arm.force_N =
-          tests[i].tick({arm.pose_m.position, arm.buttons != 0, no_hand, away}, kPeriod_s);
+      const ForceTest::Sample sample{arm.pose_m.position, arm.buttons != 0, no_hand, away};
+      arm.force_N = tests[i].tick(sample, kPeriod_s);
       arm.test = tests[i].phase();
+      const bool fresh = states[n].sequence != std::exchange(sequences[i], states[n].sequence);
+      const Vec3 push_N = answers[i].tick(sample, fresh, kPeriod_s);
+      const bool asked = ArmAnswer::runs(answers[i].phase());
+      arm.answer = answers[i].phase();
+      arm.noise_m = answers[i].noise_m();
+      arm.shares = answers[i].shares();
+      arm.pushed = answers[i].pushed();
       commands[n].size = sizeof(TrephineArmCommand);
-      commands[n].force_N[1] = arm.force_N;
+      for (int axis = 0; asked && axis < 3; ++axis) commands[n].force_N[axis] = push_N[axis];
+      if (!asked) commands[n].force_N[1] = arm.force_N;
     }
     if (!calls.make(d, [&] { of.device->write(commands.data()); })) return false;
   }
@@ -198,6 +217,7 @@ std::unique_ptr<ArmTrial> ArmTrial::start(const std::vector<FoundArm>& arms) {
   for (std::size_t i = 0; i < count; ++i) by_plugin[arms[i].plugin].push_back(i);
   engine->capabilities.resize(count);
   engine->tests.resize(count);
+  engine->answers.resize(count);
   engine->problems.resize(count);
   for (const auto& [name, of] : by_plugin) {
     if (engine->open(arms, of)) continue;
@@ -256,6 +276,7 @@ const TriedArms& ArmTrial::state() {
     arm.flags |= TREPHINE_ARM_LOST;
     arm.force_N = 0.0;
     if (ForceTest::runs(arm.test)) arm.test = ForceTest::Phase::lost;
+    if (ArmAnswer::runs(arm.answer)) arm.answer = ArmAnswer::Phase::lost;
   }
   return shown_;
 }
@@ -263,6 +284,10 @@ const TriedArms& ArmTrial::state() {
 void ArmTrial::askForForce(std::size_t arm, double most_N) {
   engine_->asked_N[arm] = std::min({most_N, engine_->capabilities[arm].continuous_force_N,
                                     engine_->capabilities[arm].peak_force_N});
+}
+
+void ArmTrial::askForAnswer(std::size_t arm, double patience_s) {
+  engine_->patience_s[arm] = patience_s;
 }
 
 void ArmTrial::endForce() {

@@ -15,6 +15,7 @@
 #include "device/device.h"
 #include "device/find_arms.h"
 #include "haptics/haptic_types.h"
+#include "session/arm_answer.h"
 #include "session/force_test.h"
 
 namespace trephine {
@@ -23,8 +24,12 @@ struct TriedArm {
   Pose pose_m;  // device frame
   std::uint32_t buttons = 0, flags = 0;
   double moved_m = 0.0;  // the farthest it has been from where it was first
-  double force_N = 0.0;  // upward, as sent
+  double force_N = 0.0;  // upward, as sent for a person to feel
   ForceTest::Phase test = ForceTest::Phase::off;
+  ArmAnswer::Phase answer = ArmAnswer::Phase::off;
+  double noise_m = 0.0;  // as ArmAnswer has them
+  std::array<double, 3> shares{};
+  bool pushed = false;
   std::uint64_t samples = 0;
 };
 constexpr std::size_t kMostTried = 8;
@@ -47,6 +52,8 @@ class ArmTrial {
   const TriedArms& state();
   // Of the arm of this number: a force within what it can be sent for good, or `most_N`.
   void askForForce(std::size_t arm, double most_N);
+  // Whether encoders and motors agree, once a hand is on it; no other force meanwhile.
+  void askForAnswer(std::size_t arm, double patience_s);
   void endForce();  // at once
 
  private:

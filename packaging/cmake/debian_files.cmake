@@ -1,5 +1,8 @@
 # The .deb's files that lie outside of the prefix, or are named as Debian names them.
 if(NOT CPACK_GENERATOR STREQUAL "DEB")
+  # cpack dates the files of a .deb alone.
+  execute_process(COMMAND find ${CPACK_TEMPORARY_DIRECTORY} -exec touch --no-dereference
+                          --date @$ENV{SOURCE_DATE_EPOCH} {} + COMMAND_ERROR_IS_FATAL ANY)
   return()
 endif()
 set(root ${CPACK_TEMPORARY_DIRECTORY})

@@ -1,4 +1,5 @@
-// usage: umockdev-wrapper with_wooden_arms REPORT.json COMMAND ARGUMENTS...
+// usage: [LEFT_ARM=reversed|scatters] umockdev-wrapper with_wooden_arms REPORT.json COMMAND
+// ARGUMENTS...
 // Plugs in two emulated WoodenHaptics boards in hands that swing them, runs the command, and writes
 // what the boards saw: reports that were sent and answered, and how long an answer took. Ends as
 // the command did.
@@ -8,7 +9,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
 #include <memory>
+#include <string>
 #include <thread>
 
 #include "base/file.h"
@@ -26,6 +29,7 @@ class Arm {
   Arm(test::HidTestbed& bed, const char* port) : fd_(bed.plugIn(test::woodenBoard(), port)) {
     if (fd_ >= 0) firmware_ = std::make_unique<WoodenFirmware>(fd_);
   }
+  test::WoodenHand& hand() { return hand_; }
   bool isThere() const { return firmware_ != nullptr; }
   void end() { firmware_->end(); }
   void step(double time_s) {
@@ -65,6 +69,10 @@ int run(int argc, char** argv) {
     std::fprintf(stderr, "no board can be emulated: %s\n", bed.why().c_str());
     return 2;
   }
+  const char* variable = std::getenv("LEFT_ARM");
+  const std::string wrong = variable ? variable : "";
+  if (wrong == "reversed") left.hand().setReversed();
+  if (wrong == "scatters") left.hand().setScatter(20.0);
   const pid_t child = ::fork();
   if (child == 0) {
     ::execvp(argv[2], argv + 2);

@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <random>
 
 #include "wooden_arm.h"
 #include "wooden_firmware.h"
@@ -37,12 +38,24 @@ class WoodenHand {
     }
     if (!anglesAt(at_m_, angles_)) return;
     const woodenhaptics::Vector counts = countsAt(angles_);
-    board.setCounts({std::int16_t(std::lround(counts[0])), std::int16_t(std::lround(counts[1])),
-                     std::int16_t(std::lround(counts[2]))});
+    std::array<std::int16_t, 3> seen{};
+    for (std::size_t i = 0; i < 3; ++i) {
+      seen[i] = std::int16_t(std::lround(counts[i] + scatter_ * normal_(random_)));
+    }
+    if (reversed_) seen[0] = std::int16_t(-seen[0]);
+    board.setCounts(seen);
   }
+  // What may be wrong with the arm: a standard deviation in counts; the first encoder's two wires
+  // the wrong way round.
+  void setScatter(double counts) { scatter_ = counts; }
+  void setReversed() { reversed_ = true; }
 
  private:
   woodenhaptics::Vector at_m_{}, speed_m_s_{}, angles_{};
+  double scatter_ = 0.0;
+  bool reversed_ = false;
+  std::mt19937 random_{11};
+  std::normal_distribution<double> normal_;
 };
 
 }  // namespace trephine::test

@@ -63,7 +63,7 @@ INNER = {
         "exercise": {"common", "trades"},
         "devices": {"common"},
         "headset": {"common"},
-        "commission": {"common", "machine", "render"},
+        "commission": {"common", "machine", "render", "trades"},
     },
     "ui": {
         "common": set(),
@@ -77,8 +77,9 @@ INNER = {
         "train": {"common", "views", "work", "headset"},
         "review": {"common", "work", "views"},
         "devices": {"common", "work"},
+        "commission": {"common", "views", "work"},
         "frame": {"common", "views", "work", "cases", "prepare", "train", "review", "devices",
-                  "headset"},
+                  "headset", "commission"},
     },
 }
 

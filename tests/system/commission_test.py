@@ -3,6 +3,7 @@
 import json
 import os
 import resource
+import shutil
 import subprocess
 import tempfile
 import unittest
@@ -20,7 +21,8 @@ class Commission(unittest.TestCase):
         self.folder = Path(temporary.name)
 
     def run_it(self, environment=None, before=None, storage=None):
-        environment = dict(environment or os.environ, XDG_STATE_HOME=str(self.folder / "state"))
+        environment = dict(environment or os.environ, XDG_STATE_HOME=str(self.folder / "state"),
+                           XDG_CONFIG_HOME=str(self.folder / "config"))
         done = subprocess.run(
             [LAB, "commission", "--json", "--seconds", SECONDS, "--out", str(self.folder / "out"),
              "--storage", str(storage or self.folder / "storage")],
@@ -33,12 +35,20 @@ class Commission(unittest.TestCase):
         checks = self.run_it()
         for name in ("lateness_1000_normal", "priority", "locked_memory", "opengl", "volume_edge",
                      "frame_time", "removal_to_pixel", "hand_to_tool", "disk_write", "disk_room",
-                     "memory", "clock", "arms", "headset"):
+                     "memory", "clock", "arms", "headset", "screen", "touch_cost", "arm_encoders",
+                     "arm_forces", "lateness_2000_normal", "lateness_4000_normal"):
             check = checks[name]
             self.assertIn(check["verdict"], ("pass", "warn", "fail"))
             self.assertIsNotNone(check["limit"], name)
             self.assertEqual(check["verdict"] == "pass", check["next"] == "", check)
             print(f"{name}: {check['value']} {check['unit']}, {check['verdict']}")
+        # What is recommended stands for this person, and lies beside the page.
+        kept = json.loads((self.folder / "config/trephine/recommended.json").read_text())
+        self.assertEqual(kept, json.loads((self.folder / "out/recommended.json").read_text()))
+        knobs = {knob["knob"]: knob["setting"] for knob in kept["knobs"]}
+        self.assertEqual(set(knobs),
+                         {"points_blade", "points_burr", "force_at", "rate_hz", "grid"})
+        self.assertIn(f"rate_hz {knobs['rate_hz']}", checks["touch_cost"]["remark"])
         page = (self.folder / "out/commission.html").read_text()
         self.assertIn("Commissioning of this workstation", page)
         if "llvmpipe" in checks["opengl"]["remark"]:
@@ -61,7 +71,7 @@ class Commission(unittest.TestCase):
                 os.setgroups([])
                 os.setgid(65534)
                 os.setuid(65534)
-        for name in ("out", "storage", "state"):
+        for name in ("out", "storage", "state", "config"):
             (self.folder / name).mkdir()
         for path in [self.folder, *self.folder.iterdir()]:
             path.chmod(0o777)
@@ -94,6 +104,53 @@ class Commission(unittest.TestCase):
                 load.wait()
         late = checks["lateness_1000_normal"]
         self.assertNotEqual(late["verdict"], "pass", late)
+
+
+class CommissionArms(unittest.TestCase):
+    """Two open arms on emulated boards, in hands that swing them, through the real hidapi."""
+
+    def commission(self, left, *more):
+        with tempfile.TemporaryDirectory() as folder:
+            environment = dict(without_display(), LEFT_ARM=left, XDG_STATE_HOME=folder,
+                               XDG_CONFIG_HOME=folder)
+            done = subprocess.run(
+                [shutil.which("umockdev-wrapper"), os.environ["WITH_WOODEN_ARMS"],
+                 f"{folder}/boards.json", LAB, "commission", "--json", "--seconds", SECONDS,
+                 "--storage", folder, "--out", f"{folder}/out", *more],
+                env=environment, capture_output=True, text=True, timeout=240)
+            self.assertEqual(done.returncode, 0, done.stdout[-500:] + done.stderr[-500:])
+            boards = json.loads(Path(folder, "boards.json").read_text())
+            checks = {check["name"]: check for check in json.loads(done.stdout)["checks"]}
+            for name in ("arm_encoders", "arm_forces"):
+                print(left, name, checks[name]["value"], checks[name]["verdict"],
+                      checks[name]["remark"])
+            self.assertEqual(checks["arms"]["verdict"], "pass")
+            self.assertLess(max(board["most_N"] for board in boards.values()), 1.0)
+            return checks, boards
+
+    def test_arms_that_are_well_pass(self):
+        checks, boards = self.commission("well")
+        self.assertEqual(checks["arm_encoders"]["verdict"], "pass")
+        self.assertEqual(checks["arm_forces"]["verdict"], "pass")
+        self.assertGreater(boards["left"]["most_N"], 0.5)
+
+    def test_a_reversed_encoder_fails_and_is_named(self):
+        forces = self.commission("reversed")[0]["arm_forces"]
+        self.assertEqual(forces["verdict"], "fail")
+        self.assertLess(forces["value"], -0.1)
+        self.assertIn("do not practise", forces["next"])
+
+    def test_an_encoder_that_scatters_fails_and_its_arm_is_not_pushed(self):
+        checks, boards = self.commission("scatters")
+        self.assertEqual(checks["arm_encoders"]["verdict"], "fail")
+        self.assertEqual(checks["arm_forces"]["verdict"], "warn")
+        self.assertEqual(boards["left"]["most_N"], 0.0)
+        self.assertGreater(boards["right"]["most_N"], 0.5)
+
+    def test_arms_that_shall_not_be_tried_are_not_opened(self):
+        checks, boards = self.commission("well", "--wait", "0")
+        self.assertEqual(checks["arm_forces"]["verdict"], "warn")
+        self.assertEqual([board["answered"] for board in boards.values()], [0, 0])
 
 
 if __name__ == "__main__":

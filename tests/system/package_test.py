@@ -36,7 +36,7 @@ class Package(unittest.TestCase):
         cls.folder = Path(cls.temporary.name)
         for name in ("a", "b", "tar", "root"):
             (cls.folder / name).mkdir()
-        os.environ["SOURCE_DATE_EPOCH"] = "1767225600"
+        os.environ.pop("SOURCE_DATE_EPOCH", None)
         cls.deb = packed("DEB", cls.folder / "a")
         output("dpkg-deb", "-x", cls.deb, cls.folder / "root")
         cls.root = cls.folder / "root"

@@ -15,6 +15,8 @@
 
 #include "base/crash_report.h"
 #include "base/system.h"
+#include "ui/commission/commission_page.h"
+#include "ui/commission/fitness_line.h"
 #include "ui/common/error_dialog.h"
 #include "ui/common/question.h"
 #include "ui/common/settings.h"
@@ -266,6 +268,9 @@ void MainWindow::showHint() {
   hint_->setText(!help_words_.isEmpty()    ? help_words_
                  : room(place_).parts.page ? QString()
                                            : hint_words_);
+  const bool first = place_ == Place::cases && help_words_.isEmpty();
+  fitness_->setVisible(first);
+  hint_->setVisible(!first);
 }
 
 void MainWindow::showAbout() {
@@ -365,6 +370,29 @@ void MainWindow::showHeadset() {
   // A window over its screen must not keep the keys from coming back here.
   connect(dialog, &QDialog::finished, this, [this] { activateWindow(); });
   dialog->open();
+}
+
+void MainWindow::checkAtStart() {
+  constexpr int kBegun_ms = 1500;
+  QTimer::singleShot(kBegun_ms, fitness_, &FitnessLine::look);
+}
+
+void MainWindow::showCommission() {
+  const CommissionFolders folders = commissionFolders(workstation().policy());
+  auto* page = new CommissionPage(bench_.storage(), folders.own, folders.hospital, this);
+  connect(page, &CommissionPage::begun, this, [this] { workstation().lendArms(true); });
+  connect(page, &CommissionPage::ended, this, [this] { workstation().lendArms(false); });
+  connect(page, &CommissionPage::commissioned, fitness_, &FitnessLine::look);
+  connect(page, &CommissionPage::saveWanted, page, [this, page] {
+    QFileDialog* dialog = bench_.saveDialog(tr("Save the commissioning"), "commissioning.pdf",
+                                            tr("PDF (*.pdf);;A page for a browser (*.html)"));
+    connect(dialog, &QFileDialog::fileSelected, page, [this, page](const QString& file) {
+      const Status saved = page->save(toPath(file));
+      saved ? bench_.say(tr("The commissioning is saved.")) : bench_.report(saved.error());
+    });
+    dialog->open();
+  });
+  page->open();
 }
 
 void MainWindow::showLocks() {

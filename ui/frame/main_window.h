@@ -20,6 +20,7 @@
 
 namespace trephine {
 
+class FitnessLine;
 class HeadsetView;
 struct LeftBehind;
 class StereoView;
@@ -46,6 +47,9 @@ class MainWindow : public QMainWindow {
   void open(const std::filesystem::path& path);
   // What a program that crashed has left: said, with its report, and its recording offered.
   void offerLeftBehind(const LeftBehind& left);
+  // Whether the machine is as it was commissioned, once what begins with the window has had its
+  // time.
+  void checkAtStart();
   // Why everything is locked, where the workstation's settings are wrong.
   void sayProblem();
   void startExercise(std::optional<OperatorScript> script = {},
@@ -96,6 +100,7 @@ class MainWindow : public QMainWindow {
   void showSettings();
   void showDevices();
   void showHeadset();
+  void showCommission();
   void showEyes();
   void showLocks();
   void askForPin();
@@ -117,8 +122,9 @@ class MainWindow : public QMainWindow {
   QSplitter* columns_;
   QToolBar* bar_;
   QAction *picture_, *volume_, *look_, *left_panel_, *right_panel_, *full_screen_, *settings_,
-      *devices_, *headset_settings_, *unlock_;
+      *devices_, *headset_settings_, *commission_, *unlock_;
   QLabel *hint_, *eyes_, *rates_, *locked_, *opening_words_;
+  FitnessLine* fitness_;
   double panel_ms_ = 0.0;  // of its last picture
   QWidget* opening_box_;
   QProgressBar* opening_;

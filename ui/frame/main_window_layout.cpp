@@ -5,6 +5,7 @@
 #include <QStatusBar>
 #include <QVBoxLayout>
 
+#include "ui/commission/fitness_line.h"
 #include "ui/common/actions.h"
 #include "ui/common/colours.h"
 #include "ui/common/placing.h"
@@ -109,6 +110,8 @@ void MainWindow::buildActions() {
   headset_settings_ =
       makeAction(*this, Symbol::settings, "headsetSettings", tr("Headset and s&creens\u2026"), {},
                  tr("Where the patient stands, and how another screen is used"));
+  commission_ = makeAction(*this, Symbol::settings, "commission", tr("Co&mmission\u2026"), {},
+                           tr("Whether this machine is fit, with the next step for what is not"));
   unlock_ =
       makeAction(*this, Symbol::settings, "unlockTeaching", tr("Unlock for &teaching\u2026"), {},
                  tr("With an educator's PIN, until it is locked again or Trephine is closed"));
@@ -174,7 +177,9 @@ void MainWindow::buildBars() {
   auto* purpose = new QLabel(purposeText());
   purpose->setObjectName("purpose");
   purpose->setContentsMargins(12, 0, 6, 0);
+  fitness_ = new FitnessLine(bench_);
   statusBar()->addWidget(hint_, 1);
+  statusBar()->addWidget(fitness_, 1);
   statusBar()->addPermanentWidget(opening_box_);
   statusBar()->addPermanentWidget(eyes_);
   statusBar()->addPermanentWidget(rates_);
@@ -188,7 +193,7 @@ void MainWindow::buildMenus() {
   file->addSeparator();
   file->addActions({prepare_->saveInCaseAction(), volume_, picture_});
   file->addSeparator();
-  file->addActions({settings_, devices_, unlock_});
+  file->addActions({settings_, devices_, commission_, unlock_});
   file->addSeparator();
   QAction* quit = file->addAction(tr("&Quit"), QKeySequence::Quit, this, &QWidget::close);
   quit->setObjectName("quit");
@@ -269,6 +274,7 @@ void MainWindow::connectParts() {
   connect(settings_, &QAction::triggered, this, &MainWindow::showSettings);
   connect(devices_, &QAction::triggered, this, &MainWindow::showDevices);
   connect(headset_settings_, &QAction::triggered, this, &MainWindow::showHeadset);
+  connect(commission_, &QAction::triggered, this, &MainWindow::showCommission);
   connect(unlock_, &QAction::triggered, this, &MainWindow::askForPin);
   connect(&bench_.workstation(), &Workstation::locksChanged, this, &MainWindow::showLocks);
   showLocks();
@@ -277,7 +283,9 @@ void MainWindow::connectParts() {
   const auto showPhase = [this] {
     const bool any = this->workstation().phase() != Workstation::Phase::empty;
     for (QAction* action : {picture_, volume_, look_}) action->setEnabled(any);
-    devices_->setEnabled(!any || this->workstation().phase() == Workstation::Phase::ready);
+    for (QAction* action : {devices_, commission_}) {
+      action->setEnabled(!any || this->workstation().phase() == Workstation::Phase::ready);
+    }
   };
   connect(&workstation, &Workstation::phaseChanged, this, showPhase);
   showPhase();

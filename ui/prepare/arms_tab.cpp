@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "base/file.h"
-#include "base/system.h"
+#include "base/log.h"
 #include "lab/common/child_process.h"
 #include "lab/touch/law_costs.h"
 #include "lab/trades/recommended.h"
@@ -94,25 +94,33 @@ void ArmsTab::measureCosts() {
 namespace {
 
 // Of this person on this machine.
-std::filesystem::path configFolder() {
+std::filesystem::path ownFolder() {
   return toPath(QStandardPaths::writableLocation(QStandardPaths::AppConfigLocation));
 }
 
 }  // namespace
 
-// As measured here, else what was recommended on the machine of the makers.
+// As measured here, else those alone that are recommended, by hospital or makers.
 void ArmsTab::showTrades() {
-  if (const auto here = readTrades(configFolder() / "trades.json")) {
-    return tools_->setTrades(here->rows, tr("Measured on this machine."));
+  std::vector<RecommendedSetting> here;
+  if (auto read = recommendedHere(workstation_.policy(), ownFolder())) {
+    here = *std::move(read);
+  } else {
+    spdlog::warn("{}", read.error().sentence());
+  }
+  if (auto measured = readTrades(ownFolder() / "trades.json")) {
+    for (TradeRow& row : measured->rows) {
+      const auto of = std::ranges::find(here, row.knob, &RecommendedSetting::knob);
+      row.recommended = of != here.end() && of->setting == row.setting;
+    }
+    return tools_->setTrades(measured->rows, tr("Measured on this machine."));
   }
   std::vector<TradeRow> rows;
-  if (const auto shipped = readRecommended(resourceFolder() / "recommended.json")) {
-    for (const RecommendedSetting& of : *shipped) {
-      rows.push_back(
-          {of.knob, of.setting, of.error, of.error_unit, of.cost, of.cost_unit, "", true, {}});
-    }
+  for (const RecommendedSetting& of : here) {
+    rows.push_back(
+        {of.knob, of.setting, of.error, of.error_unit, of.cost, of.cost_unit, "", true, {}});
   }
-  tools_->setTrades(rows, tr("Measured on another machine: measure them here to see all."));
+  tools_->setTrades(rows, tr("The recommended ones alone: measure them here to see all."));
 }
 
 // By the program of the laboratory, beside this one: it draws as well.
@@ -122,7 +130,7 @@ void ArmsTab::measureTrades() {
       std::filesystem::read_symlink("/proc/self/exe", ec).parent_path() / "trephine-lab";
   workstation_.save(
       tr("The trades are measured."),
-      [lab, to = configFolder()](const Progress& progress) -> Status {
+      [lab, to = ownFolder()](const Progress& progress) -> Status {
         const Result<std::filesystem::path> temporary = temporaryFolder();
         if (!temporary) return temporary.error();
         const std::filesystem::path out =
@@ -160,6 +168,7 @@ void ArmsTab::measureTrades() {
 }
 
 void ArmsTab::show(bool in_front) {
+  if (in_front && !in_front_) showTrades();  // commissioned since, perhaps
   in_front_ = in_front;
   refresh();
 }

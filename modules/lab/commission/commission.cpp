@@ -1,26 +1,24 @@
 #include "lab/commission/commission.h"
 
-#include <fcntl.h>
 #include <sys/resource.h>
 #include <sys/utsname.h>
 #include <unistd.h>
 
 #include <algorithm>
-#include <cerrno>
-#include <chrono>
 #include <cmath>
 #include <ctime>
 #include <thread>
 
-#include "base/file.h"
 #include "base/local_time.h"
 #include "base/memory.h"
 #include "base/release.h"
 #include "base/system.h"
-#include "device/find_arms.h"
 #include "headset/headset.h"
+#include "lab/commission/arm_checks.h"
+#include "lab/commission/disk_check.h"
 #include "lab/machine/jitter_measurement.h"
 #include "lab/render/render_parts.h"
+#include "lab/trades/trades_measurement.h"
 #include "render/display_probe.h"
 #include "render/gl_limits.h"
 
@@ -28,10 +26,9 @@ namespace trephine {
 
 namespace {
 
-namespace fs = std::filesystem;
-
 constexpr double kGB = 1e9, kMB = 1e6;
 constexpr std::size_t kDiskTry = 256'000'000;  // bytes
+constexpr double kDiskMost_s = 20.0;
 
 Error stopped() {
   return {"CANCELLED", "The commissioning was cancelled", "commission", ""};
@@ -51,12 +48,15 @@ class Run {
 
   Status lateness();
   void memory();
-  void disk();
+  Status trades();
   void clock();
-  void devices();
+  void take(std::vector<CommissionCheck> more) {
+    checks.insert(checks.end(), more.begin(), more.end());
+  }
   Status drawing();
 
   std::vector<CommissionCheck> checks;
+  std::vector<RecommendedSetting> recommended;
 
  private:
   void add(const std::string& name, double value, std::string remark = "") {
@@ -68,7 +68,12 @@ class Run {
 
   const CommissionOptions& options_;
   const Progress& progress_;
+  bool granted_ = false;  // real-time priority
 };
+
+std::string latenessName(double rate_hz, bool real_time) {
+  return "lateness_" + std::to_string(std::lround(rate_hz)) + (real_time ? "_fifo" : "_normal");
+}
 
 Status Run::lateness() {
   JitterOptions options;
@@ -76,17 +81,15 @@ Status Run::lateness() {
   const Result<JitterMeasurement> measured =
       measureJitter(options, {}, Progress(progress_, 0.0, 0.35));
   if (!measured) return measured.error();
-  const bool granted = measured->advice.empty();
-  add("priority", granted ? 1.0 : 0.0);
+  granted_ = measured->advice.empty();
+  add("priority", granted_ ? 1.0 : 0.0);
   for (const JitterRow& row : measured->rows) {
-    const std::string name = "lateness_" + std::to_string(std::lround(row.rate_hz)) + "_" +
-                             (row.real_time ? "fifo" : "normal");
-    if (!commissionLimit(name)) continue;
-    add(name, row.p999_us, std::to_string(row.missed) + " missed of " + std::to_string(row.ticks));
+    add(latenessName(row.rate_hz, row.real_time), row.p999_us,
+        std::to_string(row.missed) + " missed of " + std::to_string(row.ticks));
   }
-  for (const char* rate : {"1000", "2000", "4000"}) {
-    if (granted) continue;
-    add(std::string("lateness_") + rate + "_fifo", Fitness::warn,
+  for (const double rate_hz : {1000.0, 2000.0, 4000.0}) {
+    if (granted_) continue;
+    add(latenessName(rate_hz, true), Fitness::warn,
         {"NO_REAL_TIME", "Real-time priority was not granted", "", ""});
   }
   return {};
@@ -103,42 +106,6 @@ void Run::memory() {
       "of " + std::to_string(std::lround(pages / kGB)) + " GB");
 }
 
-// Written and held to be on the disk, beside the cases; gone again.
-void Run::disk() {
-  progress_.at(0.37, "disk");
-  std::error_code ec;
-  const auto failed = [&](const Error& why) {
-    for (const char* name : {"disk_write", "disk_room"}) add(name, Fitness::fail, why);
-  };
-  fs::path existing = options_.storage;
-  while (!fs::exists(existing, ec) && existing.has_parent_path()) existing = existing.parent_path();
-  const fs::space_info space = fs::space(existing, ec);
-  if (ec) return failed(writeError(options_.storage, ec.value()));
-  add("disk_room", double(space.available) / kGB);
-  const std::string file =
-      (existing / (".trephine-commission-" + std::to_string(::getpid()))).string();
-  const int fd = ::open(file.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0600);
-  if (fd < 0) return add("disk_write", Fitness::fail, writeError(existing, errno));
-  ::unlink(file.c_str());  // gone whatever happens
-  const std::size_t size = std::min<std::size_t>(kDiskTry, space.available / 4);
-  std::vector<char> block(4'000'000);
-  for (std::size_t i = 0; i < block.size(); ++i) block[i] = char(i * 2654435761U >> 13);
-  const auto begun = std::chrono::steady_clock::now();
-  std::size_t done = 0;
-  int error = 0;
-  while (done < size && error == 0 && !progress_.cancelled()) {
-    const ssize_t n = ::write(fd, block.data(), std::min(block.size(), size - done));
-    if (n < 0 && errno != EINTR) error = errno;
-    done += std::size_t(std::max<ssize_t>(n, 0));
-  }
-  if (error == 0 && ::fsync(fd) != 0) error = errno;
-  ::close(fd);
-  if (error != 0) return add("disk_write", Fitness::fail, writeError(existing, error));
-  const double seconds =
-      std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
-  add("disk_write", double(done) / kMB / std::max(seconds, 1e-6));
-}
-
 void Run::clock() {
   std::tm made{};
   ::strptime(kReleased, "%Y-%m-%d", &made);
@@ -148,24 +115,34 @@ void Run::clock() {
       localTime("%Y-%m-%d %H:%M"));
 }
 
-void Run::devices() {
-  progress_.at(0.42, "devices");
-  const FoundArms found = findArms(pluginFolder());
-  std::size_t arms = 0;
-  std::string models;
-  for (const FoundArm& arm : found.arms) {
-    if (arm.plugin == "simulated") continue;
-    ++arms;
-    models += (models.empty() ? "" : ", ") + arm.model;
+// The best of what this machine keeps: a rate whose ticks come late here is not recommended.
+Status Run::trades() {
+  TradesOptions options;
+  options.ray_distances.clear();
+  std::erase_if(options.rates_hz, [&](double rate_hz) {
+    const std::string name = latenessName(rate_hz, granted_);
+    const auto of = std::ranges::find(checks, name, &CommissionCheck::name);
+    const bool measured = of != checks.end();
+    return rate_hz > 1000.0 && !(measured && of->verdict == Fitness::pass);
+  });
+  const Result<TradesMeasurement> measured =
+      measureTrades(options, {}, Progress(progress_, 0.35, 0.42));
+  if (!measured) return measured.error();
+  recommended = recommendedOf(measured->rows);
+  std::string words;
+  double cost = std::nan("");
+  for (const RecommendedSetting& setting : recommended) {
+    words += (words.empty() ? "" : ", ") + setting.knob + " " + setting.setting;
+    if (setting.knob == "rate_hz") cost = setting.cost;
   }
-  add("arms", double(arms), models);
-  add("headset", openXrInstalled() ? 1.0 : 0.0);
+  add("touch_cost", cost, words);
+  return {};
 }
 
 Status Run::drawing() {
-  progress_.at(0.45, "pictures");
-  const char* const kDrawn[] = {"opengl", "volume_edge", "frame_time", "removal_to_pixel",
-                                "hand_to_tool"};
+  progress_.at(0.5, "pictures");
+  const char* const kDrawn[] = {"screen",     "opengl",           "volume_edge",
+                                "frame_time", "removal_to_pixel", "hand_to_tool"};
   if (const Status display = probeDisplay(); !display) {
     for (const char* name : kDrawn) add(name, Fitness::fail, display.error());
     return {};
@@ -179,19 +156,19 @@ Status Run::drawing() {
     return {};
   }
   (*renderer)->paint(0);
-  const std::string driver = (*renderer)->openGlDescription();
-  add("opengl", isSoftware(driver) ? 0.0 : 1.0, driver);
+  checks.push_back(judgedScreen((*renderer)->screenSize()));
+  checks.push_back(judgedCard((*renderer)->openGlDescription()));
   checks.push_back(judged("volume_edge", largestVolumeEdge(), "", options_.largest_edge));
   renderer->reset();
-  Result<std::vector<RenderSubject>> subjects = renderSubjects("", Progress(progress_, 0.45, 0.55));
+  Result<std::vector<RenderSubject>> subjects = renderSubjects("", Progress(progress_, 0.5, 0.58));
   if (!subjects) return subjects.error();
   RenderMeasurement measured;
   const Status turned =
-      measureRotation(subjects->front(), options, Progress(progress_, 0.55, 0.7), measured);
+      measureRotation(subjects->front(), options, Progress(progress_, 0.58, 0.72), measured);
   if (progress_.cancelled()) return stopped();
   turned ? add("frame_time", measured.rows.back().ms_median)
          : add("frame_time", Fitness::fail, turned.error());
-  const Status cut = measureExercises(*subjects, options, Progress(progress_, 0.7, 1.0), measured);
+  const Status cut = measureExercises(*subjects, options, Progress(progress_, 0.72, 1.0), measured);
   if (progress_.cancelled()) return stopped();
   if (!cut) {
     add("removal_to_pixel", Fitness::fail, cut.error());
@@ -215,20 +192,29 @@ Result<Commissioning> commission(const CommissionOptions& options, const Progres
   if (!(options.seconds >= 0.2 && options.seconds <= 60.0)) {
     return Error{"BAD_OPTION", "Seconds are from 0.2 to 60", "commission", "Give others"};
   }
-  Commissioning result{{}, localTime("%Y-%m-%d %H:%M"), buildName(), machineName()};
+  if (!(options.patience_s >= 0.0 && options.patience_s <= 600.0)) {
+    return Error{"BAD_OPTION", "Arms are waited for from 0 to 600 s", "commission", "Give others"};
+  }
+  Commissioning result{{}, localTime("%Y-%m-%d %H:%M"), buildName(), machineName(), {}};
   Run run(options, progress);
   if (Status late = run.lateness(); !late) {
     return late.error().code == "CANCELLED" ? stopped() : late.error();
   }
+  if (Status traded = run.trades(); !traded) {
+    return traded.error().code == "CANCELLED" ? stopped() : traded.error();
+  }
   run.memory();
-  run.disk();
+  progress.at(0.42, "disk");
+  run.take(checkDisk(options.storage, kDiskTry, kDiskMost_s, progress));
   run.clock();
-  run.devices();
+  run.take(checkArms(options.patience_s, Progress(progress, 0.44, 0.5)));
+  run.take({judged("headset", openXrInstalled() ? 1.0 : 0.0)});
   if (progress.cancelled()) return stopped();
   if (Status drawn = run.drawing(); !drawn) {
     return drawn.error().code == "CANCELLED" ? stopped() : drawn.error();
   }
   result.checks = std::move(run.checks);
+  result.recommended = std::move(run.recommended);
   progress.at(1.0, "done");
   return result;
 }

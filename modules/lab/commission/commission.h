@@ -10,6 +10,7 @@
 #include "base/progress.h"
 #include "base/result.h"
 #include "lab/commission/commission_limits.h"
+#include "lab/trades/recommended.h"
 
 namespace trephine {
 
@@ -17,6 +18,7 @@ struct CommissionOptions {
   std::filesystem::path storage;  // the folder of cases: its disk
   int largest_edge = 0;           // voxels, of the cases there; 0: none is larger than usual
   double seconds = 5.0;           // of each row of lateness, 0.2 to 60
+  double patience_s = 15.0;       // until somebody holds the arms; 0: they are not tried, to 600
 };
 
 struct Commissioning {
@@ -24,6 +26,9 @@ struct Commissioning {
   std::string when;     // "2026-11-24 09:30", by the clock
   std::string build;    // of this program
   std::string machine;  // processors and system, without the name of the host
+  // The best settings of touch that this machine keeps; not what rays take, which `measure trades`
+  // finds in minutes.
+  std::vector<RecommendedSetting> recommended;
 };
 Fitness fitnessOf(const Commissioning& of);  // the worst
 
@@ -38,10 +43,11 @@ struct CommissionChange {
   std::optional<double> value_before, value_now;
   std::string unit;
 };
+std::string changeText(const CommissionChange& change);  // "A: 3 GB (pass) before, 1 GB (fail) now"
 std::vector<CommissionChange> changesSince(const Commissioning& before, const Commissioning& now);
 
 // {checks:[{name, value, unit, limit, verdict, next, words, remark}], verdict, when, build,
-// machine}
+// machine}: what was measured, without what is recommended by it.
 Json toJson(const Commissioning& of);
 // Of what toJson() wrote. Errors: those of readJsonFile, BAD_FIELD.
 Result<Commissioning> readCommissioning(const std::filesystem::path& file);

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <cstdlib>
 
+#include "render/gl_limits.h"
+
 namespace trephine {
 
 namespace {
@@ -23,6 +25,13 @@ constexpr CommissionLimit kLimits[] = {
      std::nullopt, "half a period; exercises of 4000 Hz alone need it", kPriorityNext},
     {"lateness_1000_normal", "Ticks at 1000 Hz without priority: late by, 99.9 %", "us", false,
      500.0, std::nullopt, "how the machine does where priority is not granted", kPriorityNext},
+    {"lateness_2000_normal", "Ticks at 2000 Hz without priority: late by, 99.9 %", "us", false,
+     250.0, std::nullopt, "how the machine does where priority is not granted", kPriorityNext},
+    {"lateness_4000_normal", "Ticks at 4000 Hz without priority: late by, 99.9 %", "us", false,
+     125.0, std::nullopt, "how the machine does where priority is not granted", kPriorityNext},
+    {"touch_cost", "Touch with the recommended settings, one arm", "% of a processor", false, 25.0,
+     100.0, "two arms, pictures and recording need the rest",
+     "Use exercises of a lower rate, and end what else works on this machine"},
     {"priority", "Real-time priority", "granted", true, 1.0, std::nullopt,
      "without it any program makes ticks late", kPriorityNext},
     {"locked_memory", "Memory that may be held in place", "MB", true, 2048.0, std::nullopt,
@@ -50,10 +59,23 @@ constexpr CommissionLimit kLimits[] = {
      "End other programs, or add memory"},
     {"clock", "Years since this version was made, by the clock", "years", true, 0.0, 0.0,
      "recordings are named and sorted by the clock", "Set the clock"},
-    {"arms", "Arms that are plugged in", "arms", true, 0.0, std::nullopt,
-     "without arms, mouse and keys move the hands", "Plug them in, and see File, Devices"},
-    {"headset", "OpenXR's loader", "installed", true, 0.0, std::nullopt, "a headset alone needs it",
-     "Install the package libopenxr-loader1"},
+    {"screen", "Room on the screen", "lines", true, 800.0, 500.0,
+     "the views beside the panels; below 500 lines parts of the window do not fit",
+     "Use a screen of 1280 x 800 or more"},
+    {"arms", "Arms that are plugged in", "arms", true, 2.0, std::nullopt,
+     "both hands feel; without arms, mouse and keys move the hands",
+     "Plug them in, and see File, Devices"},
+    {"arm_encoders", "Encoders of the arms: how their samples scatter, the worst", "steps", false,
+     1.0, 5.0, "half a step is what counting makes; more is felt as a tremble",
+     "Check its cables and encoders, and keep other devices off its USB port"},
+    {"arm_forces", "Arms that are pushed: how far they go of how far they should, the least",
+     "of 1", true, 0.1, -0.1,
+     "a firm hand leaves a fifth; below nothing an encoder or a motor is "
+     "reversed, and every force would drive the arm on",
+     "Check its motors' cables, and hold it lightly; below 0 do not practise with it: see to its "
+     "encoders and motors"},
+    {"headset", "OpenXR's loader", "installed", true, 1.0, std::nullopt, "a headset alone needs it",
+     "Install the package libopenxr-loader1, if there is a headset"},
 };
 
 }  // namespace
@@ -72,7 +94,8 @@ const CommissionLimit* commissionLimit(const std::string& name) {
   return found == std::end(kLimits) ? nullptr : &*found;
 }
 
-CommissionCheck judged(const std::string& name, double value, std::string remark, double needed) {
+CommissionCheck judged(const std::string& name, double value, std::string remark,
+                       std::optional<double> needed) {
   const CommissionLimit* by = commissionLimit(name);
   if (!by) std::abort();  // a name that the table lacks is a mistake of ours
   CommissionCheck check{name,     by->words,     value, by->unit,
@@ -81,7 +104,7 @@ CommissionCheck judged(const std::string& name, double value, std::string remark
     return !std::isfinite(value) || (by->at_least ? value < limit : value > limit);
   };
   std::optional<double> fail = by->fail;
-  if (fail && by->at_least) fail = std::max(*fail, needed);
+  if (fail && needed) fail = std::max(*fail, *needed);
   if (fail && beyond(*fail)) {
     check.verdict = Fitness::fail;
     check.limit = fail;
@@ -91,6 +114,17 @@ CommissionCheck judged(const std::string& name, double value, std::string remark
   if (check.verdict != Fitness::pass) check.next = by->next;
   if (!std::isfinite(value)) check.value.reset();
   return check;
+}
+
+CommissionCheck judgedCard(const std::string& driver) {
+  return judged("opengl", isSoftware(driver) ? 0.0 : 1.0, driver);
+}
+
+// A screen that is higher than wide has as many lines as its width allows.
+CommissionCheck judgedScreen(const std::array<int, 2>& size) {
+  constexpr double kWide = 1.6;
+  return judged("screen", std::min(double(size[1]), std::floor(size[0] / kWide)),
+                std::to_string(size[0]) + " x " + std::to_string(size[1]));
 }
 
 CommissionCheck notMeasured(const std::string& name, Fitness verdict, const Error& why) {

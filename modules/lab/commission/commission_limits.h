@@ -1,6 +1,7 @@
 // When a workstation is fit: one table, each limit with its reason. Pure.
 #pragma once
 
+#include <array>
 #include <optional>
 #include <span>
 #include <string>
@@ -39,7 +40,9 @@ struct CommissionCheck {
 // By the table, of which a limit that is `at_least` is raised to what is `needed` on this machine.
 // A value that is no number fails.
 CommissionCheck judged(const std::string& name, double value, std::string remark = "",
-                       double needed = 0.0);
+                       std::optional<double> needed = {});
+CommissionCheck judgedCard(const std::string& driver);         // `opengl`
+CommissionCheck judgedScreen(const std::array<int, 2>& size);  // `screen`: pixels
 // What could not be measured, and why.
 CommissionCheck notMeasured(const std::string& name, Fitness verdict, const Error& why);
 

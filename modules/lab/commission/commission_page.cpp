@@ -22,14 +22,11 @@ std::string shown(const std::optional<double>& value, const std::string& unit) {
                 *value, unit.c_str());
   if (unit == "granted" || unit == "installed") return *value > 0.0 ? "yes" : "no";
   if (unit == "drawn by") return *value > 0.0 ? "a graphics card" : "the processors";
+  if (unit == "MB" && *value >= 1e6) return "without limit";
   if (unit == "arms") std::snprintf(text, sizeof text, "%.0f", *value);
+  if (unit == "lines") std::snprintf(text, sizeof text, "%.0f lines", *value);
+  if (unit == "of 1") std::snprintf(text, sizeof text, "%.2f", *value);
   return text;
-}
-
-std::string changeText(const CommissionChange& change) {
-  return change.words + ": " + shown(change.value_before, change.unit) + " (" +
-         nameOf(change.before) + ") before, " + shown(change.value_now, change.unit) + " (" +
-         nameOf(change.now) + ") now";
 }
 
 const char* inWords(Fitness verdict) {
@@ -45,7 +42,40 @@ std::optional<Fitness> fitnessNamed(const std::string& name) {
   return {};
 }
 
+// Those that are passed, or those that are not, the worst first.
+std::string tableOf(const Commissioning& of, const char* title, bool passed) {
+  std::string rows;
+  for (const Fitness each : {Fitness::fail, Fitness::warn, Fitness::pass}) {
+    for (const CommissionCheck& check : of.checks) {
+      if (check.verdict != each || passed != (each == Fitness::pass)) continue;
+      const CommissionLimit* by = commissionLimit(check.name);
+      rows += "<tr><td class=\"" + std::string(nameOf(check.verdict)) + "\">" +
+              nameOf(check.verdict) + "</td><td>" + inHtml(check.words) + "<br><small>" +
+              (by ? inHtml(by->reason) : "") + "</small></td><td>" +
+              inHtml(shown(check.value, check.unit));
+      if (!check.remark.empty()) rows += "<br><small>" + inHtml(check.remark) + "</small>";
+      rows += "</td><td>";
+      if (check.limit) {
+        rows += (by && by->at_least ? "at least " : "at most ") +
+                inHtml(shown(check.limit, check.unit));
+      }
+      rows += passed ? "</td></tr>\n" : "</td><td>" + inHtml(check.next) + "</td></tr>\n";
+    }
+  }
+  if (rows.empty()) return rows;
+  return std::string("<h2>") + title +
+         "</h2>\n<table width=\"100%\">\n<tr><th width=\"6%\"></th><th>What</th><th>Here</th>"
+         "<th width=\"16%\">Limit</th>" +
+         (passed ? "" : "<th width=\"30%\">Next step</th>") + "</tr>\n" + rows + "</table>\n";
+}
+
 }  // namespace
+
+std::string changeText(const CommissionChange& change) {
+  return change.words + ": " + shown(change.value_before, change.unit) + " (" +
+         nameOf(change.before) + ") before, " + shown(change.value_now, change.unit) + " (" +
+         nameOf(change.now) + ") now";
+}
 
 Json toJson(const Commissioning& of) {
   Json checks = Json::array();
@@ -74,7 +104,7 @@ Result<Commissioning> readCommissioning(const std::filesystem::path& file) {
                  "Commission the workstation anew"};
   };
   try {
-    Commissioning of{{}, json->at("when"), json->at("build"), json->at("machine")};
+    Commissioning of{{}, json->at("when"), json->at("build"), json->at("machine"), {}};
     for (const Json& row : json->at("checks")) {
       const auto verdict = fitnessNamed(row.at("verdict").get<std::string>());
       if (!verdict) return bad("verdict");
@@ -118,21 +148,8 @@ std::string toHtml(const Commissioning& of, const std::vector<CommissionChange>&
           "</p>\n";
   page += "<p>" + inHtml(of.when) + " &middot; Trephine " + inHtml(of.build) + " &middot; " +
           inHtml(of.machine) + "</p>\n";
-  page += "<table>\n<tr><th></th><th>What</th><th>Here</th><th>Limit</th><th>Next step</th></tr>\n";
-  for (const CommissionCheck& check : of.checks) {
-    const CommissionLimit* by = commissionLimit(check.name);
-    page += "<tr><td class=\"" + std::string(nameOf(check.verdict)) + "\">" +
-            nameOf(check.verdict) + "</td><td>" + inHtml(check.words) + "<br><small>" +
-            (by ? inHtml(by->reason) : "") + "</small></td><td>" +
-            inHtml(shown(check.value, check.unit));
-    if (!check.remark.empty()) page += "<br><small>" + inHtml(check.remark) + "</small>";
-    page += "</td><td>" +
-            (check.limit ? std::string(by && by->at_least ? "at least " : "at most ") +
-                               inHtml(shown(check.limit, check.unit))
-                         : std::string()) +
-            "</td><td>" + inHtml(check.next) + "</td></tr>\n";
-  }
-  page += "</table>\n<h2>Since the last commissioning</h2>\n";
+  page += tableOf(of, "What could be better", false) + tableOf(of, "What is well", true);
+  page += "<h2>Since the last commissioning</h2>\n";
   if (changes.empty()) page += "<p>Nothing is otherwise, or there was none before.</p>\n";
   for (const CommissionChange& change : changes)
     page += "<p>" + inHtml(changeText(change)) + "</p>\n";

@@ -9,9 +9,7 @@
 #include <sstream>
 
 #include "base/memory.h"
-#include "base/system.h"
 #include "haptics/haptic_core.h"
-#include "lab/trades/recommended.h"
 #include "lab/trades/trade_knobs.h"
 #include "render/scene_renderer.h"
 #include "scene/arm_limits.h"
@@ -135,15 +133,11 @@ void keep(const Vec3& value) {
 
 // What the scene sets of the knobs that were measured, beside what is recommended. Null without a
 // recommendation.
-Result<Json> settingsOf(const Scene& scene) {
-  const std::filesystem::path file = resourceFolder() / "recommended.json";
-  std::error_code ec;
-  if (!std::filesystem::exists(file, ec)) return Json(nullptr);
-  Result<std::vector<RecommendedSetting>> recommended = readRecommended(file);
-  if (!recommended) return recommended.error();
+Json settingsOf(const Scene& scene, const std::vector<RecommendedSetting>& recommended) {
+  if (recommended.empty()) return nullptr;
   Json settings = Json::array();
   for (const auto& [knob, setting] : sceneSettings(scene)) {
-    for (const RecommendedSetting& r : *recommended) {
+    for (const RecommendedSetting& r : recommended) {
       if (r.knob != knob) continue;
       settings.push_back({{"knob", knob}, {"setting", setting}, {"recommended", r.setting}});
     }
@@ -177,7 +171,8 @@ std::vector<std::pair<std::string, std::string>> sceneSettings(const Scene& scen
   return settings;
 }
 
-Result<Json> explainScene(Scene scene, const Progress& progress) {
+Result<Json> explainScene(Scene scene, const std::vector<RecommendedSetting>& recommended,
+                          const Progress& progress) {
   if (Status asked = readArmDynamics(scene); !asked) return asked.error();
   for (SceneArm& arm : scene.arms) arm.max_force_N = mostForce_N(arm);
   const Result<Json> warnings = warningsAtStart(scene, Progress(progress, 0.0, 0.5));
@@ -338,9 +333,8 @@ Result<Json> explainScene(Scene scene, const Progress& progress) {
       {"journal_mb", journal_mb},
       {"cost", cost},
       {"tick_ns", tick_ns}};
-  Result<Json> settings = settingsOf(scene);
-  if (!settings) return settings.error();
-  if (!settings->is_null()) answer["settings"] = *settings;
+  const Json settings = settingsOf(scene, recommended);
+  if (!settings.is_null()) answer["settings"] = settings;
   return answer;
 }
 

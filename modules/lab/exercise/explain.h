@@ -8,6 +8,7 @@
 #include "base/json.h"
 #include "base/progress.h"
 #include "base/result.h"
+#include "lab/trades/recommended.h"
 #include "scene/scene.h"
 
 namespace trephine {
@@ -16,13 +17,14 @@ namespace trephine {
 //     arms:[{name, plugin, tool, other_tools, points, renderable}],
 //     warnings:[{code, text}] as of a run of the scene's own script in its own case: tools that
 //     start in tissue; null where it has no case or no script,
-//     settings:[{knob, setting, recommended}] where `recommended.json` is among the resources,
+//     settings:[{knob, setting, recommended}] where anything is `recommended` here,
 //     bounded:[what the arms do not show of a tissue, and what is felt], journal_mb, cost:[{part,
 //     arm (null: any), ns_per_tick}], tick_ns}
 // Each part is timed alone (median of batches, about 0.1 s for all of them) on a small block of the
 // scene's firmest tissue; tick_ns is a whole tick of all arms there, without the devices. Errors:
 // those of the devices, the script and the case, CANCELLED.
-Result<Json> explainScene(Scene scene, const Progress& progress = Progress());
+Result<Json> explainScene(Scene scene, const std::vector<RecommendedSetting>& recommended,
+                          const Progress& progress = Progress());
 
 // The same for a person, some lines, together with what the command adds of the workstation:
 // `locks` [names], `refused` (a sentence or null).

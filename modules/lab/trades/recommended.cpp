@@ -1,6 +1,9 @@
 #include "lab/trades/recommended.h"
 
+#include <algorithm>
 #include <set>
+
+#include "base/system.h"
 
 namespace trephine {
 
@@ -43,6 +46,28 @@ Result<std::vector<RecommendedSetting>> readRecommended(const std::filesystem::p
   }
   if (Status read = reader.finish(); !read) return read.error();
   return settings;
+}
+
+Result<std::vector<RecommendedSetting>> recommendedHere(const Policy& policy,
+                                                        const std::filesystem::path& own_folder) {
+  constexpr const char* kFile = "recommended.json";
+  const auto locked = [&](const RecommendedSetting& setting) {
+    return setting.knob == "rate_hz" && policy.isLocked(Lock::rate);
+  };
+  std::vector<RecommendedSetting> here;
+  for (const std::filesystem::path& folder : {resourceFolder(), policy.folder, own_folder}) {
+    std::error_code ec;
+    if (folder.empty() || !std::filesystem::exists(folder / kFile, ec)) continue;
+    Result<std::vector<RecommendedSetting>> over = readRecommended(folder / kFile);
+    if (!over) return over.error();
+    for (RecommendedSetting& setting : *over) {
+      if (locked(setting) && folder == own_folder) continue;
+      std::erase_if(here, [&](const RecommendedSetting& s) { return s.knob == setting.knob; });
+      here.push_back(std::move(setting));
+    }
+  }
+  std::erase_if(here, [&](const RecommendedSetting& s) { return locked(s) && policy.rate_hz; });
+  return here;
 }
 
 }  // namespace trephine

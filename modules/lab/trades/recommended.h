@@ -7,6 +7,7 @@
 
 #include "base/json.h"
 #include "base/result.h"
+#include "scene/policy.h"
 
 namespace trephine {
 
@@ -23,5 +24,12 @@ struct RecommendedSetting {
 Json toJson(const std::vector<RecommendedSetting>& settings);
 // Errors: MISSING_FILE, BAD_JSON, BAD_FIELD (a negative figure, a knob given twice).
 Result<std::vector<RecommendedSetting>> readRecommended(const std::filesystem::path& file);
+
+// What stands on this machine, knob by knob: recommended.json of the person (`own_folder`, empty:
+// none) over the hospital's in the policy's folder over the product's. A knob that the workstation
+// locks takes nothing from the person's, and one that it prescribes is not recommended at all.
+// Nothing where there is no such file. Errors: those of a file that is there.
+Result<std::vector<RecommendedSetting>> recommendedHere(const Policy& policy,
+                                                        const std::filesystem::path& own_folder);
 
 }  // namespace trephine

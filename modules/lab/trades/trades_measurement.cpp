@@ -9,7 +9,6 @@
 #include <sstream>
 
 #include "base/file.h"
-#include "lab/trades/recommended.h"
 #include "lab/trades/trade_knobs.h"
 
 namespace trephine {
@@ -74,15 +73,6 @@ std::string toCsv(const TradesMeasurement& measurement) {
   return text.str();
 }
 
-std::vector<RecommendedSetting> recommendedOf(const std::vector<TradeRow>& rows) {
-  std::vector<RecommendedSetting> out;
-  for (const TradeRow& row : rows) {
-    if (!row.recommended) continue;
-    out.push_back({row.knob, row.setting, row.error, row.error_unit, row.cost, row.cost_unit});
-  }
-  return out;
-}
-
 Status writeTables(const TradesMeasurement& measurement, const std::filesystem::path& out) {
   if (Status csv = writeTextFile(out / "trades.csv", toCsv(measurement)); !csv) return csv;
   Json table = toJson(measurement);
@@ -94,6 +84,15 @@ Status writeTables(const TradesMeasurement& measurement, const std::filesystem::
 }
 
 }  // namespace
+
+std::vector<RecommendedSetting> recommendedOf(const std::vector<TradeRow>& rows) {
+  std::vector<RecommendedSetting> out;
+  for (const TradeRow& row : rows) {
+    if (!row.recommended) continue;
+    out.push_back({row.knob, row.setting, row.error, row.error_unit, row.cost, row.cost_unit});
+  }
+  return out;
+}
 
 double TradeRow::extraOf(std::string_view name) const {
   for (const auto& [key, value] : extra) {
@@ -138,7 +137,10 @@ Result<TradesMeasurement> measureTrades(const TradesOptions& options,
       {"force_at", [&] { return tradeForceAt(options, progress); }},
       {"rate_hz", [&] { return tradeRate(options, progress); }},
       {"grid", [&] { return tradeGrid(options, progress); }},
-      {"ray_casting", [&] { return tradeRayCasting(options, progress); }}};
+      {"ray_casting", [&] {
+         return options.ray_distances.empty() ? TradeRows(std::vector<TradeRow>())
+                                              : tradeRayCasting(options, progress);
+       }}};
   TradesMeasurement result;
   for (std::size_t n = 0; n < knobs.size(); ++n) {
     progress.at(double(n) / double(knobs.size()), knobs[n].first);

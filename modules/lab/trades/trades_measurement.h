@@ -16,6 +16,7 @@
 #include "base/json.h"
 #include "base/progress.h"
 #include "base/result.h"
+#include "lab/trades/recommended.h"
 
 namespace trephine {
 
@@ -64,7 +65,8 @@ struct TradesOptions {
   std::vector<double> rates_hz{250.0, 500.0, 1000.0, 2000.0, 4000.0, 10000.0, 20000.0};
   int grid = 256;         // voxels along an edge of 49.2 mm, a multiple of 4, 32 to 512
   double stroke_s = 2.0;  // 0.2 to 20
-  std::vector<double> ray_distances{0.25, 0.5, 0.75, 1.0, 2.0};  // voxels, 0.1 to 8
+  // Voxels, 0.1 to 8; none: the rays are left out.
+  std::vector<double> ray_distances{0.25, 0.5, 0.75, 1.0, 2.0};
   std::array<int, 2> ray_picture{800, 600};
   int ray_truth_step = 3;  // pixels
 };
@@ -75,6 +77,9 @@ struct TradesMeasurement {
 
 // Marks one row of each knob by the rule above. Rows of a knob that is not in kKnobs stay unmarked.
 void recommend(std::vector<TradeRow>& rows);
+
+// The rows that are marked.
+std::vector<RecommendedSetting> recommendedOf(const std::vector<TradeRow>& rows);
 
 // Writes trades.csv, trades.json and recommended.json into the folder `out` unless that is empty.
 // Errors: BAD_ARGUMENT, CANCELLED, CANNOT_WRITE.

@@ -2,12 +2,17 @@
 
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <cmath>
+#include <cstdio>
 #include <fstream>
 #include <limits>
 #include <set>
 
 #include "base/file.h"
+#include "lab/commission/arm_checks.h"
+#include "lab/commission/disk_check.h"
+#include "lab/commission/start_check.h"
 #include "support.h"
 
 namespace trephine {
@@ -49,7 +54,16 @@ TEST(CommissionLimits, EachCheckCanPassWarnAndFail) {
                             {"disk_write", 300.0, 20.0, 1.0},
                             {"disk_room", 100.0, 10.0, 1.0},
                             {"memory", 20.0, 3.0, 1.0},
-                            {"clock", 0.4, std::nan(""), -3.0}};
+                            {"clock", 0.4, std::nan(""), -3.0},
+                            {"lateness_2000_normal", 100.0, 900.0, {}},
+                            {"lateness_4000_normal", 100.0, 900.0, {}},
+                            {"touch_cost", 0.3, 40.0, 150.0},
+                            {"screen", 1080.0, 600.0, 400.0},
+                            {"arms", 2.0, 1.0, {}},
+                            {"arm_encoders", 0.4, 2.0, 20.0},
+                            {"arm_forces", 0.5, 0.02, -0.4},
+                            {"headset", 1.0, 0.0, {}}};
+  EXPECT_EQ(std::size(samples), commissionLimits().size()) << "a row without its sample";
   for (const Sample& sample : samples) {
     EXPECT_EQ(judged(sample.name, sample.pass).verdict, Fitness::pass) << sample.name;
     EXPECT_TRUE(judged(sample.name, sample.pass).next.empty()) << sample.name;
@@ -79,7 +93,8 @@ Commissioning some() {
        notMeasured("volume_edge", Fitness::fail, {"NO_DISPLAY", "No display", "", "Start X"})},
       "2026-11-26 09:30",
       "0.1.0 Release",
-      "2 processors"};
+      "2 processors",
+      {}};
 }
 
 TEST(Commissioning, IsReadAsItWasWritten) {
@@ -126,6 +141,107 @@ TEST(Commissioning, ThePageNamesEachCheckItsLimitAndTheNextStepInPlainWords) {
   }
   EXPECT_EQ(page.find("<llvm>"), std::string::npos);
   EXPECT_NE(toText(now, {}).find("Real-time priority"), std::string::npos);
+}
+
+ArmAnswered held(double noise_m, std::array<double, 3> shares) {
+  return {"an arm", 5.5e-5, ArmAnswer::Phase::done, noise_m, true, shares};
+}
+
+TEST(ArmChecks, TheWorstArmCountsAndEachIsNamed) {
+  using Checks = std::vector<CommissionCheck>;
+  const ArmAnswered well = held(2e-5, {0.5, 0.4, 0.6});
+  const Checks good = judgedArms({well, well});
+  EXPECT_EQ(good[0].verdict, Fitness::pass);
+  EXPECT_EQ(good[1].verdict, Fitness::pass);
+  const Checks noisy = judgedArms({well, held(4e-4, {0.5, 0.5, 0.5})});
+  EXPECT_EQ(noisy[0].verdict, Fitness::fail);
+  EXPECT_NE(noisy[0].remark.find("2, an arm: 0.400 mm"), std::string::npos) << noisy[0].remark;
+  const Checks reversed = judgedArms({held(2e-5, {0.5, -0.4, 0.6}), well});
+  EXPECT_EQ(reversed[1].verdict, Fitness::fail);
+  EXPECT_EQ(reversed[1].value, -0.4);
+  EXPECT_NE(reversed[1].remark.find("y -0.40"), std::string::npos) << reversed[1].remark;
+  EXPECT_EQ(judgedArms({held(2e-5, {0.5, 0.02, 0.6})})[1].verdict, Fitness::warn) << "cut off";
+}
+
+TEST(ArmChecks, AnArmThatNobodyHeldIsNotPassed) {
+  ArmAnswered untouched{"an arm", 5.5e-5, ArmAnswer::Phase::untouched, 0.0, false, {}};
+  const auto checks = judgedArms({held(2e-5, {0.5, 0.5, 0.5}), untouched});
+  EXPECT_EQ(checks[1].verdict, Fitness::warn);
+  EXPECT_FALSE(checks[1].value);
+  EXPECT_NE(checks[1].next.find("hold each arm"), std::string::npos);
+  EXPECT_NE(checks[1].remark.find("nobody held it"), std::string::npos);
+  // One that is reversed is said all the same.
+  EXPECT_EQ(judgedArms({held(2e-5, {-0.5, 0.5, 0.5}), untouched})[1].verdict, Fitness::fail);
+  ArmAnswered scatters = held(2e-3, {});
+  scatters.pushed = false;
+  const auto bad = judgedArms({scatters});
+  EXPECT_EQ(bad[0].verdict, Fitness::fail);
+  EXPECT_EQ(bad[1].verdict, Fitness::warn);
+}
+
+TEST(DiskCheck, WritesBesideTheCasesKeepsItsTimeAndLeavesNothing) {
+  test::TemporaryFolder folder;
+  const auto begun = std::chrono::steady_clock::now();
+  const auto checks = checkDisk(folder / "not" / "yet", 4'000'000'000, 0.3, Progress());
+  EXPECT_LT(std::chrono::steady_clock::now() - begun, std::chrono::seconds(5));
+  ASSERT_EQ(checks.size(), 2u);
+  EXPECT_EQ(checks[0].name, "disk_room");
+  EXPECT_GT(*checks[1].value, 0.0);
+  EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
+}
+
+TEST(StartCheck, SaysOneLineWhetherItIsAsCommissioned) {
+  Commissioning before = some();
+  before.checks = {judged("disk_room", 100.0), judged("arms", 2.0), judged("screen", 1080.0),
+                   judged("opengl", 0.0)};
+  EXPECT_NE(startWords({}, {}).words.find("not been commissioned"), std::string::npos);
+  const StartWords same = startWords(before, before.checks);
+  EXPECT_EQ(same.fitness, Fitness::pass) << "what was a warning then is no news";
+  EXPECT_NE(same.words.find("As commissioned on 2026-11-26"), std::string::npos);
+  // Better than it was, and what was not measured then.
+  EXPECT_EQ(startWords(before, {judged("opengl", 1.0), judged("disk_write", 1.0)}).fitness,
+            Fitness::pass);
+  const StartWords gone =
+      startWords(before, {judged("arms", 1.0), judged("disk_room", 1.0), judged("screen", 1080.0)});
+  EXPECT_EQ(gone.fitness, Fitness::fail);
+  EXPECT_NE(gone.words.find("Room in the folder of cases"), std::string::npos) << "the worst first";
+  EXPECT_NE(gone.words.find("Free some space"), std::string::npos) << gone.words;
+  EXPECT_NE(gone.words.find("(1 more)"), std::string::npos);
+  EXPECT_NE(gone.all.find("Plug them in"), std::string::npos) << gone.all;
+}
+
+TEST(StartCheck, ThePersonsLastCommissioningOrTheHospitalsWhereThatIsNewer) {
+  test::TemporaryFolder own, hospital;
+  EXPECT_EQ(lastCommissioning(own.path(), hospital.path()).error().code, "NOT_COMMISSIONED");
+  Commissioning one = some();
+  one.when = "2026-11-20 08:00";
+  ASSERT_TRUE(writeTextFile(hospital / "commission.json", toJson(one).dump()));
+  EXPECT_EQ(lastCommissioning(own.path(), hospital.path())->when, one.when);
+  EXPECT_EQ(lastCommissioning({}, hospital.path())->when, one.when);
+  one.when = "2026-11-21 08:00";
+  ASSERT_TRUE(writeTextFile(own / "commission.json", toJson(one).dump()));
+  EXPECT_EQ(lastCommissioning(own.path(), hospital.path())->when, one.when);
+  one.when = "2026-11-22 08:00";
+  ASSERT_TRUE(writeTextFile(hospital / "commission.json", toJson(one).dump()));
+  EXPECT_EQ(lastCommissioning(own.path(), hospital.path())->when, one.when);
+  std::ofstream(hospital / "commission.json") << "{";
+  EXPECT_EQ(lastCommissioning(own.path(), hospital.path())->when, "2026-11-21 08:00");
+}
+
+TEST(StartCheck, HasWhatCommissioningHasToCompareWith) {
+  test::TemporaryFolder folder;
+  StartSurroundings here{folder.path(), "none", {1920, 1080}, true};
+  const auto begun = std::chrono::steady_clock::now();
+  const auto checks = checkAtStart(here, Progress());
+  const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begun;
+  ASSERT_TRUE(checks) << checks.error().sentence();
+  std::printf("the check at the start took %.2f s\n", took.count());
+  std::set<std::string> names;
+  for (const CommissionCheck& check : *checks) names.insert(check.name);
+  for (const char* name : {"priority", "disk_room", "disk_write", "arms", "screen"}) {
+    EXPECT_TRUE(names.contains(name)) << name;
+  }
+  EXPECT_TRUE(names.contains("lateness_1000_fifo") || names.contains("lateness_1000_normal"));
 }
 
 }  // namespace

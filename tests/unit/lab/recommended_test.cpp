@@ -52,6 +52,52 @@ TEST(Recommended, ThatIsMissingSaysSo) {
   EXPECT_EQ(back.error().code, "MISSING_FILE");
 }
 
+class RecommendedHere : public ::testing::Test {
+ protected:
+  void put(const std::filesystem::path& folder, const std::string& knob,
+           const std::string& setting) {
+    const std::vector<RecommendedSetting> one{{knob, setting, 1.0, "%", 2.0, "ns"}};
+    ASSERT_TRUE(writeTextFile(folder / "recommended.json", toJson(one).dump()));
+  }
+  std::string here(const std::string& knob) {
+    const auto all = recommendedHere(policy_, own_.path());
+    if (!all) return all.error().code;
+    std::string found;
+    for (const RecommendedSetting& s : *all) {
+      if (s.knob == knob) found += s.setting + ";";
+    }
+    return found;
+  }
+  test::TemporaryFolder own_, hospital_;
+  Policy policy_;
+};
+
+TEST_F(RecommendedHere, ThePersonsStandOverTheHospitalsOverTheShippedKnobByKnob) {
+  const std::string shipped = here("rate_hz"), grid = here("grid");
+  ASSERT_FALSE(shipped.empty());
+  policy_.folder = hospital_.path();
+  EXPECT_EQ(here("rate_hz"), shipped);
+  put(hospital_.path(), "rate_hz", "4000");
+  EXPECT_EQ(here("rate_hz"), "4000;");
+  EXPECT_EQ(here("grid"), grid) << "what one file does not name stands";
+  put(own_.path(), "rate_hz", "500");
+  EXPECT_EQ(here("rate_hz"), "500;");
+  ASSERT_TRUE(writeTextFile(own_ / "recommended.json", "{"));
+  EXPECT_EQ(here("rate_hz"), "BAD_JSON");
+}
+
+TEST_F(RecommendedHere, NeverTouchWhatTheWorkstationLocks) {
+  policy_.folder = hospital_.path();
+  put(hospital_.path(), "rate_hz", "4000");
+  put(own_.path(), "rate_hz", "500");
+  policy_.locks = {Lock::rate};
+  EXPECT_EQ(here("rate_hz"), "4000;") << "the hospital's own word on it";
+  policy_.rate_hz = 1000.0;
+  EXPECT_EQ(here("rate_hz"), "") << "it is prescribed";
+  put(own_.path(), "points_blade", "64");
+  EXPECT_EQ(here("points_blade"), "64;") << "what is not locked";
+}
+
 TEST(SceneSettings, AreThoseOfItsToolsForceAndRateEachOnce) {
   Scene scene;
   scene.rate_hz = 2000.0;

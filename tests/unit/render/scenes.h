@@ -17,7 +17,7 @@ namespace trephine::test {
 constexpr int kWidth = 200, kHeight = 160;  // below the size at which the orientation cue is drawn
 
 #define RENDERER_OR_SKIP(name)                                                      \
-  auto name##_made = offscreenIfDisplay();                                          \
+  auto name##_made = test::offscreenIfDisplay();                                    \
   if (!name##_made) GTEST_SKIP() << "No display: this test draws and reads pixels"; \
   ASSERT_TRUE(name##_made->ok()) << name##_made->error().sentence();                \
   SceneRenderer& name = ***name##_made

@@ -1,0 +1,30 @@
+// The arms that are plugged in: how many, and whether encoders and motors of each agree.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "base/progress.h"
+#include "lab/commission/commission_limits.h"
+#include "session/arm_answer.h"
+
+namespace trephine {
+
+struct ArmAnswered {
+  std::string model;
+  double step_m = 0.0;
+  ArmAnswer::Phase phase = ArmAnswer::Phase::off;
+  double noise_m = 0.0;
+  bool pushed = false;
+  std::array<double, 3> shares{};
+};
+// `arm_encoders` and `arm_forces`, of the worst. Pure.
+std::vector<CommissionCheck> judgedArms(const std::vector<ArmAnswered>& arms);
+
+// `arms`, without opening any.
+CommissionCheck countArms();
+// All three. Opens the arms, and pushes those that somebody takes within `patience_s` (ArmAnswer);
+// 0: none is tried.
+std::vector<CommissionCheck> checkArms(double patience_s, const Progress& progress);
+
+}  // namespace trephine

@@ -1,0 +1,68 @@
+#include "lab/commission/disk_check.h"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <chrono>
+
+#include "base/file.h"
+
+namespace trephine {
+
+namespace {
+
+using DiskClock = std::chrono::steady_clock;
+constexpr double kBytesOfMB = 1e6, kBytesOfGB = 1e9;
+
+double secondsSince(DiskClock::time_point begun) {
+  return std::chrono::duration<double>(DiskClock::now() - begun).count();
+}
+
+CommissionCheck written(const std::filesystem::path& into, std::size_t bytes, double most_s,
+                        const Progress& progress) {
+  const auto failed = [&](int error) {
+    return notMeasured("disk_write", Fitness::fail, writeError(into, error));
+  };
+  const std::string file = (into / (".trephine-commission-" + std::to_string(::getpid()))).string();
+  const int fd = ::open(file.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0600);
+  if (fd < 0) return failed(errno);
+  ::unlink(file.c_str());
+  std::vector<char> block(4'000'000);
+  for (std::size_t i = 0; i < block.size(); ++i) block[i] = char(i * 2654435761U >> 13);
+  const auto begun = DiskClock::now();
+  std::size_t done = 0;
+  int error = 0;
+  while (done < bytes && error == 0 && !progress.cancelled() && secondsSince(begun) < most_s) {
+    const ssize_t n = ::write(fd, block.data(), std::min(block.size(), bytes - done));
+    if (n < 0 && errno != EINTR) error = errno;
+    done += std::size_t(std::max<ssize_t>(n, 0));
+    if (error == 0 && ::fdatasync(fd) != 0) error = errno;  // as it goes: the time is kept to
+  }
+  ::close(fd);
+  if (error != 0) return failed(error);
+  return judged("disk_write", double(done) / kBytesOfMB / std::max(secondsSince(begun), 1e-6));
+}
+
+}  // namespace
+
+std::vector<CommissionCheck> checkDisk(const std::filesystem::path& folder, std::size_t bytes,
+                                       double most_s, const Progress& progress) {
+  std::error_code ec;
+  std::filesystem::path existing = folder;
+  while (!std::filesystem::exists(existing, ec) && existing.has_parent_path() &&
+         existing != existing.parent_path()) {
+    existing = existing.parent_path();
+  }
+  const std::filesystem::space_info space = std::filesystem::space(existing, ec);
+  if (ec) {
+    const Error why = writeError(folder, ec.value());
+    return {notMeasured("disk_room", Fitness::fail, why),
+            notMeasured("disk_write", Fitness::fail, why)};
+  }
+  return {judged("disk_room", double(space.available) / kBytesOfGB),
+          written(existing, std::min<std::size_t>(bytes, space.available / 4), most_s, progress)};
+}
+
+}  // namespace trephine

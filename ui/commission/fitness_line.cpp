@@ -1,0 +1,70 @@
+#include "ui/commission/fitness_line.h"
+
+#include <QGuiApplication>
+#include <QScreen>
+#include <mutex>
+
+#include "base/crash_report.h"
+#include "base/log.h"
+#include "ui/common/colours.h"
+#include "ui/common/words.h"
+
+namespace trephine {
+
+CommissionFolders commissionFolders(const Policy& policy) {
+  return {stateFolder().value_or(std::filesystem::path()), policy.folder};
+}
+
+FitnessLine::FitnessLine(Bench& bench) : bench_(bench) {
+  setObjectName("fitness");
+  setContentsMargins(6, 0, 0, 0);
+  setTextFormat(Qt::PlainText);
+  connect(&bench.workstation(), &Workstation::phaseChanged, this, [this] {
+    using Phase = Workstation::Phase;
+    const Phase phase = bench_.workstation().phase();
+    if (phase != Phase::empty && phase != Phase::ready) looking_.cancel();
+  });
+}
+
+void FitnessLine::look() {
+  using Phase = Workstation::Phase;
+  const Phase phase = bench_.workstation().phase();
+  if (phase != Phase::empty && phase != Phase::ready) return;
+  StartSurroundings here;
+  here.storage = bench_.storage();
+  here.driver = bench_.view().openGlDescription();
+  // All screens together, as a program without a window sees them.
+  const QScreen* screen = QGuiApplication::primaryScreen();
+  const QSizeF pixels = QSizeF(screen->virtualSize()) * screen->devicePixelRatio();
+  here.screen = {int(pixels.width()), int(pixels.height())};
+  looking_.run(
+      [here, folders = commissionFolders(bench_.workstation().policy()),
+       arms = bench_.workstation().opensArms()](const Progress& progress) -> Result<StartWords> {
+        const auto last = lastCommissioning(folders.own, folders.hospital);
+        if (!last) return startWords({}, {});
+        StartSurroundings with = here;
+        std::unique_lock alone(*arms, std::defer_lock);
+        with.arms = alone.try_lock_for(std::chrono::seconds(1));
+        const auto now = checkAtStart(with, progress);
+        if (!now) return now.error();
+        return startWords(*last, *now);
+      },
+      [this](const Result<StartWords>& words) {
+        if (words) {
+          say(*words);
+        } else if (words.error().code != "CANCELLED") {
+          spdlog::warn("The check at the start: {}", words.error().sentence());
+        }
+        emit looked();
+      });
+}
+
+void FitnessLine::say(const StartWords& words) {
+  setText(toQt(words.words));
+  setToolTip(toQt(words.all.empty() ? words.words : words.all));
+  colours::setText(*this, words.fitness == Fitness::pass   ? colours::kGood
+                          : words.fitness == Fitness::warn ? colours::kCaution
+                                                           : colours::kBad);
+}
+
+}  // namespace trephine

@@ -1,0 +1,36 @@
+// One line: whether this workstation is as it was commissioned, or what has changed and what to do
+// about it; each change with its next step in the tip.
+#pragma once
+
+#include "lab/commission/start_check.h"
+#include "ui/common/background_task.h"
+#include "ui/common/placing.h"
+#include "ui/work/bench.h"
+
+namespace trephine {
+
+class FitnessLine : public ElidedLabel {
+  Q_OBJECT
+ public:
+  explicit FitnessLine(Bench& bench);
+
+  // Some seconds, in the background; an exercise that begins meanwhile ends it. Nothing while one
+  // runs.
+  void look();
+  void say(const StartWords& words);
+
+ signals:
+  void looked();  // it came to its end, and says it
+
+ private:
+  Bench& bench_;
+  BackgroundTask looking_;
+};
+
+// Where the last commissioning and what it recommends are, of this person and of the hospital.
+struct CommissionFolders {
+  std::filesystem::path own, hospital;
+};
+CommissionFolders commissionFolders(const Policy& policy);
+
+}  // namespace trephine
