@@ -12,10 +12,11 @@ class Progress {
   // `report` is called on the working thread with a fraction in [0, 1] and a step's name.
   explicit Progress(std::function<void(double fraction, const std::string& step)> report = {})
       : report_(std::move(report)) {}
-  // A part of `whole`, between two of its fractions; cancelled with it. `whole` outlives it.
-  Progress(const Progress& whole, double from, double to)
-      : report_([&whole, from, to](double fraction, const std::string& step) {
-          whole.at(from + fraction * (to - from), step);
+  // A part of `whole`, between two of its fractions; cancelled with it. `whole` outlives it. All of
+  // it is one step where that has a `name`.
+  Progress(const Progress& whole, double from, double to, const char* name = nullptr)
+      : report_([&whole, from, to, name](double fraction, const std::string& step) {
+          whole.at(from + fraction * (to - from), name ? name : step);
         }),
         whole_(&whole) {}
 

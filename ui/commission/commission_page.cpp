@@ -74,6 +74,7 @@ CommissionPage::CommissionPage(std::filesystem::path storage,
   layout->addWidget(progress_);
   layout->addWidget(step_);
   layout->addWidget(page_, 1);
+  layout->addStretch(0);
   layout->addLayout(row);
 
   connect(begin_, &QPushButton::clicked, this, [this] { begin(); });
@@ -91,6 +92,7 @@ CommissionPage::CommissionPage(std::filesystem::path storage,
   step_->hide();
   cancel_->hide();
   save_->setEnabled(false);
+  page_->hide();
   if (const auto last = lastCommissioning(own_folder, hospital_folder)) {
     showResult(toQt(toHtml(*last, {})));
   }
@@ -168,6 +170,7 @@ void CommissionPage::finish() {
 void CommissionPage::showResult(const QString& html) {
   html_ = html;
   page_->setHtml(html);
+  page_->show();
   save_->setEnabled(true);
 }
 

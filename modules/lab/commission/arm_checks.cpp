@@ -112,7 +112,7 @@ std::vector<CommissionCheck> checkArms(double patience_s, const Progress& progre
   const auto begun = std::chrono::steady_clock::now();
   bool over = false;
   for (double now_s = 0.0; !over && now_s < patience_s + kPushes_s && !progress.cancelled();) {
-    progress.at(now_s / (patience_s + kPushes_s), "hold each arm and move it a little");
+    progress.at(now_s / (patience_s + kPushes_s), "Hold each arm and move it a little");
     std::this_thread::sleep_for(kLookEvery);
     const TriedArms& tried = trial->state();
     over = true;

@@ -79,7 +79,7 @@ Status Run::lateness() {
   JitterOptions options;
   options.seconds = options_.seconds;
   const Result<JitterMeasurement> measured =
-      measureJitter(options, {}, Progress(progress_, 0.0, 0.35));
+      measureJitter(options, {}, Progress(progress_, 0.0, 0.35, "How late ticks come"));
   if (!measured) return measured.error();
   granted_ = measured->advice.empty();
   add("priority", granted_ ? 1.0 : 0.0);
@@ -90,7 +90,8 @@ Status Run::lateness() {
   for (const double rate_hz : {1000.0, 2000.0, 4000.0}) {
     if (granted_) continue;
     add(latenessName(rate_hz, true), Fitness::warn,
-        {"NO_REAL_TIME", "Real-time priority was not granted", "", ""});
+        {"NO_REAL_TIME", "Real-time priority was not granted", "",
+         commissionLimit("priority")->next});
   }
   return {};
 }
@@ -126,7 +127,7 @@ Status Run::trades() {
     return rate_hz > 1000.0 && !(measured && of->verdict == Fitness::pass);
   });
   const Result<TradesMeasurement> measured =
-      measureTrades(options, {}, Progress(progress_, 0.35, 0.42));
+      measureTrades(options, {}, Progress(progress_, 0.35, 0.42, "What touch costs"));
   if (!measured) return measured.error();
   recommended = recommendedOf(measured->rows);
   std::string words;
@@ -140,7 +141,7 @@ Status Run::trades() {
 }
 
 Status Run::drawing() {
-  progress_.at(0.5, "pictures");
+  progress_.at(0.5, "Pictures");
   const char* const kDrawn[] = {"screen",     "opengl",           "volume_edge",
                                 "frame_time", "removal_to_pixel", "hand_to_tool"};
   if (const Status display = probeDisplay(); !display) {
@@ -160,15 +161,17 @@ Status Run::drawing() {
   checks.push_back(judgedCard((*renderer)->openGlDescription()));
   checks.push_back(judged("volume_edge", largestVolumeEdge(), "", options_.largest_edge));
   renderer->reset();
-  Result<std::vector<RenderSubject>> subjects = renderSubjects("", Progress(progress_, 0.5, 0.58));
+  Result<std::vector<RenderSubject>> subjects =
+      renderSubjects("", Progress(progress_, 0.5, 0.58, "Pictures"));
   if (!subjects) return subjects.error();
   RenderMeasurement measured;
-  const Status turned =
-      measureRotation(subjects->front(), options, Progress(progress_, 0.58, 0.72), measured);
+  const Status turned = measureRotation(
+      subjects->front(), options, Progress(progress_, 0.58, 0.72, "A camera that turns"), measured);
   if (progress_.cancelled()) return stopped();
   turned ? add("frame_time", measured.rows.back().ms_median)
          : add("frame_time", Fitness::fail, turned.error());
-  const Status cut = measureExercises(*subjects, options, Progress(progress_, 0.72, 1.0), measured);
+  const Status cut = measureExercises(
+      *subjects, options, Progress(progress_, 0.72, 1.0, "Exercises as they are drawn"), measured);
   if (progress_.cancelled()) return stopped();
   if (!cut) {
     add("removal_to_pixel", Fitness::fail, cut.error());
@@ -204,7 +207,7 @@ Result<Commissioning> commission(const CommissionOptions& options, const Progres
     return traded.error().code == "CANCELLED" ? stopped() : traded.error();
   }
   run.memory();
-  progress.at(0.42, "disk");
+  progress.at(0.42, "The disk");
   run.take(checkDisk(options.storage, kDiskTry, kDiskMost_s, progress));
   run.clock();
   run.take(checkArms(options.patience_s, Progress(progress, 0.44, 0.5)));

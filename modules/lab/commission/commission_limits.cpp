@@ -10,19 +10,20 @@ namespace trephine {
 
 namespace {
 
-constexpr const char* kPriorityNext =
-    "Add the account to the group trephine and log in again; end what else works on this machine";
+constexpr const char* kPriorityNext = "Add the account to the group trephine and log in again";
+constexpr const char* kLateNext =
+    "End what else works on this machine, and choose performance in its power settings";
 constexpr const char* kDriverNext =
     "Update the graphics driver; without a card, expect coarse pictures while things move";
 
 // Half a period late is a missed tick (haptics/loop_clock.h); a quarter leaves room for the tick.
 constexpr CommissionLimit kLimits[] = {
     {"lateness_1000_fifo", "Ticks at 1000 Hz with priority: late by, 99.9 %", "us", false, 250.0,
-     500.0, "half a period late is a missed tick", kPriorityNext},
+     500.0, "half a period late is a missed tick", kLateNext},
     {"lateness_2000_fifo", "Ticks at 2000 Hz with priority: late by, 99.9 %", "us", false, 125.0,
-     std::nullopt, "half a period; exercises of 2000 Hz alone need it", kPriorityNext},
+     std::nullopt, "half a period; exercises of 2000 Hz alone need it", kLateNext},
     {"lateness_4000_fifo", "Ticks at 4000 Hz with priority: late by, 99.9 %", "us", false, 62.5,
-     std::nullopt, "half a period; exercises of 4000 Hz alone need it", kPriorityNext},
+     std::nullopt, "half a period; exercises of 4000 Hz alone need it", kLateNext},
     {"lateness_1000_normal", "Ticks at 1000 Hz without priority: late by, 99.9 %", "us", false,
      500.0, std::nullopt, "how the machine does where priority is not granted", kPriorityNext},
     {"lateness_2000_normal", "Ticks at 2000 Hz without priority: late by, 99.9 %", "us", false,

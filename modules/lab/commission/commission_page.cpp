@@ -64,7 +64,7 @@ std::string tableOf(const Commissioning& of, const char* title, bool passed) {
   }
   if (rows.empty()) return rows;
   return std::string("<h2>") + title +
-         "</h2>\n<table width=\"100%\">\n<tr><th width=\"6%\"></th><th>What</th><th>Here</th>"
+         "</h2>\n<table width=\"100%\">\n<tr><th width=\"9%\"></th><th>What</th><th>Here</th>"
          "<th width=\"16%\">Limit</th>" +
          (passed ? "" : "<th width=\"30%\">Next step</th>") + "</tr>\n" + rows + "</table>\n";
 }
