@@ -38,7 +38,7 @@ std::string machineName() {
   utsname system{};
   ::uname(&system);
   return std::to_string(std::thread::hardware_concurrency()) + " processors, " + system.sysname +
-         " " + system.release;
+         " " + std::string(system.release).substr(0, std::string(system.release).find('-'));
 }
 
 class Run {

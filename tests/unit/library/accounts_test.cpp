@@ -1,15 +1,13 @@
 // One storage folder, several accounts of one machine: who may do what in it. As root, which makes
 // the accounts of: a teacher, another, a trainee; only numbers, none is known to the machine.
+#include "accounts.h"
+
 #include <fcntl.h>
-#include <grp.h>
 #include <gtest/gtest.h>
 #include <sys/file.h>
-#include <sys/stat.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
 #include <fstream>
-#include <functional>
 
 #include "base/file.h"
 #include "base/shared_folder.h"
@@ -23,34 +21,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Groups that every Debian has.
-const StorageGroups kGroups{"users", "games"};
-constexpr uid_t kTeacher = 23001, kOther = 23002, kTrainee = 23003, kStranger = 23004;
+using test::as, test::kGroups, test::kOther, test::kStranger, test::kTeacher, test::kTrainee;
 
-class Accounts : public ::testing::Test {
+class Accounts : public test::SharedStorage {
  protected:
-  void SetUp() override {
-    if (::geteuid() != 0) GTEST_SKIP() << "only root can be other accounts";
-    fs::permissions(folder_.path(), fs::perms(0755));
-    const Status shared = shareStorage(storage_, kGroups);
-    ASSERT_TRUE(shared) << shared.error().sentence();
-  }
-  // In a process of that account, with a plain umask. True where `work` was.
-  bool as(uid_t account, const std::function<bool()>& work) const {
-    const gid_t readers = ::getgrnam("users")->gr_gid, writers = ::getgrnam("games")->gr_gid;
-    const pid_t child = ::fork();
-    if (child == 0) {
-      const bool teaches = account == kTeacher || account == kOther;
-      const gid_t all[] = {readers, writers};
-      const std::size_t count = teaches ? 2 : account == kTrainee ? 1 : 0;
-      ::umask(022);
-      const bool became =
-          ::setgroups(count, all) == 0 && ::setgid(account) == 0 && ::setuid(account) == 0;
-      ::_exit(became && work() ? 0 : 1);
-    }
-    int status = 0;
-    return ::waitpid(child, &status, 0) == child && WIFEXITED(status) && WEXITSTATUS(status) == 0;
-  }
   std::string savedBy(uid_t account, const std::string& name) const {
     EXPECT_TRUE(as(account, [&] { return CaseLibrary(storage_).save(named(name)).ok(); }));
     for (const ListedCase& one : CaseLibrary(storage_).list()) {
@@ -63,9 +37,6 @@ class Accounts : public ::testing::Test {
     of.name = name;
     return of;
   }
-
-  test::TemporaryFolder folder_;
-  const fs::path storage_ = folder_ / "storage";
 };
 
 TEST_F(Accounts, WhatATeacherSavesTheOtherTeachersMayChangeAndTraineesOpen) {
