@@ -11,6 +11,8 @@ namespace trephine {
 namespace {
 
 constexpr const char* kPriorityNext = "Add the account to the group trephine and log in again";
+constexpr const char* kNormalNext =
+    "Where priority is granted this does not matter; else add the account to the group trephine";
 constexpr const char* kLateNext =
     "End what else works on this machine, and choose performance in its power settings";
 constexpr const char* kDriverNext =
@@ -25,11 +27,11 @@ constexpr CommissionLimit kLimits[] = {
     {"lateness_4000_fifo", "Ticks at 4000 Hz with priority: late by, 99.9 %", "us", false, 62.5,
      std::nullopt, "half a period; exercises of 4000 Hz alone need it", kLateNext},
     {"lateness_1000_normal", "Ticks at 1000 Hz without priority: late by, 99.9 %", "us", false,
-     500.0, std::nullopt, "how the machine does where priority is not granted", kPriorityNext},
+     500.0, std::nullopt, "how the machine does where priority is not granted", kNormalNext},
     {"lateness_2000_normal", "Ticks at 2000 Hz without priority: late by, 99.9 %", "us", false,
-     250.0, std::nullopt, "how the machine does where priority is not granted", kPriorityNext},
+     250.0, std::nullopt, "how the machine does where priority is not granted", kNormalNext},
     {"lateness_4000_normal", "Ticks at 4000 Hz without priority: late by, 99.9 %", "us", false,
-     125.0, std::nullopt, "how the machine does where priority is not granted", kPriorityNext},
+     125.0, std::nullopt, "how the machine does where priority is not granted", kNormalNext},
     {"touch_cost", "Touch with the recommended settings, one arm", "% of a processor", false, 25.0,
      100.0, "two arms, pictures and recording need the rest",
      "Use exercises of a lower rate, and end what else works on this machine"},
