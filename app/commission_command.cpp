@@ -1,5 +1,8 @@
 // `commission`: whether this machine is fit, as JSON, in lines and as a page to be printed.
+#include <unistd.h>
+
 #include <algorithm>
+#include <cerrno>
 #include <cstdio>
 #include <tuple>
 
@@ -23,6 +26,8 @@ int commissionCommand(const CommissionArguments& arguments, const Policy& policy
   if (!storage) return printError(name, storage.error(), json);
   const std::filesystem::path out = arguments.out;
   if (Status made = makeFolder(out); !made) return printError(name, made.error(), json);
+  // Before the minutes that it takes.
+  if (::access(out.c_str(), W_OK) != 0) return printError(name, writeError(out, errno), json);
   CommissionOptions options;
   options.storage = *storage;
   options.seconds = arguments.seconds;
@@ -34,7 +39,7 @@ int commissionCommand(const CommissionArguments& arguments, const Policy& policy
   }
   const Result<Commissioning> made = commission(options, progress);
   if (!made) return printError(name, made.error(), json);
-  std::vector<CommissionChange> changes;
+  CommissionChanges changes;
   const auto state = stateFolder();
   const auto before = lastCommissioning(state.value_or(std::filesystem::path()), policy.folder);
   if (before) changes = changesSince(*before, *made);
@@ -51,10 +56,13 @@ int commissionCommand(const CommissionArguments& arguments, const Policy& policy
     if (!folder) continue;
     Status kept = makeFolder(*folder);
     if (kept) kept = writeTextFile(*folder / file, *words);
-    if (!kept) spdlog::warn("{}", kept.error().sentence());
+    if (!kept) spdlog::warn("{} is not kept for the next time: {}", file, kept.error().what);
   }
   if (json) {
-    printAnswer(name, toJson(*made));
+    Json answer = toJson(*made);
+    answer["changes"] = toJson(changes);
+    answer["page"] = (out / "commission.html").string();
+    printAnswer(name, answer);
   } else {
     std::printf("%s%s\n", toText(*made, changes).c_str(), (out / "commission.html").c_str());
   }

@@ -1,5 +1,7 @@
 // `storage list` and `storage share`: the folder of cases, exercises and recordings of a machine.
 #include <cstdio>
+#include <filesystem>
+#include <system_error>
 
 #include "app/answer.h"
 #include "app/lab_commands.h"
@@ -12,6 +14,22 @@ int listStorageCommand(const std::string& storage, bool open, const Policy& poli
                        const Progress& progress) {
   const auto at = storageOf(storage, policy);
   if (!at) return printError("storage-list", at.error(), json);
+  std::error_code ec;
+  const bool there = std::filesystem::exists(*at, ec);
+  const bool wanted = !storage.empty() || !policy.storage.empty();
+  if (!ec && !there && wanted) {
+    return printError("storage-list",
+                      {"MISSING_FOLDER", "This folder is not there", at->string(),
+                       "Check its name, and whether its disk is connected"},
+                      json);
+  }
+  std::filesystem::directory_iterator look(*at / "cases", ec);
+  if (ec == std::errc::permission_denied) {
+    return printError("storage-list",
+                      {"CANNOT_READ", "This account may not look at the cases here", at->string(),
+                       "Ask an administrator for the group trephine, and log in again"},
+                      json);
+  }
   CaseLibrary library(*at);
   const std::vector<ListedCase> all = library.list();
   Json cases = Json::array();

@@ -6,7 +6,10 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <iterator>
 #include <optional>
+#include <set>
+#include <string>
 
 #include "base/file.h"
 #include "base/shared_folder.h"
@@ -54,6 +57,42 @@ Status giveInside(const fs::path& folder, gid_t group) {
   return {};
 }
 
+// Nothing but what Trephine keeps in a storage folder, so that no other folder is taken for one.
+Status checkIsStorage(const fs::path& storage) {
+  const auto refused = [&](const std::string& what, const fs::path& where) {
+    return Error{"NOT_A_STORAGE", what, where.string(),
+                 "Name a folder of its own, such as /srv/trephine; it is made where it is missing"};
+  };
+  if (!storage.is_absolute()) return refused("The folder must be given from the root on", storage);
+  if (std::distance(storage.begin(), storage.end()) < 3) {
+    return refused("This folder is the system's", storage);
+  }
+  const std::set<std::string> ours{"cases",   "exercises", "tissues", ".parts",
+                                   "private", "sessions",  ".lock"};
+  std::error_code ec;
+  for (fs::directory_iterator at(storage, ec), end; !ec && at != end; at.increment(ec)) {
+    const std::string name = at->path().filename().string();
+    if (!ours.contains(name)) return refused("There is something else in this folder", at->path());
+  }
+  for (const char* of : {"cases", "exercises"}) {
+    for (fs::directory_iterator at(storage / of, ec), end; !ec && at != end; at.increment(ec)) {
+      if (!fs::is_directory(at->symlink_status(ec))) {
+        return refused("This is none of Trephine's files", at->path());
+      }
+    }
+    ec.clear();
+  }
+  // Who may not pass a folder on the way reaches none of it.
+  for (fs::path on = storage.parent_path();; on = on.parent_path()) {
+    struct stat at {};
+    if (::stat(on.c_str(), &at) == 0 && (at.st_mode & S_IXOTH) == 0) {
+      return Error{"CANNOT_REACH", "Other accounts may not pass this folder on the way",
+                   on.string(), "Let them pass it (chmod o+x), or name another"};
+    }
+    if (on == on.parent_path()) return {};
+  }
+}
+
 }  // namespace
 
 Status shareStorage(const fs::path& storage, const StorageGroups& groups) {
@@ -61,6 +100,7 @@ Status shareStorage(const fs::path& storage, const StorageGroups& groups) {
     return Error{"NOT_ROOT", "Only an administrator can give a folder to groups", storage.string(),
                  "Run it with sudo"};
   }
+  if (Status good = checkIsStorage(storage.lexically_normal()); !good) return good;
   const Result<gid_t> readers = groupOf(groups.readers), writers = groupOf(groups.writers);
   if (!readers) return readers.error();
   if (!writers) return writers.error();

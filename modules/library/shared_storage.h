@@ -19,7 +19,8 @@ struct StorageGroups {
 
 // Makes what is missing, and gives all of it, with what is in it already, to these groups. What is
 // in sessions/ and private/ stays its owner's. Root's to do. Errors: NOT_ROOT, NO_GROUP,
-// CANNOT_WRITE.
+// NOT_A_STORAGE (relative, a folder of the system, or one that holds anything else), CANNOT_REACH
+// (below a folder that others may not pass), CANNOT_WRITE.
 Status shareStorage(const std::filesystem::path& storage, const StorageGroups& groups = {});
 
 }  // namespace trephine

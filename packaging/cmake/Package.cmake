@@ -34,7 +34,6 @@ foreach(page trephine trephine-lab)
 endforeach()
 trephine_compressed(${CMAKE_SOURCE_DIR}/CHANGELOG.md share/doc/trephine)
 add_custom_target(trephine_package_files ALL DEPENDS ${compressed})
-install(FILES ${CMAKE_SOURCE_DIR}/README.md DESTINATION share/doc/trephine)
 
 file(READ ${CMAKE_SOURCE_DIR}/LICENSE TREPHINE_LICENCE)
 string(REGEX REPLACE "^BSD 3-Clause License\n+Copyright[^\n]*\n" "" TREPHINE_LICENCE "${TREPHINE_LICENCE}")

@@ -53,7 +53,7 @@ void FitnessLine::look() {
         if (words) {
           say(*words);
         } else if (words.error().code != "CANCELLED") {
-          spdlog::warn("The check at the start: {}", words.error().sentence());
+          spdlog::warn("The check at the start: {}", words.error().what);
         }
         emit looked();
       });

@@ -106,7 +106,7 @@ void ArmsTab::showTrades() {
   if (auto read = recommendedHere(workstation_.policy(), ownFolder())) {
     here = *std::move(read);
   } else {
-    spdlog::warn("{}", read.error().sentence());
+    spdlog::warn("Nothing is recommended: {}", read.error().what);
   }
   if (auto measured = readTrades(ownFolder() / "trades.json")) {
     for (TradeRow& row : measured->rows) {

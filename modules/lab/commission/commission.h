@@ -46,13 +46,16 @@ struct CommissionChange {
 std::string changeText(const CommissionChange& change);  // "A: 3 GB (pass) before, 1 GB (fail) now"
 std::vector<CommissionChange> changesSince(const Commissioning& before, const Commissioning& now);
 
-// {checks:[{name, value, unit, limit, verdict, next, words, remark}], verdict, when, build,
-// machine}: what was measured, without what is recommended by it.
+// {format, version, checks:[{name, value, unit, limit, verdict, next, words, remark}], verdict,
+// when, build, machine}: what was measured, without what is recommended by it.
 Json toJson(const Commissioning& of);
 // Of what toJson() wrote. Errors: those of readJsonFile, BAD_FIELD.
 Result<Commissioning> readCommissioning(const std::filesystem::path& file);
-std::string toText(const Commissioning& of, const std::vector<CommissionChange>& changes);
+// Nothing: there is none to compare with.
+using CommissionChanges = std::optional<std::vector<CommissionChange>>;
+Json toJson(const CommissionChanges& changes);  // null, or [{words, before, now}]
+std::string toText(const Commissioning& of, const CommissionChanges& changes);
 // One page to be printed, in plain words.
-std::string toHtml(const Commissioning& of, const std::vector<CommissionChange>& changes);
+std::string toHtml(const Commissioning& of, const CommissionChanges& changes);
 
 }  // namespace trephine

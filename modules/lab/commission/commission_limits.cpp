@@ -37,8 +37,8 @@ constexpr CommissionLimit kLimits[] = {
      "Use exercises of a lower rate, and end what else works on this machine"},
     {"priority", "Real-time priority", "granted", true, 1.0, std::nullopt,
      "without it any program makes ticks late", kPriorityNext},
-    {"locked_memory", "Memory that may be held in place", "MB", true, 2048.0, std::nullopt,
-     "an exercise on a large case; what is swapped out makes a tick late",
+    {"locked_memory", "Memory that may be held in place", "MB", true, 3000.0, std::nullopt,
+     "a case of 512 x 512 x 600 needs 2.5 GB, and what is swapped out makes a tick late",
      "Add the account to the group trephine and log in again"},
     {"opengl", "Graphics card", "drawn by", true, 1.0, std::nullopt,
      "processors draw coarse pictures while things move", kDriverNext},
@@ -60,7 +60,7 @@ constexpr CommissionLimit kLimits[] = {
     {"memory", "Memory that is free", "GB", true, 4.0, 2.0,
      "a case of 512 x 512 x 600 needs 2.5 GB while it is practised on",
      "End other programs, or add memory"},
-    {"clock", "Years since this version was made, by the clock", "years", true, 0.0, 0.0,
+    {"clock", "Clock: time since this version of Trephine was made", "years", true, 0.0, 0.0,
      "recordings are named and sorted by the clock", "Set the clock"},
     {"screen", "Room on the screen", "lines", true, 800.0, 500.0,
      "the views beside the panels; below 500 lines parts of the window do not fit",
@@ -68,15 +68,15 @@ constexpr CommissionLimit kLimits[] = {
     {"arms", "Arms that are plugged in", "arms", true, 2.0, std::nullopt,
      "both hands feel; without arms, mouse and keys move the hands",
      "Plug them in, and see File, Devices"},
-    {"arm_encoders", "Encoders of the arms: how their samples scatter, the worst", "steps", false,
-     1.0, 5.0, "half a step is what counting makes; more is felt as a tremble",
+    {"arm_encoders", "Arms at rest: how far their samples scatter, the worst", "steps", false, 1.0,
+     5.0, "counting alone makes up to half a step of the encoder; more is felt as a tremble",
      "Check its cables and encoders, and keep other devices off its USB port"},
-    {"arm_forces", "Arms that are pushed: how far they go of how far they should, the least",
-     "of 1", true, 0.1, -0.1,
-     "a firm hand leaves a fifth; below nothing an encoder or a motor is "
-     "reversed, and every force would drive the arm on",
-     "Check its motors' cables, and hold it lightly; below 0 do not practise with it: see to its "
-     "encoders and motors"},
+    {"arm_forces", "Arms that are pushed: how much of the way they go, the least", "of 1", true,
+     0.1, -0.1,
+     "a firm hand lets a fifth of the way; below 0 the arm goes against the force, and every force "
+     "of an exercise would drive it on",
+     "Hold it lightly, and check its motors' cables; below 0 do not practise with it: have its "
+     "encoders and motors mended"},
     {"headset", "OpenXR's loader", "installed", true, 1.0, std::nullopt, "a headset alone needs it",
      "Install the package libopenxr-loader1, if there is a headset"},
 };

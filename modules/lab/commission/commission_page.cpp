@@ -11,6 +11,9 @@ namespace trephine {
 
 namespace {
 
+constexpr const char* kFormat = "trephine.commission";
+constexpr int kVersion = 1;
+
 std::string shown(const std::optional<double>& value, const std::string& unit) {
   if (!value) return "not measured";
   char text[64];
@@ -20,6 +23,7 @@ std::string shown(const std::optional<double>& value, const std::string& unit) {
                 : size >= 10.0 ? "%.1f %s"
                                : "%.2f %s",
                 *value, unit.c_str());
+  if (unit == "us") std::snprintf(text, sizeof text, "%.0f \u00b5s", *value);
   if (unit == "granted" || unit == "installed") return *value > 0.0 ? "yes" : "no";
   if (unit == "drawn by") return *value > 0.0 ? "a graphics card" : "the processors";
   if (unit == "MB" && *value >= 1e6) return "without limit";
@@ -31,7 +35,7 @@ std::string shown(const std::optional<double>& value, const std::string& unit) {
 
 const char* inWords(Fitness verdict) {
   return verdict == Fitness::pass   ? "This workstation is fit for exercises."
-         : verdict == Fitness::warn ? "This workstation can be used; what could be better is below."
+         : verdict == Fitness::warn ? "This workstation can be used; some of it could be better."
                                     : "This workstation is not fit for exercises yet.";
 }
 
@@ -42,25 +46,29 @@ std::optional<Fitness> fitnessNamed(const std::string& name) {
   return {};
 }
 
-// Those that are passed, or those that are not, the worst first.
-std::string tableOf(const Commissioning& of, const char* title, bool passed) {
+std::string limitWords(const CommissionCheck& check) {
+  const CommissionLimit* by = commissionLimit(check.name);
+  if (!check.limit || !by) return "";
+  for (const char* yes_or_no : {"granted", "installed", "drawn by"}) {
+    if (check.unit == yes_or_no) return shown(check.limit, check.unit);
+  }
+  if (check.unit == "years") return "not before it";
+  return (by->at_least ? "at least " : "at most ") + shown(check.limit, check.unit);
+}
+
+// Those of that verdict; none: nothing.
+std::string tableOf(const Commissioning& of, const char* title, Fitness verdict) {
+  const bool passed = verdict == Fitness::pass;
   std::string rows;
-  for (const Fitness each : {Fitness::fail, Fitness::warn, Fitness::pass}) {
-    for (const CommissionCheck& check : of.checks) {
-      if (check.verdict != each || passed != (each == Fitness::pass)) continue;
-      const CommissionLimit* by = commissionLimit(check.name);
-      rows += "<tr><td class=\"" + std::string(nameOf(check.verdict)) + "\">" +
-              nameOf(check.verdict) + "</td><td>" + inHtml(check.words) + "<br><small>" +
-              (by ? inHtml(by->reason) : "") + "</small></td><td>" +
-              inHtml(shown(check.value, check.unit));
-      if (!check.remark.empty()) rows += "<br><small>" + inHtml(check.remark) + "</small>";
-      rows += "</td><td>";
-      if (check.limit) {
-        rows += (by && by->at_least ? "at least " : "at most ") +
-                inHtml(shown(check.limit, check.unit));
-      }
-      rows += passed ? "</td></tr>\n" : "</td><td>" + inHtml(check.next) + "</td></tr>\n";
-    }
+  for (const CommissionCheck& check : of.checks) {
+    if (check.verdict != verdict) continue;
+    const CommissionLimit* by = commissionLimit(check.name);
+    rows += "<tr><td class=\"" + std::string(nameOf(verdict)) + "\">" + nameOf(verdict) +
+            "</td><td>" + inHtml(check.words) + "<br><small>" + (by ? inHtml(by->reason) : "") +
+            "</small></td><td>" + inHtml(shown(check.value, check.unit));
+    if (!check.remark.empty()) rows += "<br><small>" + inHtml(check.remark) + "</small>";
+    rows += "</td><td>" + inHtml(limitWords(check)) + "</td>";
+    rows += passed ? "</tr>\n" : "<td>" + inHtml(check.next) + "</td></tr>\n";
   }
   if (rows.empty()) return rows;
   return std::string("<h2>") + title +
@@ -89,11 +97,24 @@ Json toJson(const Commissioning& of) {
                       {"words", check.words},
                       {"remark", check.remark}});
   }
-  return {{"checks", checks},
-          {"verdict", nameOf(fitnessOf(of))},
-          {"when", of.when},
-          {"build", of.build},
+  return {{"format", kFormat},    {"version", kVersion},
+          {"checks", checks},     {"verdict", nameOf(fitnessOf(of))},
+          {"when", of.when},      {"build", of.build},
           {"machine", of.machine}};
+}
+
+Json toJson(const CommissionChanges& changes) {
+  if (!changes) return nullptr;
+  Json list = Json::array();
+  const auto side = [](const std::optional<double>& value, Fitness verdict) {
+    return Json{{"value", orNull(value)}, {"verdict", nameOf(verdict)}};
+  };
+  for (const CommissionChange& change : *changes) {
+    list.push_back({{"words", change.words},
+                    {"before", side(change.value_before, change.before)},
+                    {"now", side(change.value_now, change.now)}});
+  }
+  return list;
 }
 
 Result<Commissioning> readCommissioning(const std::filesystem::path& file) {
@@ -104,6 +125,8 @@ Result<Commissioning> readCommissioning(const std::filesystem::path& file) {
                  "Commission the workstation anew"};
   };
   try {
+    if (json->at("format") != kFormat) return bad("format");
+    if (json->at("version") != kVersion) return bad("version");
     Commissioning of{{}, json->at("when"), json->at("build"), json->at("machine"), {}};
     for (const Json& row : json->at("checks")) {
       const auto verdict = fitnessNamed(row.at("verdict").get<std::string>());
@@ -120,7 +143,7 @@ Result<Commissioning> readCommissioning(const std::filesystem::path& file) {
   }
 }
 
-std::string toText(const Commissioning& of, const std::vector<CommissionChange>& changes) {
+std::string toText(const Commissioning& of, const CommissionChanges& changes) {
   std::string text;
   for (const CommissionCheck& check : of.checks) {
     char line[256];
@@ -129,12 +152,12 @@ std::string toText(const Commissioning& of, const std::vector<CommissionChange>&
     text += line;
     if (check.verdict != Fitness::pass && !check.next.empty()) text += "      " + check.next + "\n";
   }
-  for (const CommissionChange& change : changes)
+  for (const CommissionChange& change : changes.value_or(std::vector<CommissionChange>()))
     text += "since last time: " + changeText(change) + "\n";
   return text + inWords(fitnessOf(of)) + "\n";
 }
 
-std::string toHtml(const Commissioning& of, const std::vector<CommissionChange>& changes) {
+std::string toHtml(const Commissioning& of, const CommissionChanges& changes) {
   std::string page =
       "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\n"
       "<title>Commissioning of a Trephine workstation</title>\n<style>\n"
@@ -146,13 +169,19 @@ std::string toHtml(const Commissioning& of, const std::vector<CommissionChange>&
       "<h1>Commissioning of this workstation</h1>\n";
   page += "<p class=\"" + std::string(nameOf(fitnessOf(of))) + "\">" + inWords(fitnessOf(of)) +
           "</p>\n";
+  page +=
+      "<p>Workstation ____________ &nbsp; Room ____________ &nbsp; Checked by ____________</p>\n";
   page += "<p>" + inHtml(of.when) + " &middot; Trephine " + inHtml(of.build) + " &middot; " +
           inHtml(of.machine) + "</p>\n";
-  page += tableOf(of, "What could be better", false) + tableOf(of, "What is well", true);
+  page += tableOf(of, "What keeps trainees from practising", Fitness::fail) +
+          tableOf(of, "What could be better", Fitness::warn) +
+          tableOf(of, "What is well", Fitness::pass);
   page += "<h2>Since the last commissioning</h2>\n";
-  if (changes.empty()) page += "<p>Nothing is otherwise, or there was none before.</p>\n";
-  for (const CommissionChange& change : changes)
+  if (!changes) page += "<p>There is none to compare with.</p>\n";
+  if (changes && changes->empty()) page += "<p>Nothing has changed.</p>\n";
+  for (const CommissionChange& change : changes.value_or(std::vector<CommissionChange>())) {
     page += "<p>" + inHtml(changeText(change)) + "</p>\n";
+  }
   return page + "<p><small>" + kPurpose + ".</small></p>\n</body></html>\n";
 }
 

@@ -50,18 +50,22 @@ CommissionCheck written(const std::filesystem::path& into, std::size_t bytes, do
 std::vector<CommissionCheck> checkDisk(const std::filesystem::path& folder, std::size_t bytes,
                                        double most_s, const Progress& progress) {
   std::error_code ec;
-  std::filesystem::path existing = folder;
+  std::filesystem::path existing = std::filesystem::absolute(folder, ec);
   while (!std::filesystem::exists(existing, ec) && existing.has_parent_path() &&
          existing != existing.parent_path()) {
     existing = existing.parent_path();
   }
+  // Of a shared folder every account may write to its recordings alone.
+  if (std::filesystem::is_directory(existing / "sessions", ec)) existing /= "sessions";
   const std::filesystem::space_info space = std::filesystem::space(existing, ec);
   if (ec) {
     const Error why = writeError(folder, ec.value());
     return {notMeasured("disk_room", Fitness::fail, why),
             notMeasured("disk_write", Fitness::fail, why)};
   }
-  return {judged("disk_room", double(space.available) / kBytesOfGB),
+  const bool there = std::filesystem::exists(folder, ec);
+  return {judged("disk_room", double(space.available) / kBytesOfGB,
+                 there ? "" : "the folder is not there yet: of the disk that it would be on"),
           written(existing, std::min<std::size_t>(bytes, space.available / 4), most_s, progress)};
 }
 

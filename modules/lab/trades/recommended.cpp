@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <set>
 
+#include "base/log.h"
 #include "base/system.h"
 
 namespace trephine {
@@ -59,7 +60,11 @@ Result<std::vector<RecommendedSetting>> recommendedHere(const Policy& policy,
     std::error_code ec;
     if (folder.empty() || !std::filesystem::exists(folder / kFile, ec)) continue;
     Result<std::vector<RecommendedSetting>> over = readRecommended(folder / kFile);
-    if (!over) return over.error();
+    if (!over && folder == resourceFolder()) return over.error();
+    if (!over) {
+      spdlog::warn("A recommended.json is left out: {}", over.error().what);
+      continue;
+    }
     for (RecommendedSetting& setting : *over) {
       if (locked(setting) && folder == own_folder) continue;
       std::erase_if(here, [&](const RecommendedSetting& s) { return s.knob == setting.knob; });

@@ -28,7 +28,8 @@ Result<std::vector<RecommendedSetting>> readRecommended(const std::filesystem::p
 // What stands on this machine, knob by knob: recommended.json of the person (`own_folder`, empty:
 // none) over the hospital's in the policy's folder over the product's. A knob that the workstation
 // locks takes nothing from the person's, and one that it prescribes is not recommended at all.
-// Nothing where there is no such file. Errors: those of a file that is there.
+// Nothing where there is no such file. A file of person or hospital that is broken is said in the
+// log, and the others stand. Errors: those of the product's file.
 Result<std::vector<RecommendedSetting>> recommendedHere(const Policy& policy,
                                                         const std::filesystem::path& own_folder);
 

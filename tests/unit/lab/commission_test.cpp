@@ -106,10 +106,21 @@ TEST(Commissioning, IsReadAsItWasWritten) {
   EXPECT_EQ(toJson(*read), toJson(now));
   EXPECT_EQ(fitnessOf(*read), Fitness::fail);
   EXPECT_TRUE(changesSince(*read, now).empty());
-  for (const char* bad : {"[]", "{}", R"({"when":"","build":"","machine":"","checks":[1]})",
-                          R"({"when":"","build":"","machine":"","checks":[{"verdict":"good"}]})"}) {
-    std::ofstream(folder / "b.json") << bad;
-    EXPECT_FALSE(readCommissioning(folder / "b.json")) << bad;
+  const auto refused = [&](const Json& bad) {
+    std::ofstream(folder / "b.json") << bad.dump();
+    return !readCommissioning(folder / "b.json");
+  };
+  EXPECT_TRUE(refused(Json::array()));
+  EXPECT_TRUE(refused(Json::object()));
+  for (const auto& [key, value] : {std::pair<const char*, Json>("format", "trephine.scene"),
+                                   {"version", 2},
+                                   {"when", 3},
+                                   {"checks", Json::array({1})},
+                                   {"checks", Json::array({{{"verdict", "good"}}})}}) {
+    Json bad = toJson(now);
+    EXPECT_FALSE(refused(bad));
+    bad[key] = value;
+    EXPECT_TRUE(refused(bad)) << bad.dump();
   }
   EXPECT_EQ(readCommissioning(folder / "none.json").error().code, "MISSING_FILE");
 }

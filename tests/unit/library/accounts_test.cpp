@@ -5,6 +5,7 @@
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <sys/file.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <fstream>
@@ -135,6 +136,33 @@ TEST_F(Accounts, SharingAgainTakesInWhatWasThereBefore) {
   EXPECT_TRUE(as(kTeacher, [&] { return CaseLibrary(old).remove(id).ok(); }));
   EXPECT_EQ(shareStorage(old, {"no-such-group", "games"}).error().code, "NO_GROUP");
   EXPECT_TRUE(as(kTeacher, [&] { return shareStorage(old, kGroups).error().code == "NOT_ROOT"; }));
+}
+
+// The order of these checks: nothing is changed where one of them fails.
+TEST_F(Accounts, OnlyAStorageFolderIsShared) {
+  const auto refused = [](const fs::path& folder) {
+    struct stat before {
+    }, after{};
+    ::stat(folder.c_str(), &before);
+    const Status shared = shareStorage(folder, kGroups);
+    ::stat(folder.c_str(), &after);
+    EXPECT_EQ(before.st_mode, after.st_mode) << folder;
+    EXPECT_EQ(before.st_gid, after.st_gid) << folder;
+    return shared ? std::string("shared") : shared.error().code;
+  };
+  for (const char* system : {"/", "/srv", "/home", "relative/folder", "/tmp/..", "/usr/../srv"}) {
+    EXPECT_EQ(refused(system), "NOT_A_STORAGE") << system;
+  }
+  fs::create_directories(folder_ / "home" / "alice");
+  EXPECT_EQ(refused(folder_ / "home"), "NOT_A_STORAGE");
+  fs::create_directories(folder_ / "letters" / "cases");
+  std::ofstream(folder_ / "letters" / "cases" / "letter.txt") << "x";
+  EXPECT_EQ(refused(folder_ / "letters"), "NOT_A_STORAGE");
+  fs::create_directories(folder_ / "closed");
+  fs::permissions(folder_ / "closed", fs::perms(0700));
+  EXPECT_EQ(refused(folder_ / "closed" / "storage"), "CANNOT_REACH");
+  EXPECT_FALSE(fs::exists(folder_ / "closed" / "storage"));
+  EXPECT_TRUE(shareStorage(storage_, kGroups)) << "again";
 }
 
 TEST(SharedFolder, OneOfAPersonsOwnIsLeftAsItIs) {
