@@ -76,7 +76,7 @@ Status checkIsStorage(const fs::path& storage) {
   }
   for (const char* of : {"cases", "exercises"}) {
     for (fs::directory_iterator at(storage / of, ec), end; !ec && at != end; at.increment(ec)) {
-      if (!fs::is_directory(at->symlink_status(ec))) {
+      if (at->symlink_status(ec).type() != fs::file_type::directory) {
         return refused("This is none of Trephine's files", at->path());
       }
     }

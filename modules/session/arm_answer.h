@@ -1,5 +1,5 @@
 // Whether an arm's encoders and motors agree, found without a person's judgement: how its samples
-// scatter, and whether it goes where a small known force pushes it. Pure.
+// scatter, and whether it goes where small known forces push it. Pure.
 #pragma once
 
 #include <array>
@@ -9,11 +9,18 @@
 
 namespace trephine {
 
-// It begins with a hand on the arm, as ForceTest does: a button, or the arm moved by 5 mm. Half a
-// second is looked at without a force; then the arm is pushed for some hundredths of a second, and
-// as long the other way, which leaves it at rest again, at most 3 mm further. Four times along each
-// axis, twice each way, so that a hand that drifts cancels; 2 s together, shorter than a hand
-// answers. No force where the samples scatter so much that they say nothing.
+// It begins with a hand on the arm, as ForceTest does: a button, or the arm moved by 5 mm for 20
+// samples. 500 samples in which it goes slower than 50 mm/s, or any
+// after 3 s, are looked at without a force. Then the
+// arm is pushed for some hundredths of a second, and as long the other way: an arm of the stated
+// mass is then at rest again, at most 3 mm further. Eight times along each axis, half of them each
+// way, with rests of different lengths, so that neither a hand that drifts nor its tremor counts;
+// 3 to 5 s together. What an arm does along all three axes is counted, so that what is wrong in a
+// joint shows wherever that joint points. An encoder and a motor that are both reversed agree.
+//
+// No force where the samples scatter so that they say nothing, on an arm that states less than 2 g,
+// and none any more once it goes 8 mm beside its line in a push, or faster than 0.5 m/s, or is let
+// go of. A push that a late tick has broken is done again.
 class ArmAnswer {
  public:
   enum class Phase { off, waiting, still, pushing, done, lost, untouched };
@@ -21,39 +28,52 @@ class ArmAnswer {
   // `mass_kg` and `delay_s` as the arm states them; `most_N` is what it can be sent for good. A
   // hand is waited for `patience_s`; then it is `untouched`.
   void ask(double mass_kg, double delay_s, double most_N, double patience_s, double step_m);
-  // The force [N], device frame, that answers this sample; `fresh`: it was not seen before.
-  Vec3 tick(const ForceTest::Sample& sample, bool fresh, double period_s);
+  // The force [N], device frame, that answers this sample; `fresh`: it was not seen before; `late`:
+  // it comes so late that the force before has acted for longer than a period.
+  Vec3 tick(const ForceTest::Sample& sample, bool fresh, bool late, double period_s);
 
   Phase phase() const { return phase_; }
   static bool runs(Phase phase) { return phase >= Phase::waiting && phase <= Phase::pushing; }
   // A standard deviation, from how far samples lie beside the line through their neighbours: the
-  // 95 % of |x(n-1) - 2 x(n) + x(n+1)| / 4.8, of the worst axis. What a steady hand does adds
-  // nothing. Once it pushes.
+  // 95 % of |x(n-1) - 2 x(n) + x(n+1)| / 4.8, of the worst axis; where single samples jump, the
+  // farthest of them. What a steady hand does adds nothing. Once it pushes.
   double noise_m() const { return noise_m_; }
-  // How far it went of how far the stated mass goes freely, by least squares, along x, y and z: 1,
-  // less in a firm hand, 0 where nothing pushes, below 0 where it goes the other way. Once done and
-  // pushed().
-  const std::array<double, 3>& shares() const { return shares_; }
   bool pushed() const { return pushed_; }
 
- private:
-  static constexpr int kStill = 500, kBefore = 10, kPushes = 12;  // samples; 3 axes, 4 times
-  static constexpr int kLongest = 120;                            // samples of one push
+  // R: how far the arm went along each axis of how far its stated mass goes freely, by least
+  // squares, for a push along each; the unit matrix for a free arm, less in a firm hand.
+  struct Response {
+    double least = 0.0;    // eigenvalue of (R + R^T) / 2: below 0 it goes against a force
+    Vec3 along{0.0};       // which is along this axis
+    double weakest = 0.0;  // singular value of R: 0 where nothing answers
+    double error = 0.0;    // standard error of an element, from how pushes differ
+  };
+  const Response& response() const { return response_; }  // once done and pushed()
 
+ private:
+  static constexpr int kStill = 500, kBefore = 10, kTimes = 8;  // samples; pushes along an axis
+  static constexpr int kLongest = 120;                          // samples of one push
+
+  Vec3 wait(const ForceTest::Sample& sample);
   void takeStill(const Vec3& at_m, bool fresh);
-  Vec3 push(const Vec3& at_m, double period_s);
-  void judge(double period_s, int late);
+  void judgeStill();
+  Vec3 push(const Vec3& at_m, bool late, double period_s);
+  void judgePush(double period_s, int delay);
+  void judge();
   double sign() const { return push_ % 4 == 0 || push_ % 4 == 3 ? 1.0 : -1.0; }
 
   Phase phase_ = Phase::off;
   double mass_kg_ = 0.0, delay_s_ = 0.0, most_N_ = 0.0, patience_s_ = 0.0, step_m_ = 0.0;
   double since_s_ = 0.0, noise_m_ = 0.0;
+  Vec3 fast_m_s_{0.0}, slow_m_s_{0.0};  // over 10 and 50 ms
   bool placed_ = false, by_button_ = false, pushed_ = false;
   Vec3 asked_at_m_{0.0}, last_m_{0.0}, before_last_m_{0.0};
-  int still_ = 0, push_ = 0, tick_ = 0, half_ = 0;
+  int away_ = 0, seen_ = 0, still_ = 0;
+  int push_ = 0, tick_ = 0, half_ = 0, broken_ = 0;
   std::array<std::array<double, kStill>, 3> bends_m_{};
-  std::array<double, kLongest + kBefore> along_m_{};  // of this push
-  std::array<double, 3> ya_{}, aa_{}, shares_{};
+  std::array<Vec3, kLongest + kBefore> path_m_{};      // of this push
+  std::array<std::array<Vec3, kTimes>, 3> columns_{};  // of R, by axis and push
+  Response response_;
 };
 
 }  // namespace trephine

@@ -18,6 +18,8 @@ namespace trephine {
 namespace {
 
 constexpr double kPeriod_s = 1e-3;
+constexpr std::int64_t kLate_ns = 3'000'000;
+constexpr int kPriority = 80;
 constexpr auto kEndPatience = std::chrono::milliseconds(200);
 constexpr auto kLetGoPatience = std::chrono::milliseconds(300);  // with all that comes after it
 constexpr auto kWatchEvery = std::chrono::milliseconds(4);
@@ -35,6 +37,7 @@ struct ArmTrial::Engine {
   std::vector<ForceTest> tests;
   std::vector<ArmAnswer> answers;
   std::array<std::uint64_t, kMostTried> sequences{};
+  std::int64_t last_ns = 0;  // of the tick before
   std::array<Vec3, kMostTried> first_m{};
   std::array<SilenceRule, kMostTried> silences{};
   TriedArms arms{};
@@ -135,6 +138,8 @@ void ArmTrial::Engine::take(std::size_t i, const TrephineArmState& state) {
 
 bool ArmTrial::Engine::tick(std::int64_t now_ns) {
   const bool end = end_force.exchange(false);
+  const std::int64_t before_ns = std::exchange(last_ns, now_ns);
+  const bool late = before_ns != 0 && now_ns - before_ns > kLate_ns;
   for (std::size_t d = 0; d < devices.size(); ++d) {
     const Opened& of = devices[d];
     std::array<TrephineArmState, kMostTried> states{};
@@ -160,11 +165,11 @@ bool ArmTrial::Engine::tick(std::int64_t now_ns) {
       arm.force_N = tests[i].tick(sample, kPeriod_s);
       arm.test = tests[i].phase();
       const bool fresh = states[n].sequence != std::exchange(sequences[i], states[n].sequence);
-      const Vec3 push_N = answers[i].tick(sample, fresh, kPeriod_s);
+      const Vec3 push_N = answers[i].tick(sample, fresh, late, kPeriod_s);
       const bool asked = ArmAnswer::runs(answers[i].phase());
       arm.answer = answers[i].phase();
       arm.noise_m = answers[i].noise_m();
-      arm.shares = answers[i].shares();
+      arm.response = answers[i].response();
       arm.pushed = answers[i].pushed();
       commands[n].size = sizeof(TrephineArmCommand);
       for (int axis = 0; asked && axis < 3; ++axis) commands[n].force_N[axis] = push_N[axis];
@@ -179,6 +184,8 @@ bool ArmTrial::Engine::tick(std::int64_t now_ns) {
 
 void ArmTrial::Engine::run() {
   rt::nameThread("arm trial");
+  rt::sharpenTimers();
+  (void)rt::requestRealTime(kPriority);  // else it is late more often
   HostClock clock;
   TickSchedule schedule(std::int64_t(kPeriod_s * 1e9));
   bool here = true;

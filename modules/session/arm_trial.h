@@ -28,7 +28,7 @@ struct TriedArm {
   ForceTest::Phase test = ForceTest::Phase::off;
   ArmAnswer::Phase answer = ArmAnswer::Phase::off;
   double noise_m = 0.0;  // as ArmAnswer has them
-  std::array<double, 3> shares{};
+  ArmAnswer::Response response;
   bool pushed = false;
   std::uint64_t samples = 0;
 };

@@ -2,10 +2,9 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cmath>
-#include <cstdio>
 #include <thread>
 
+#include "base/formatted.h"
 #include "base/system.h"
 #include "device/find_arms.h"
 #include "session/arm_trial.h"
@@ -14,8 +13,8 @@ namespace trephine {
 
 namespace {
 
-constexpr double kPushes_s = 4.0;   // what looking and pushing take, and some more
-constexpr double kNoStep_m = 1e-5;  // of an arm that states none
+constexpr double kPushes_s = 12.0;     // what looking and pushing take, and some more
+constexpr double kLeastStep_m = 5e-5;  // what a hand can tell
 constexpr std::chrono::milliseconds kLookEvery(50);
 
 struct RealArms {
@@ -44,43 +43,52 @@ std::vector<CommissionCheck> both(Fitness verdict, const Error& why) {
 
 std::vector<CommissionCheck> judgedArms(const std::vector<ArmAnswered>& arms) {
   constexpr const char* kHold = "Commission again, and hold each arm lightly by its tip meanwhile";
+  constexpr const char* kStiller =
+      "Commission again, and hold each arm more lightly and as still as you can";
+  // Beyond it the pushes differ too much to say that an arm is well: the hand moved, or is firm.
+  constexpr double kTooUnlike = 0.03, kSurely = 3.0;
   std::string scatter, pushed;
-  double most_steps = 0.0, least_share = 1.0;
-  bool heard = false, all_pushed = true, all_held = true;
+  double most_steps = 0.0, least = 1.0;
+  bool all_heard = true, all_pushed = true, all_sure = true;
   for (std::size_t i = 0; i < arms.size(); ++i) {
     const ArmAnswered& arm = arms[i];
-    const std::string name = std::to_string(i + 1) + ", " + arm.model + ": ";
+    const std::string name = (i == 0 ? "" : "; ") + std::to_string(i + 1) + ", " + arm.model + ": ";
     const bool done = arm.phase == ArmAnswer::Phase::done;
-    char words[80];
-    if (done) {
-      const double steps = arm.noise_m / std::max(arm.step_m, kNoStep_m);
-      heard = true;
-      most_steps = std::max(most_steps, steps);
-      std::snprintf(words, sizeof words, "%.3f mm", 1e3 * arm.noise_m);
-    }
-    scatter += (scatter.empty() ? "" : "; ") + name + (done ? words : "not looked at");
-    all_held = all_held && done;
+    const char* why = arm.phase == ArmAnswer::Phase::untouched ? "nobody held it"
+                      : done ? "not pushed, as its samples scatter, or it states no mass"
+                             : "it was let go of, moved too fast, or went away";
+    all_heard = all_heard && done;
     all_pushed = all_pushed && done && arm.pushed;
-    if (done && arm.pushed) {
-      least_share = std::min(least_share, *std::ranges::min_element(arm.shares));
-      std::snprintf(words, sizeof words, "x %.2f, y %.2f, z %.2f", arm.shares[0], arm.shares[1],
-                    arm.shares[2]);
+    scatter += name + (done ? formatted("%.3f mm", 1e3 * arm.noise_m) : std::string(why));
+    if (done) most_steps = std::max(most_steps, arm.noise_m / std::max(arm.step_m, kLeastStep_m));
+    if (!done || !arm.pushed) {
+      pushed += name + why;
+      continue;
     }
-    const char* why = arm.phase == ArmAnswer::Phase::lost ? "let go of, or it went away"
-                      : done                              ? "not pushed, as its samples scatter"
-                                                          : "nobody held it";
-    pushed += (pushed.empty() ? "" : "; ") + name + (done && arm.pushed ? words : why);
+    const ArmAnswer::Response& r = arm.response;
+    pushed += name + formatted("%.2f along (%.1f, %.1f, %.1f), the weakest %.2f, each \u00b1%.2f",
+                               r.least, r.along.x, r.along.y, r.along.z, r.weakest, r.error);
+    const bool against = r.least < -kSurely * r.error;
+    // What is hardly above nothing, by pushes that are alike, is an arm that does not answer.
+    const bool sure = against || r.error < kTooUnlike || r.least > kSurely * r.error;
+    all_sure = all_sure && sure;
+    if (sure)
+      least = std::min(least, against ? r.least : std::max(0.0, std::min(r.least, r.weakest)));
   }
-  const Error not_held{"NOT_HELD", scatter, "", kHold};
-  std::vector<CommissionCheck> checks;
-  checks.push_back(heard ? judged("arm_encoders", most_steps, scatter)
-                         : notMeasured("arm_encoders", Fitness::warn, not_held));
-  CommissionCheck forces = judged("arm_forces", least_share, pushed);
+  std::vector<CommissionCheck> checks{judged("arm_encoders", most_steps, scatter)};
+  CommissionCheck forces = judged("arm_forces", least, pushed);
+  const auto unknown = [](const char* name, const std::string& what, const char* next) {
+    return notMeasured(name, Fitness::warn, {"NOT_HELD", what, "", next});
+  };
   // One that was not tried says nothing of the others, but is not passed either.
-  if (!all_pushed && forces.verdict != Fitness::fail) {
-    forces =
-        notMeasured("arm_forces", Fitness::warn,
-                    {"NOT_PUSHED", pushed, "", all_held ? "See to its encoders first" : kHold});
+  if (!all_heard && checks[0].verdict == Fitness::pass) {
+    checks[0] = unknown("arm_encoders", scatter, kHold);
+  }
+  if (forces.verdict == Fitness::pass && !(all_pushed && all_sure)) {
+    forces = unknown("arm_forces", pushed,
+                     !all_heard    ? kHold
+                     : !all_pushed ? "See to its encoders first"
+                                   : kStiller);
   }
   checks.push_back(forces);
   return checks;
@@ -126,7 +134,7 @@ std::vector<CommissionCheck> checkArms(double patience_s, const Progress& progre
   const TriedArms& tried = trial->state();
   for (std::size_t i = 0; i < trial->size(); ++i) {
     answered.push_back({here.arms[i].model, trial->capabilities(i).encoder_step_m, tried[i].answer,
-                        tried[i].noise_m, tried[i].pushed, tried[i].shares});
+                        tried[i].noise_m, tried[i].pushed, tried[i].response});
   }
   return with(judgedArms(answered));
 }

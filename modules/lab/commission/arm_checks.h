@@ -16,7 +16,7 @@ struct ArmAnswered {
   ArmAnswer::Phase phase = ArmAnswer::Phase::off;
   double noise_m = 0.0;
   bool pushed = false;
-  std::array<double, 3> shares{};
+  ArmAnswer::Response response;
 };
 // `arm_encoders` and `arm_forces`, of the worst. Pure.
 std::vector<CommissionCheck> judgedArms(const std::vector<ArmAnswered>& arms);

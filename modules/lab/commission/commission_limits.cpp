@@ -33,7 +33,7 @@ constexpr CommissionLimit kLimits[] = {
     {"lateness_4000_normal", "Ticks at 4000 Hz without priority: late by, 99.9 %", "us", false,
      125.0, std::nullopt, "how the machine does where priority is not granted", kNormalNext},
     {"touch_cost", "Touch with the recommended settings, one arm", "% of a processor", false, 25.0,
-     100.0, "two arms, pictures and recording need the rest",
+     45.0, "two arms are served one after the other, in one tick",
      "Use exercises of a lower rate, and end what else works on this machine"},
     {"priority", "Real-time priority", "granted", true, 1.0, std::nullopt,
      "without it any program makes ticks late", kPriorityNext},
@@ -57,7 +57,7 @@ constexpr CommissionLimit kLimits[] = {
     {"disk_room", "Room in the folder of cases", "GB", true, 20.0, 2.0,
      "a case takes up to 0.5 GB, an hour of recordings 0.3 GB",
      "Free some space, or choose another folder of cases"},
-    {"memory", "Memory that is free", "GB", true, 4.0, 2.0,
+    {"memory", "Memory that is free", "GB", true, 4.0, 2.5,
      "a case of 512 x 512 x 600 needs 2.5 GB while it is practised on",
      "End other programs, or add memory"},
     {"clock", "Clock: time since this version of Trephine was made", "years", true, 0.0, 0.0,
@@ -72,8 +72,8 @@ constexpr CommissionLimit kLimits[] = {
      5.0, "counting alone makes up to half a step of the encoder; more is felt as a tremble",
      "Check its cables and encoders, and keep other devices off its USB port"},
     {"arm_forces", "Arms that are pushed: how much of the way they go, the least", "of 1", true,
-     0.1, -0.1,
-     "a firm hand lets a fifth of the way; below 0 the arm goes against the force, and every force "
+     0.07, -0.05,
+     "a firm hand lets a tenth of the way; below 0 the arm goes against the force, and every force "
      "of an exercise would drive it on",
      "Hold it lightly, and check its motors' cables; below 0 do not practise with it: have its "
      "encoders and motors mended"},

@@ -154,36 +154,51 @@ TEST(Commissioning, ThePageNamesEachCheckItsLimitAndTheNextStepInPlainWords) {
   EXPECT_NE(toText(now, {}).find("Real-time priority"), std::string::npos);
 }
 
-ArmAnswered held(double noise_m, std::array<double, 3> shares) {
-  return {"an arm", 5.5e-5, ArmAnswer::Phase::done, noise_m, true, shares};
+ArmAnswered held(double noise_m, double least, double weakest = 0.4, double error = 0.005) {
+  return {"an arm", 5.5e-5, ArmAnswer::Phase::done,
+          noise_m,  true,   {least, Vec3(0.0, 1.0, 0.0), weakest, error}};
 }
 
 TEST(ArmChecks, TheWorstArmCountsAndEachIsNamed) {
   using Checks = std::vector<CommissionCheck>;
-  const ArmAnswered well = held(2e-5, {0.5, 0.4, 0.6});
+  const ArmAnswered well = held(2e-5, 0.4);
   const Checks good = judgedArms({well, well});
   EXPECT_EQ(good[0].verdict, Fitness::pass);
   EXPECT_EQ(good[1].verdict, Fitness::pass);
-  const Checks noisy = judgedArms({well, held(4e-4, {0.5, 0.5, 0.5})});
+  const Checks noisy = judgedArms({well, held(4e-4, 0.5)});
   EXPECT_EQ(noisy[0].verdict, Fitness::fail);
   EXPECT_NE(noisy[0].remark.find("2, an arm: 0.400 mm"), std::string::npos) << noisy[0].remark;
-  const Checks reversed = judgedArms({held(2e-5, {0.5, -0.4, 0.6}), well});
+  const Checks reversed = judgedArms({held(2e-5, -0.4), well});
   EXPECT_EQ(reversed[1].verdict, Fitness::fail);
   EXPECT_EQ(reversed[1].value, -0.4);
-  EXPECT_NE(reversed[1].remark.find("y -0.40"), std::string::npos) << reversed[1].remark;
-  EXPECT_EQ(judgedArms({held(2e-5, {0.5, 0.02, 0.6})})[1].verdict, Fitness::warn) << "cut off";
+  EXPECT_NE(reversed[1].remark.find("-0.40 along (0.0, 1.0, 0.0)"), std::string::npos)
+      << reversed[1].remark;
+  EXPECT_EQ(judgedArms({held(2e-5, 0.01, 0.01)})[1].verdict, Fitness::warn) << "cut off";
+  EXPECT_EQ(judgedArms({held(2e-5, 0.3, 0.01)})[1].verdict, Fitness::warn)
+      << "one encoder is stuck";
+}
+
+TEST(ArmChecks, WhatPushesDoNotTellForSureNeitherFailsNorPasses) {
+  const auto restless = judgedArms({held(2e-5, -0.2, 0.3, 0.15)});
+  EXPECT_EQ(restless[1].verdict, Fitness::warn);
+  EXPECT_FALSE(restless[1].value);
+  EXPECT_NE(restless[1].next.find("still"), std::string::npos) << restless[1].next;
+  EXPECT_EQ(judgedArms({held(2e-5, 0.2, 0.3, 0.15)})[1].verdict, Fitness::warn);
+  EXPECT_EQ(judgedArms({held(2e-5, -0.6, 0.3, 0.15)})[1].verdict, Fitness::fail);
 }
 
 TEST(ArmChecks, AnArmThatNobodyHeldIsNotPassed) {
   ArmAnswered untouched{"an arm", 5.5e-5, ArmAnswer::Phase::untouched, 0.0, false, {}};
-  const auto checks = judgedArms({held(2e-5, {0.5, 0.5, 0.5}), untouched});
-  EXPECT_EQ(checks[1].verdict, Fitness::warn);
-  EXPECT_FALSE(checks[1].value);
-  EXPECT_NE(checks[1].next.find("hold each arm"), std::string::npos);
-  EXPECT_NE(checks[1].remark.find("nobody held it"), std::string::npos);
+  const auto checks = judgedArms({held(2e-5, 0.5), untouched});
+  for (const CommissionCheck& check : checks) {
+    EXPECT_EQ(check.verdict, Fitness::warn) << check.name;
+    EXPECT_FALSE(check.value);
+    EXPECT_NE(check.next.find("hold each arm"), std::string::npos);
+    EXPECT_NE(check.remark.find("nobody held it"), std::string::npos);
+  }
   // One that is reversed is said all the same.
-  EXPECT_EQ(judgedArms({held(2e-5, {-0.5, 0.5, 0.5}), untouched})[1].verdict, Fitness::fail);
-  ArmAnswered scatters = held(2e-3, {});
+  EXPECT_EQ(judgedArms({held(2e-5, -0.5), untouched})[1].verdict, Fitness::fail);
+  ArmAnswered scatters = held(2e-3, 0.0);
   scatters.pushed = false;
   const auto bad = judgedArms({scatters});
   EXPECT_EQ(bad[0].verdict, Fitness::fail);
