@@ -80,7 +80,7 @@ class Commission(unittest.TestCase):
     def test_without_priority_and_locked_memory_it_warns(self):
         checks = self.run_without_rights()
         self.assertEqual(checks["priority"]["verdict"], "warn")
-        self.assertIn("group trephine", checks["priority"]["next"])
+        self.assertIn("adduser NAME trephine", checks["priority"]["next"])
         self.assertEqual(checks["locked_memory"]["verdict"], "warn")
 
     def test_a_small_disk_fails(self):

@@ -36,10 +36,10 @@ CommissionPage::CommissionPage(std::filesystem::path storage,
   setAttribute(Qt::WA_DeleteOnClose);
   setWindowTitle(tr("Commission this workstation"));
   words_ = new QLabel(
-      tr("Measures in about a minute and a half whether this machine keeps the time that touch "
+      tr("Measures in a minute or two whether this machine keeps the time that touch "
          "needs, how fast it draws, its disk, memory and devices, and says for each what to do. "
          "End other programs first. If there are arms, hold each by its tip and move it a little "
-         "when you are asked to: it pushes back gently, by a few millimetres."));
+         "when you are asked to: it pushes back gently, by a few millimetres. Esc cancels."));
   words_->setObjectName("commissionWords");
   words_->setWordWrap(true);
   step_ = new ElidedLabel;
@@ -96,6 +96,7 @@ CommissionPage::CommissionPage(std::filesystem::path storage,
   if (const auto last = lastCommissioning(own_folder, hospital_folder)) {
     showResult(toQt(toHtml(*last, {})));
   }
+  setMinimumSize(480, 360);
   resize(sizeOnScreen(kPageSize, *parent));
 }
 
@@ -120,6 +121,7 @@ void CommissionPage::begin(double seconds) {
                        static_cast<QWidget*>(cancel_)}) {
     one->show();
   }
+  page_->hide();
   progress_->setValue(0);
   step_->setText(tr("Beginning"));
   cancel_->setFocus();
@@ -146,7 +148,8 @@ void CommissionPage::finish() {
   progress_->hide();
   cancel_->hide();
   begin_->setEnabled(true);
-  begin_->setFocus();
+  begin_->setDefault(false);
+  begin_->setAutoDefault(false);
   emit ended();
   QFile file(folder_.filePath("commission.html"));
   const bool good = lab_.error() != QProcess::FailedToStart &&
@@ -155,10 +158,15 @@ void CommissionPage::finish() {
   if (good) {
     step_->hide();
     showResult(QString::fromUtf8(file.readAll()));
+    close_->setFocus();  // Return does not begin anew
     return emit commissioned();
   }
   save_->setEnabled(!html_.isEmpty());
-  if (cancelled_) return step_->setText(tr("Cancelled; what was measured before stands."));
+  page_->setVisible(!html_.isEmpty());
+  if (cancelled_) {
+    return step_->setText(html_.isEmpty() ? tr("Cancelled; nothing was kept.")
+                                          : tr("Cancelled; what was measured before stands."));
+  }
   const QJsonObject error =
       QJsonDocument::fromJson(lab_.readAllStandardOutput()).object().value("error").toObject();
   const QString what = error.value("what").toString();

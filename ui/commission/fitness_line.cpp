@@ -61,7 +61,7 @@ void FitnessLine::look() {
 
 void FitnessLine::say(const StartWords& words) {
   setText(toQt(words.words));
-  setToolTip(toQt(words.all.empty() ? words.words : words.all));
+  setMore(toQt(words.all));
   colours::setText(*this, words.fitness == Fitness::pass   ? colours::kGood
                           : words.fitness == Fitness::warn ? colours::kCaution
                                                            : colours::kBad);

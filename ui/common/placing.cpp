@@ -40,7 +40,7 @@ QSize ElidedLabel::minimumSizeHint() const {
 
 void ElidedLabel::paintEvent(QPaintEvent*) {
   const QString shown = fontMetrics().elidedText(text(), Qt::ElideRight, contentsRect().width());
-  setToolTip(shown == text() ? QString() : text());
+  setToolTip(!more_.isEmpty() ? more_ : shown == text() ? QString() : text());
   QPainter painter(this);
   style()->drawItemText(&painter, contentsRect(), int(alignment()), palette(), isEnabled(), shown,
                         foregroundRole());

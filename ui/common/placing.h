@@ -27,9 +27,14 @@ class ElidedLabel : public QLabel {
  public:
   using QLabel::QLabel;
   QSize minimumSizeHint() const override;
+  // What the tip says beside the words themselves, which it has where they are cut.
+  void setMore(const QString& more) { more_ = more; }
 
  protected:
   void paintEvent(QPaintEvent* event) override;
+
+ private:
+  QString more_;
 };
 
 }  // namespace trephine

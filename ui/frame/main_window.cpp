@@ -265,10 +265,10 @@ void MainWindow::showTitle() {
 }
 
 void MainWindow::showHint() {
-  hint_->setText(!help_words_.isEmpty()    ? help_words_
-                 : room(place_).parts.page ? QString()
-                                           : hint_words_);
-  const bool first = place_ == Place::cases && help_words_.isEmpty();
+  hint_->setText(room(place_).parts.page  ? QString()
+                 : !help_words_.isEmpty() ? help_words_
+                                          : hint_words_);
+  const bool first = place_ == Place::cases;
   fitness_->setVisible(first);
   hint_->setVisible(!first);
 }

@@ -43,6 +43,7 @@ struct CommissionChange {
   std::optional<double> value_before, value_now;
   std::string unit;
 };
+std::string shownValue(const std::optional<double>& value, const std::string& unit);  // "3.00 GB"
 std::string changeText(const CommissionChange& change);  // "A: 3 GB (pass) before, 1 GB (fail) now"
 std::vector<CommissionChange> changesSince(const Commissioning& before, const Commissioning& now);
 

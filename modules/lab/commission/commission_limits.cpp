@@ -10,13 +10,14 @@ namespace trephine {
 
 namespace {
 
-constexpr const char* kPriorityNext = "Add the account to the group trephine and log in again";
-constexpr const char* kNormalNext =
-    "Where priority is granted this does not matter; else add the account to the group trephine";
+constexpr const char* kPriorityNext =
+    "As an administrator: adduser NAME trephine, for each account; then log in again";
+constexpr const char* kNormalNext = "It does not matter once priority is granted; see there";
 constexpr const char* kLateNext =
     "End what else works on this machine, and choose performance in its power settings";
 constexpr const char* kDriverNext =
-    "Update the graphics driver; without a card, expect coarse pictures while things move";
+    "End other programs and commission again; update the graphics driver; without a card, expect "
+    "coarse pictures while things move";
 
 // Half a period late is a missed tick (haptics/loop_clock.h); a quarter leaves room for the tick.
 constexpr CommissionLimit kLimits[] = {
@@ -39,7 +40,7 @@ constexpr CommissionLimit kLimits[] = {
      "without it any program makes ticks late", kPriorityNext},
     {"locked_memory", "Memory that may be held in place", "MB", true, 3000.0, std::nullopt,
      "a case of 512 x 512 x 600 needs 2.5 GB, and what is swapped out makes a tick late",
-     "Add the account to the group trephine and log in again"},
+     kPriorityNext},
     {"opengl", "Graphics card", "drawn by", true, 1.0, std::nullopt,
      "processors draw coarse pictures while things move", kDriverNext},
     {"volume_edge", "Longest edge of a case that is drawn", "voxels", true, 512.0, 512.0,

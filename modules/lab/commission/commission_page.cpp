@@ -9,12 +9,7 @@
 
 namespace trephine {
 
-namespace {
-
-constexpr const char* kFormat = "trephine.commission";
-constexpr int kVersion = 1;
-
-std::string shown(const std::optional<double>& value, const std::string& unit) {
+std::string shownValue(const std::optional<double>& value, const std::string& unit) {
   if (!value) return "not measured";
   char text[64];
   const double size = std::abs(*value);
@@ -33,6 +28,11 @@ std::string shown(const std::optional<double>& value, const std::string& unit) {
   return text;
 }
 
+namespace {
+
+constexpr const char* kFormat = "trephine.commission";
+constexpr int kVersion = 1;
+
 const char* inWords(Fitness verdict) {
   return verdict == Fitness::pass   ? "This workstation is fit for exercises."
          : verdict == Fitness::warn ? "This workstation can be used; some of it could be better."
@@ -50,10 +50,17 @@ std::string limitWords(const CommissionCheck& check) {
   const CommissionLimit* by = commissionLimit(check.name);
   if (!check.limit || !by) return "";
   for (const char* yes_or_no : {"granted", "installed", "drawn by"}) {
-    if (check.unit == yes_or_no) return shown(check.limit, check.unit);
+    if (check.unit == yes_or_no) return shownValue(check.limit, check.unit);
   }
   if (check.unit == "years") return "not before it";
-  return (by->at_least ? "at least " : "at most ") + shown(check.limit, check.unit);
+  const std::string side = by->at_least ? "at least " : "at most ";
+  std::string words = side + shownValue(by->warn, check.unit);
+  // That of a failure may be raised on this machine: a larger case is kept.
+  const std::optional<double> fail = check.verdict == Fitness::fail ? check.limit : by->fail;
+  if (fail && *fail != by->warn) {
+    words += "; to practise at all " + side + shownValue(fail, check.unit);
+  }
+  return words;
 }
 
 // Those of that verdict; none: nothing.
@@ -65,14 +72,14 @@ std::string tableOf(const Commissioning& of, const char* title, Fitness verdict)
     const CommissionLimit* by = commissionLimit(check.name);
     rows += "<tr><td class=\"" + std::string(nameOf(verdict)) + "\">" + nameOf(verdict) +
             "</td><td>" + inHtml(check.words) + "<br><small>" + (by ? inHtml(by->reason) : "") +
-            "</small></td><td>" + inHtml(shown(check.value, check.unit));
+            "</small></td><td>" + inHtml(shownValue(check.value, check.unit));
     if (!check.remark.empty()) rows += "<br><small>" + inHtml(check.remark) + "</small>";
     rows += "</td><td>" + inHtml(limitWords(check)) + "</td>";
     rows += passed ? "</tr>\n" : "<td>" + inHtml(check.next) + "</td></tr>\n";
   }
   if (rows.empty()) return rows;
   return std::string("<h2>") + title +
-         "</h2>\n<table width=\"100%\">\n<tr><th width=\"9%\"></th><th>What</th><th>Here</th>"
+         "</h2>\n<table width=\"100%\">\n<tr><th width=\"64\"></th><th>What</th><th>Here</th>"
          "<th width=\"16%\">Limit</th>" +
          (passed ? "" : "<th width=\"30%\">Next step</th>") + "</tr>\n" + rows + "</table>\n";
 }
@@ -80,8 +87,8 @@ std::string tableOf(const Commissioning& of, const char* title, Fitness verdict)
 }  // namespace
 
 std::string changeText(const CommissionChange& change) {
-  return change.words + ": " + shown(change.value_before, change.unit) + " (" +
-         nameOf(change.before) + ") before, " + shown(change.value_now, change.unit) + " (" +
+  return change.words + ": " + shownValue(change.value_before, change.unit) + " (" +
+         nameOf(change.before) + ") before, " + shownValue(change.value_now, change.unit) + " (" +
          nameOf(change.now) + ") now";
 }
 
@@ -148,7 +155,7 @@ std::string toText(const Commissioning& of, const CommissionChanges& changes) {
   for (const CommissionCheck& check : of.checks) {
     char line[256];
     std::snprintf(line, sizeof line, "%-4s  %-62s  %s\n", nameOf(check.verdict),
-                  check.words.c_str(), shown(check.value, check.unit).c_str());
+                  check.words.c_str(), shownValue(check.value, check.unit).c_str());
     text += line;
     if (check.verdict != Fitness::pass && !check.next.empty()) text += "      " + check.next + "\n";
   }
@@ -161,7 +168,8 @@ std::string toHtml(const Commissioning& of, const CommissionChanges& changes) {
   std::string page =
       "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\n"
       "<title>Commissioning of a Trephine workstation</title>\n<style>\n"
-      "body{font:11pt sans-serif;margin:2em;color:#222}table{border-collapse:collapse;width:100%}\n"
+      "body{font-family:sans-serif;margin:2em;color:#222}table{border-collapse:collapse;width:100%}"
+      "\n"
       "td,th{text-align:left;padding:.3em .6em;border-bottom:1px solid #bbb;vertical-align:top}\n"
       ".pass{color:#166534}.warn{color:#92400e;font-weight:bold}.fail{color:#991b1b;font-weight:"
       "bold}\n"

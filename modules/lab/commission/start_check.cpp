@@ -72,17 +72,31 @@ StartWords startWords(const std::optional<Commissioning>& commissioned,
   Commissioning compared = *commissioned;
   compared.checks = now;
   const std::vector<CommissionChange> changes = changesSince(*commissioned, compared);
-  StartWords said{Fitness::pass, "As commissioned on " + commissioned->when + ".", ""};
+  StartWords said{Fitness::pass, "As commissioned on " + commissioned->when + ".",
+                  "Arms, ticks, disk and screen are as they were then."};
+  if (fitnessOf(*commissioned) == Fitness::fail) {
+    said = {Fitness::fail,
+            "Commissioned on " + commissioned->when +
+                ", and not fit for exercises: see File, Commission.",
+            ""};
+    for (const CommissionCheck& check : commissioned->checks) {
+      if (check.verdict == Fitness::fail) said.all += check.words + ": " + check.next + "\n";
+    }
+  }
   int worse = 0;
   for (const CommissionChange& change : changes) {
     if (change.now == Fitness::pass) continue;  // better than it was: nothing is to be done
     const auto check = std::ranges::find(now, change.words, &CommissionCheck::words);
-    const std::string line = changeText(change) + ". " + (check == now.end() ? "" : check->next);
-    said.all += line + "\n";
-    if (worse++ == 0 || change.now > said.fitness) said.words = line;
+    const std::string next = check == now.end() ? "" : check->next;
+    if (worse == 0 && said.fitness == Fitness::pass) said.all.clear();
+    said.all += changeText(change) + ". " + next + "\n";
+    if (worse++ == 0 || change.now > said.fitness) {
+      said.words =
+          change.words + ", now " + shownValue(change.value_now, change.unit) + ": " + next;
+    }
     said.fitness = std::max(said.fitness, change.now);
   }
-  if (worse > 1) said.words += " (" + std::to_string(worse - 1) + " more)";
+  if (worse > 1) said.words += " (" + std::to_string(worse - 1) + " more: point here)";
   return said;
 }
 

@@ -134,8 +134,7 @@ class CommissionGuiTest : public test::WindowTest {
     }
     keep(like);
     const QString changed = line();
-    QVERIFY2(changed.contains("Arms that are plugged in: 2 (pass) before, 0 (warn) now"),
-             qPrintable(changed));
+    QVERIFY2(changed.contains("Arms that are plugged in, now 0"), qPrintable(changed));
     QVERIFY2(changed.contains("Plug them in"), qPrintable(changed));
     window_->grab().save(TREPHINE_ARTEFACTS "/fitness_changed.png");
   }
