@@ -32,6 +32,7 @@ constexpr std::size_t kLines = 24, kLength = 240, kPath = 4096, kName = 256;
 constexpr int kFrames = 64;
 constexpr const char* kRunning = "running-";
 constexpr const char* kCrash = "crash-";
+constexpr std::uintmax_t kMostBytes = 1'000'000;  // of a file here that is read
 constexpr std::size_t kReportsKept = 10;
 
 // What the handler reads: all of it is there before it is needed, and nothing of it is locked.
@@ -146,6 +147,14 @@ std::optional<long> pidIn(const std::string& name, const std::string& begin,
   return read.ec == std::errc() && read.ptr == to && pid > 0 ? std::optional(pid) : std::nullopt;
 }
 
+// "crash-1795734987-123.txt": a report that somebody was told of.
+bool isTold(const std::string& name) {
+  const std::size_t last = name.rfind('-');
+  const std::string begin = kCrash;
+  return last != std::string::npos && last > begin.size() &&
+         pidIn(name.substr(0, last), begin, "") && pidIn(name.substr(last), "-", ".txt");
+}
+
 bool lives(long pid) {
   return ::kill(pid_t(pid), 0) == 0 || errno == EPERM;
 }
@@ -154,8 +163,7 @@ void deleteOldReports(const fs::path& folder) {
   std::vector<std::pair<fs::file_time_type, fs::path>> told;
   std::error_code ec;
   for (fs::directory_iterator it(folder, ec), end; !ec && it != end; it.increment(ec)) {
-    const std::string name = it->path().filename().string();
-    if (name.starts_with(kCrash) && name.ends_with(".txt")) {
+    if (isTold(it->path().filename().string())) {
       told.emplace_back(it->last_write_time(ec), it->path());
     }
   }
@@ -229,7 +237,11 @@ std::optional<LeftBehind> takeLeftBehind(const fs::path& folder) {
     const auto pid = crashed ? crashed : ran;
     std::error_code none;
     if (!pid || (lives(*pid) && !crashed) || *pid == ::getpid()) continue;
-    when[*pid] = std::max(when[*pid], it->last_write_time(none));
+    // What is no file of a sensible size is none of ours: a pipe would keep its reader for ever.
+    if (it->symlink_status(none).type() != fs::file_type::regular) continue;
+    if (it->file_size(none) > kMostBytes) continue;
+    const auto [known, first] = when.try_emplace(*pid, it->last_write_time(none));
+    if (!first) known->second = std::max(known->second, it->last_write_time(none));
     if (crashed) left[*pid].report = it->path();
     if (ran) {
       std::string recording;

@@ -5,6 +5,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <iterator>
 #include <optional>
@@ -57,6 +58,12 @@ Status giveInside(const fs::path& folder, gid_t group) {
   return {};
 }
 
+// "/srv/a/../trephine/" is /srv/trephine.
+fs::path plain(const fs::path& given) {
+  const fs::path normal = given.lexically_normal();
+  return normal.has_filename() ? normal : normal.parent_path();
+}
+
 // Nothing but what Trephine keeps in a storage folder, so that no other folder is taken for one.
 Status checkIsStorage(const fs::path& storage) {
   const auto refused = [&](const std::string& what, const fs::path& where) {
@@ -64,15 +71,49 @@ Status checkIsStorage(const fs::path& storage) {
                  "Name a folder of its own, such as /srv/trephine; it is made where it is missing"};
   };
   if (!storage.is_absolute()) return refused("The folder must be given from the root on", storage);
-  if (std::distance(storage.begin(), storage.end()) < 3) {
+  std::error_code ec;
+  // Where a link lies on the way another folder would be shared than the one that was checked.
+  if (fs::weakly_canonical(storage, ec) != storage || ec) {
+    return refused("There is a link on the way to this folder", storage);
+  }
+  constexpr const char* kSystem[] = {"bin", "boot", "dev", "etc",  "lib", "lib32", "lib64",
+                                     "opt", "proc", "run", "sbin", "sys", "usr",   "root"};
+  const auto top = std::next(storage.begin());
+  if (std::distance(storage.begin(), storage.end()) < 3 ||
+      std::ranges::find(kSystem, top->string()) != std::end(kSystem)) {
     return refused("This folder is the system's", storage);
   }
   const std::set<std::string> ours{"cases",   "exercises", "tissues", ".parts",
                                    "private", "sessions",  ".lock"};
-  std::error_code ec;
+  bool any = false;
   for (fs::directory_iterator at(storage, ec), end; !ec && at != end; at.increment(ec)) {
     const std::string name = at->path().filename().string();
     if (!ours.contains(name)) return refused("There is something else in this folder", at->path());
+    const bool file = name == ".lock";
+    const auto type = at->symlink_status(ec).type();
+    if (type != (file ? fs::file_type::regular : fs::file_type::directory)) {
+      return refused("This is none of Trephine's files", at->path());
+    }
+    any = true;
+  }
+  ec.clear();
+  struct stat own {};
+  if (!any && ::stat(storage.c_str(), &own) == 0 && own.st_gid != 0) {
+    return refused("This folder is empty, and of a group of the system", storage);
+  }
+  // A file of two names is perhaps another's.
+  for (const char* of : {"cases", "exercises", "tissues", ".parts", ".lock"}) {
+    const fs::path at = storage / of;
+    if (fs::is_regular_file(at, ec) && fs::hard_link_count(at, ec) > 1) {
+      return refused("This file has another name elsewhere", at);
+    }
+    auto it = fs::recursive_directory_iterator(at, ec);
+    for (; !ec && it != fs::end(it); it.increment(ec)) {
+      if (it->symlink_status(ec).type() == fs::file_type::regular && it->hard_link_count(ec) > 1) {
+        return refused("This file has another name elsewhere", it->path());
+      }
+    }
+    ec.clear();
   }
   for (const char* of : {"cases", "exercises"}) {
     for (fs::directory_iterator at(storage / of, ec), end; !ec && at != end; at.increment(ec)) {
@@ -95,12 +136,13 @@ Status checkIsStorage(const fs::path& storage) {
 
 }  // namespace
 
-Status shareStorage(const fs::path& storage, const StorageGroups& groups) {
+Status shareStorage(const fs::path& given, const StorageGroups& groups) {
   if (::geteuid() != 0) {
-    return Error{"NOT_ROOT", "Only an administrator can give a folder to groups", storage.string(),
+    return Error{"NOT_ROOT", "Only an administrator can give a folder to groups", given.string(),
                  "Run it with sudo"};
   }
-  if (Status good = checkIsStorage(storage.lexically_normal()); !good) return good;
+  const fs::path storage = plain(given);
+  if (Status good = checkIsStorage(storage); !good) return good;
   const Result<gid_t> readers = groupOf(groups.readers), writers = groupOf(groups.writers);
   if (!readers) return readers.error();
   if (!writers) return writers.error();

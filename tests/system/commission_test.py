@@ -64,6 +64,9 @@ class Commission(unittest.TestCase):
             self.assertTrue(checks[name]["next"])
 
     def run_without_rights(self):
+        if os.geteuid() == 0 and not all(folder.stat().st_mode & 0o001
+                                         for folder in Path(LAB).resolve().parents):
+            self.skipTest("the programs lie where no other account comes")
         def lacks():
             resource.setrlimit(resource.RLIMIT_RTPRIO, (0, 0))
             resource.setrlimit(resource.RLIMIT_MEMLOCK, (65536, 65536))

@@ -110,7 +110,7 @@ void MainWindow::open(const std::filesystem::path& path) {
 
 void MainWindow::offerLeftBehind(const LeftBehind& left) {
   std::error_code ec;
-  const bool recorded = std::filesystem::exists(left.recording, ec);
+  const bool recorded = std::filesystem::is_regular_file(left.recording, ec);
   if (left.report.empty() && !recorded) return;
   auto* box = new QMessageBox(QMessageBox::Information, tr("Trephine"),
                               tr("Trephine ended unexpectedly the last time."),

@@ -125,6 +125,12 @@ Json toJson(const CommissionChanges& changes) {
 }
 
 Result<Commissioning> readCommissioning(const std::filesystem::path& file) {
+  constexpr std::uintmax_t kMostBytes = 1'000'000;
+  std::error_code ec;
+  if (std::filesystem::file_size(file, ec) > kMostBytes && !ec) {
+    return Error{"TOO_LARGE", "This is no commissioning of ours: it is too large", file.string(),
+                 "Commission the workstation anew"};
+  }
   const Result<Json> json = readJsonFile(file);
   if (!json) return json.error();
   const auto bad = [&](const char* field) {

@@ -150,7 +150,9 @@ TEST_F(Accounts, OnlyAStorageFolderIsShared) {
     EXPECT_EQ(before.st_gid, after.st_gid) << folder;
     return shared ? std::string("shared") : shared.error().code;
   };
-  for (const char* system : {"/", "/srv", "/home", "relative/folder", "/tmp/..", "/usr/../srv"}) {
+  for (const char* system :
+       {"/", "/srv", "/srv/", "/srv/.", "/srv//", "/home", "relative/folder", "/tmp/..",
+        "/usr/../srv", "/srv/x/..", "/usr/local/src", "/etc/apt/auth.conf.d", "/var/mail"}) {
     EXPECT_EQ(refused(system), "NOT_A_STORAGE") << system;
   }
   fs::create_directories(folder_ / "home" / "alice");
@@ -158,6 +160,18 @@ TEST_F(Accounts, OnlyAStorageFolderIsShared) {
   fs::create_directories(folder_ / "letters" / "cases");
   std::ofstream(folder_ / "letters" / "cases" / "letter.txt") << "x";
   EXPECT_EQ(refused(folder_ / "letters"), "NOT_A_STORAGE");
+  fs::create_directory_symlink(storage_, folder_ / "link");
+  EXPECT_EQ(refused(folder_ / "link"), "NOT_A_STORAGE");
+  EXPECT_EQ(refused((folder_ / "link").string() + "/"), "NOT_A_STORAGE");
+  fs::create_directories(folder_ / "linked" / "cases" / "c1");
+  std::ofstream(folder_ / "key") << "secret";
+  fs::permissions(folder_ / "key", fs::perms(0600));
+  fs::create_hard_link(folder_ / "key", folder_ / "linked" / "cases" / "c1" / "hard");
+  EXPECT_EQ(refused(folder_ / "linked"), "NOT_A_STORAGE");
+  fs::create_directories(folder_ / "locked");
+  fs::create_hard_link(folder_ / "key", folder_ / "locked" / ".lock");
+  EXPECT_EQ(refused(folder_ / "locked"), "NOT_A_STORAGE");
+  EXPECT_EQ(fs::status(folder_ / "key").permissions(), fs::perms(0600));
   fs::create_directories(folder_ / "closed");
   fs::permissions(folder_ / "closed", fs::perms(0700));
   EXPECT_EQ(refused(folder_ / "closed" / "storage"), "CANNOT_REACH");
