@@ -1,14 +1,18 @@
 #include "base/crash_report.h"
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <chrono>
 #include <csignal>
 #include <cstdlib>
+#include <ctime>
 #include <fstream>
 #include <functional>
 #include <iterator>
+#include <string>
 
 #include "base/log.h"
 #include "base/system.h"
@@ -123,6 +127,40 @@ TEST(CrashReport, OneThatEndedAsItShouldOrStillRunsLeavesNothing) {
   ::kill(child, SIGKILL);
   ::waitpid(child, nullptr, 0);
   EXPECT_TRUE(takeLeftBehind(folder.path()));
+}
+
+TEST(CrashReport, TheNewestIsToldByTheTimeOfItsFile) {
+  test::TemporaryFolder folder;
+  constexpr long kOld = 999999001, kNew = 999999000;  // no program has such a number
+  const auto report = [&](long pid) { return folder / ("crash-" + std::to_string(pid) + ".txt"); };
+  std::ofstream(report(kOld)) << "old";
+  std::ofstream(report(kNew)) << "new";
+  fs::last_write_time(report(kOld), fs::file_time_type::clock::now() - std::chrono::hours(48));
+  const auto left = takeLeftBehind(folder.path());
+  ASSERT_TRUE(left);
+  std::ifstream told(left->report);
+  EXPECT_EQ(std::string(std::istreambuf_iterator<char>(told), {}), "new");
+  const std::string name = left->report.filename().string();
+  const double at_s = std::stod(name.substr(std::string("crash-").size()));
+  EXPECT_NEAR(at_s, double(std::time(nullptr)), 60.0) << "its name has the time: " << name;
+}
+
+TEST(CrashReport, WhatIsNoReportOfOursIsNeitherReadNorDeleted) {
+  test::TemporaryFolder folder;
+  ASSERT_EQ(::mkfifo((folder / "running-999999002").c_str(), 0600), 0);
+  ASSERT_EQ(::mkfifo((folder / "crash-999999003.txt").c_str(), 0600), 0);
+  fs::create_symlink("/dev/zero", folder / "running-999999004");
+  std::ofstream(folder / "running-999999005") << "x";
+  fs::resize_file(folder / "running-999999005", 2'000'000'000);
+  EXPECT_FALSE(takeLeftBehind(folder.path()));
+  std::ofstream(folder / "crash-mynotes.txt") << "mine";
+  fs::last_write_time(folder / "crash-mynotes.txt",
+                      fs::file_time_type::clock::now() - std::chrono::hours(48));
+  for (int i = 0; i < 12; ++i) {
+    endedBy(folder.path(), [] { ::raise(SIGABRT); });
+    EXPECT_TRUE(takeLeftBehind(folder.path()));
+  }
+  EXPECT_TRUE(fs::exists(folder / "crash-mynotes.txt"));
 }
 
 TEST(CrashReport, TheLastTenReportsAreKeptAndAFolderThatCannotBeIsSaid) {
