@@ -19,7 +19,6 @@ constexpr double kRest_s = 0.06;  // between pushes, and more: the hand brings i
 constexpr double kMoreRest_s[] = {0.0, 0.023, 0.011, 0.041, 0.005, 0.031, 0.017, 0.037};
 constexpr int kMostBroken = 30;          // pushes that late ticks have broken
 constexpr double kLeastMass_kg = 0.002;  // what states less is taken to state nothing
-constexpr double kLeastStep_m = 5e-5;
 constexpr double kTooNoisySteps = 3.0, kJumpSteps = 20.0;
 constexpr int kMostJumps = 3;          // bends: one sample beside the line makes three
 constexpr double kBendsOfNoise = 4.8;  // 1.96 times the square root of 1 + 4 + 1

@@ -23,6 +23,9 @@ namespace trephine {
 // go of. A push that a late tick has broken is done again.
 class ArmAnswer {
  public:
+  // A finer step of an encoder than a hand can tell counts as this.
+  static constexpr double kLeastStep_m = 5e-5;
+
   enum class Phase { off, waiting, still, pushing, done, lost, untouched };
 
   // `mass_kg` and `delay_s` as the arm states them; `most_N` is what it can be sent for good. A

@@ -13,8 +13,7 @@ namespace trephine {
 
 namespace {
 
-constexpr double kPushes_s = 12.0;     // what looking and pushing take, and some more
-constexpr double kLeastStep_m = 5e-5;  // what a hand can tell
+constexpr double kPushes_s = 12.0;  // what looking and pushing take, and some more
 constexpr std::chrono::milliseconds kLookEvery(50);
 
 struct RealArms {
@@ -60,7 +59,9 @@ std::vector<CommissionCheck> judgedArms(const std::vector<ArmAnswered>& arms) {
     all_heard = all_heard && done;
     all_pushed = all_pushed && done && arm.pushed;
     scatter += name + (done ? formatted("%.3f mm", 1e3 * arm.noise_m) : std::string(why));
-    if (done) most_steps = std::max(most_steps, arm.noise_m / std::max(arm.step_m, kLeastStep_m));
+    if (done)
+      most_steps =
+          std::max(most_steps, arm.noise_m / std::max(arm.step_m, ArmAnswer::kLeastStep_m));
     if (!done || !arm.pushed) {
       pushed += name + why;
       continue;

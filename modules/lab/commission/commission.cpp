@@ -29,6 +29,7 @@ namespace {
 constexpr double kGB = 1e9, kMB = 1e6;
 constexpr std::size_t kDiskTry = 256'000'000;  // bytes
 constexpr double kDiskMost_s = 20.0;
+constexpr double kRates_hz[] = {1000.0, 2000.0, 4000.0};  // of which lateness is asked
 
 Error stopped() {
   return {"CANCELLED", "The commissioning was cancelled", "commission", ""};
@@ -99,7 +100,7 @@ Status Run::lateness() {
     }
     checks.push_back(std::move(check));
   }
-  for (const double rate_hz : {1000.0, 2000.0, 4000.0}) {
+  for (const double rate_hz : kRates_hz) {
     if (granted_) continue;
     add(latenessName(rate_hz, true), Fitness::warn,
         {"NO_REAL_TIME", "Real-time priority was not granted", "",
@@ -135,7 +136,7 @@ Status Run::trades() {
   options.ray_distances.clear();
   // A rate is kept where it and every lower one is; 1000 Hz and less are what exercises have.
   double kept_hz = 1000.0;
-  for (const double rate_hz : {1000.0, 2000.0, 4000.0}) {
+  for (const double rate_hz : kRates_hz) {
     const auto of =
         std::ranges::find(checks, latenessName(rate_hz, granted_), &CommissionCheck::name);
     if (of == checks.end() || of->verdict != Fitness::pass) break;
