@@ -59,7 +59,7 @@ Status giveInside(const fs::path& folder, gid_t group) {
 }
 
 // "/srv/a/../trephine/" is /srv/trephine.
-fs::path plain(const fs::path& given) {
+fs::path withoutDots(const fs::path& given) {
   const fs::path normal = given.lexically_normal();
   return normal.has_filename() ? normal : normal.parent_path();
 }
@@ -141,7 +141,7 @@ Status shareStorage(const fs::path& given, const StorageGroups& groups) {
     return Error{"NOT_ROOT", "Only an administrator can give a folder to groups", given.string(),
                  "Run it with sudo"};
   }
-  const fs::path storage = plain(given);
+  const fs::path storage = withoutDots(given);
   if (Status good = checkIsStorage(storage); !good) return good;
   const Result<gid_t> readers = groupOf(groups.readers), writers = groupOf(groups.writers);
   if (!readers) return readers.error();
