@@ -8,10 +8,10 @@
 
 #include "app/answer.h"
 #include "app/lab_commands.h"
-#include "base/crash_report.h"
 #include "base/file.h"
 #include "base/log.h"
 #include "base/system.h"
+#include "lab/commission/arm_checks.h"
 #include "lab/commission/commission.h"
 #include "lab/commission/start_check.h"
 #include "library/case_library.h"
@@ -22,6 +22,10 @@ int commissionCommand(const CommissionArguments& arguments, const Policy& policy
                       const Progress& progress) {
   const char* name = "commission";
   if (arguments.say_progress) reportInLines();
+  if (arguments.arms_alone) {
+    printAnswer(name, {{"checks", toJson(tryArms(arguments.patience_s, progress))}});
+    return 0;
+  }
   const auto storage = storageOf(arguments.storage, policy);
   if (!storage) return printError(name, storage.error(), json);
   const std::filesystem::path out = arguments.out;

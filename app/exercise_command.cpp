@@ -1,9 +1,9 @@
 // `exercise export` and `exercise import`: an exercise as a folder that goes to other workstations.
 #include <cstdio>
-#include <cstdlib>
 
 #include "app/answer.h"
 #include "app/lab_commands.h"
+#include "base/system.h"
 #include "exercise/exercise_folder.h"
 
 namespace trephine {
@@ -13,10 +13,7 @@ namespace fs = std::filesystem;
 Result<fs::path> storageOf(const std::string& given, const Policy& policy) {
   if (!given.empty()) return fs::path(given);
   if (!policy.storage.empty()) return policy.storage;
-  const char* data = std::getenv("XDG_DATA_HOME");
-  if (data && fs::path(data).is_absolute()) return fs::path(data) / "trephine";
-  const char* home = std::getenv("HOME");
-  if (home && *home) return fs::path(home) / ".local/share/trephine";
+  if (const auto own = dataFolder()) return *own;
   return Error{"NO_STORAGE", "It is not known where cases and exercises are kept", "--storage",
                "Give a folder"};
 }

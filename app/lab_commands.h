@@ -107,6 +107,7 @@ struct CommissionArguments {
   std::string out, storage;
   double seconds = 5.0, patience_s = 15.0;
   bool say_progress = false;
+  bool arms_alone = false;  // which this program asks of itself
 };
 int commissionCommand(const CommissionArguments& arguments, const Policy& policy, bool json,
                       const Progress&);

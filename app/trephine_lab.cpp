@@ -141,6 +141,7 @@ int run(int argc, char** argv) {
       ->capture_default_str();
   constexpr const char* kHidden = "";  // not in the help
   commission_command->add_flag("--progress", commissioning.say_progress)->group(kHidden);
+  commission_command->add_flag("--arms", commissioning.arms_alone)->group(kHidden);
 
   auto* structures_command = app.add_subcommand("structures", "Organs and bones of a case");
   structures_command->require_subcommand(1);

@@ -11,7 +11,6 @@
 #include <charconv>
 #include <chrono>
 #include <csignal>
-#include <cstdlib>
 #include <cstring>
 #include <ctime>
 #include <fstream>
@@ -172,14 +171,6 @@ void deleteOldReports(const fs::path& folder) {
 }
 
 }  // namespace
-
-std::optional<fs::path> stateFolder() {
-  const char* state = std::getenv("XDG_STATE_HOME");
-  if (state && fs::path(state).is_absolute()) return fs::path(state) / "trephine";
-  const char* home = std::getenv("HOME");
-  if (home && *home) return fs::path(home) / ".local/state/trephine";
-  return {};
-}
 
 Status reportCrashesTo(const fs::path& folder) {
   if (Status made = makeFolder(folder); !made) return made;

@@ -15,9 +15,6 @@
 
 namespace trephine {
 
-// $XDG_STATE_HOME/trephine, else ~/.local/state/trephine; nothing where neither is known.
-std::optional<std::filesystem::path> stateFolder();
-
 // From here on. Once, before there are threads. Errors: CANNOT_WRITE; then there are no reports.
 Status reportCrashesTo(const std::filesystem::path& folder);
 // The exercise that is being recorded; empty: none. The thread that asks for it does the writing.

@@ -147,13 +147,13 @@ Status shareStorage(const fs::path& given, const StorageGroups& groups) {
   if (!readers) return readers.error();
   if (!writers) return writers.error();
   constexpr mode_t kLook = 0750, kGroups = 02775, kOwnOfWriters = 03770, kOwnOfAll = 03777;
-  if (Status given = giveFolder(storage, *readers, kLook); !given) return given;
+  if (Status done = giveFolder(storage, *readers, kLook); !done) return done;
   for (const char* name : {"cases", "exercises", "tissues", ".parts"}) {
-    if (Status given = giveFolder(storage / name, *writers, kGroups); !given) return given;
-    if (Status given = giveInside(storage / name, *writers); !given) return given;
+    if (Status done = giveFolder(storage / name, *writers, kGroups); !done) return done;
+    if (Status done = giveInside(storage / name, *writers); !done) return done;
   }
-  if (Status given = giveFolder(storage / "private", *writers, kOwnOfWriters); !given) return given;
-  if (Status given = giveFolder(storage / "sessions", *writers, kOwnOfAll); !given) return given;
+  if (Status done = giveFolder(storage / "private", *writers, kOwnOfWriters); !done) return done;
+  if (Status done = giveFolder(storage / "sessions", *writers, kOwnOfAll); !done) return done;
   const fs::path lock = storage / ".lock";
   const int fd = ::open(lock.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0664);
   if (fd < 0) return writeError(lock, errno);

@@ -20,12 +20,12 @@ class Commission(unittest.TestCase):
         self.addCleanup(temporary.cleanup)
         self.folder = Path(temporary.name)
 
-    def run_it(self, environment=None, before=None, storage=None):
+    def run_it(self, environment=None, before=None, storage=None, more=()):
         environment = dict(environment or os.environ, XDG_STATE_HOME=str(self.folder / "state"),
                            XDG_CONFIG_HOME=str(self.folder / "config"))
         done = subprocess.run(
             [LAB, "commission", "--json", "--seconds", SECONDS, "--out", str(self.folder / "out"),
-             "--storage", str(storage or self.folder / "storage")],
+             "--storage", str(storage or self.folder / "storage"), *more],
             env=environment, preexec_fn=before, capture_output=True, text=True, timeout=240)
         self.assertEqual(done.returncode, 0, done.stderr[-500:])
         answer = json.loads(done.stdout)
@@ -97,6 +97,21 @@ class Commission(unittest.TestCase):
         self.assertEqual(checks["disk_room"]["verdict"], "fail")
         self.assertLess(checks["disk_room"]["value"], 1.1)
         self.assertEqual(list(small.iterdir()), [], "nothing is left on it")
+
+    def test_an_ill_driver_is_a_check_that_fails_and_all_else_is_measured(self):
+        plugins = self.folder / "plugins"
+        shutil.copytree(os.environ["PLUGINS"], plugins)
+        shutil.copy(os.environ["ILL_PLUGIN_FILE"], plugins)
+        for how, said in (("ends", "ended the program"), ("blocks", "does not answer")):
+            checks = self.run_it(dict(without_display(), TREPHINE_PLUGINS=str(plugins),
+                                      ILL_PLUGIN=how), more=("--wait", "0.1"))
+            for name in ("arms", "arm_encoders", "arm_forces"):
+                self.assertEqual(checks[name]["verdict"], "fail")
+                self.assertIn(said, checks[name]["remark"])
+                self.assertIn("driver", checks[name]["next"])
+            self.assertEqual(checks["clock"]["verdict"], "pass")
+        left = [path.name for path in Path(tempfile.gettempdir()).glob("trephine-arms-*")]
+        self.assertEqual(left, [])
 
     def test_loaded_cores_make_ticks_late(self):
         loads = [subprocess.Popen(["sh", "-c", "while :; do :; done"])

@@ -7,6 +7,7 @@
 #include <QVBoxLayout>
 
 #include "base/file.h"
+#include "base/system.h"
 #include "lab/commission/start_check.h"
 #include "ui/common/pdf_page.h"
 #include "ui/common/placing.h"
@@ -19,12 +20,6 @@ namespace {
 constexpr QSize kPageSize(900, 720);
 constexpr int kSteps = 1000;
 constexpr int kPatience_ms = 3000;  // after it was asked to end
-
-QString labProgram() {
-  std::error_code ec;
-  const auto own = std::filesystem::read_symlink("/proc/self/exe", ec);
-  return toQt((own.parent_path() / "trephine-lab").string());
-}
 
 }  // namespace
 
@@ -125,7 +120,7 @@ void CommissionPage::begin(double seconds) {
   progress_->setValue(0);
   step_->setText(tr("Beginning"));
   cancel_->setFocus();
-  lab_.start(labProgram(),
+  lab_.start(toQt(labProgram().string()),
              {"commission", "--json", "--progress", "--out", folder_.path(), "--storage",
               toQt(storage_.string()), "--seconds", QString::number(seconds)});
 }

@@ -4,8 +4,8 @@
 #include <QScreen>
 #include <mutex>
 
-#include "base/crash_report.h"
 #include "base/log.h"
+#include "base/system.h"
 #include "ui/common/colours.h"
 #include "ui/common/words.h"
 

@@ -8,6 +8,7 @@
 
 #include "base/file.h"
 #include "base/log.h"
+#include "base/system.h"
 #include "lab/common/child_process.h"
 #include "lab/touch/law_costs.h"
 #include "lab/trades/recommended.h"
@@ -125,12 +126,9 @@ void ArmsTab::showTrades() {
 
 // By the program of the laboratory, beside this one: it draws as well.
 void ArmsTab::measureTrades() {
-  std::error_code ec;
-  const std::filesystem::path lab =
-      std::filesystem::read_symlink("/proc/self/exe", ec).parent_path() / "trephine-lab";
   workstation_.save(
       tr("The trades are measured."),
-      [lab, to = ownFolder()](const Progress& progress) -> Status {
+      [to = ownFolder()](const Progress& progress) -> Status {
         const Result<std::filesystem::path> temporary = temporaryFolder();
         if (!temporary) return temporary.error();
         const std::filesystem::path out =
@@ -140,7 +138,7 @@ void ArmsTab::measureTrades() {
         progress.at(0.0, "Measuring, some minutes");
         constexpr double kLongest_s = 1200.0;
         const Result<ChildRun> run =
-            runChild({{lab.string(), "measure", "trades", "--out", out.string(), "--json"},
+            runChild({{labProgram().string(), "measure", "trades", "--out", out.string(), "--json"},
                       out / "answer.json",
                       out,
                       kLongest_s},

@@ -28,7 +28,7 @@ void sharpenTimers() {
 
 void touchStack() {
   constexpr std::size_t kStack = 256 * 1024, kPage = 4096;
-  volatile char stack[kStack];
+  [[maybe_unused]] volatile char stack[kStack];
   for (std::size_t at = 0; at < kStack; at += kPage) stack[at] = 0;
 }
 

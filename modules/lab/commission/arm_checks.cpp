@@ -1,12 +1,17 @@
 #include "lab/commission/arm_checks.h"
 
+#include <unistd.h>
+
 #include <algorithm>
 #include <chrono>
 #include <thread>
 
+#include "base/file.h"
 #include "base/formatted.h"
 #include "base/system.h"
 #include "device/find_arms.h"
+#include "lab/commission/commission.h"
+#include "lab/common/child_process.h"
 #include "session/arm_trial.h"
 
 namespace trephine {
@@ -99,7 +104,7 @@ CommissionCheck countArms() {
   return realArms().count;
 }
 
-std::vector<CommissionCheck> checkArms(double patience_s, const Progress& progress) {
+std::vector<CommissionCheck> tryArms(double patience_s, const Progress& progress) {
   const RealArms here = realArms();
   std::vector<CommissionCheck> checks{here.count};
   const auto with = [&](std::vector<CommissionCheck> more) {
@@ -138,6 +143,39 @@ std::vector<CommissionCheck> checkArms(double patience_s, const Progress& progre
                         tried[i].noise_m, tried[i].pushed, tried[i].response});
   }
   return with(judgedArms(answered));
+}
+
+std::vector<CommissionCheck> checkArms(double patience_s, const Progress& progress) {
+  constexpr double kOpening_s = 20.0;
+  const auto failed = [](const char* what) {
+    const Error why{"NOT_ANSWERED", what, "",
+                    "Unplug one device after the other, commission again each time, and have the "
+                    "driver mended of the one without which it passes"};
+    std::vector<CommissionCheck> checks = both(Fitness::fail, why);
+    checks.insert(checks.begin(), notMeasured("arms", Fitness::fail, why));
+    return checks;
+  };
+  const Result<std::filesystem::path> temporary = temporaryFolder();
+  if (!temporary) return failed("There is no temporary folder");
+  const std::filesystem::path answer =
+      *temporary / ("trephine-arms-" + std::to_string(::getpid()) + ".json");
+  const Result<ChildRun> run =
+      runChild({{labProgram().string(), "commission", "--arms", "--json", "--out",
+                 temporary->string(), "--wait", plainNumber(patience_s)},
+                answer,
+                {},
+                patience_s + kPushes_s + kOpening_s,
+                "Hold each arm and move it a little"},
+               progress);
+  const Result<Json> json = readJsonFile(answer);
+  std::error_code ec;
+  std::filesystem::remove(answer, ec);
+  if (!run) return failed("The program that tries the arms could not be run");
+  if (run->timed_out) return failed("The driver of a device does not answer");
+  if (run->exit_code > 128) return failed("The driver of a device ended the program that asked it");
+  const auto checks =
+      json && json->contains("checks") ? checksOf(json->at("checks")) : std::nullopt;
+  return checks ? *checks : failed("The program that tries the arms did not come to its end");
 }
 
 }  // namespace trephine

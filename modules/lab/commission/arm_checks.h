@@ -24,7 +24,10 @@ std::vector<CommissionCheck> judgedArms(const std::vector<ArmAnswered>& arms);
 // `arms`, without opening any.
 CommissionCheck countArms();
 // All three. Opens the arms, and pushes those that somebody takes within `patience_s` (ArmAnswer);
-// 0: none is tried.
+// 0: none is tried. Here: a driver that ends its program ends this one.
+std::vector<CommissionCheck> tryArms(double patience_s, const Progress& progress);
+// The same by trephine-lab in a process of its own, so that an arm's driver which ends its program,
+// or does not return, is a check that fails.
 std::vector<CommissionCheck> checkArms(double patience_s, const Progress& progress);
 
 }  // namespace trephine

@@ -47,6 +47,9 @@ std::string shownValue(const std::optional<double>& value, const std::string& un
 std::string changeText(const CommissionChange& change);  // "A: 3 GB (pass) before, 1 GB (fail) now"
 std::vector<CommissionChange> changesSince(const Commissioning& before, const Commissioning& now);
 
+Json toJson(const std::vector<CommissionCheck>& checks);
+// Of what that wrote; nothing where it is something else.
+std::optional<std::vector<CommissionCheck>> checksOf(const Json& rows);
 // {format, version, checks:[{name, value, unit, limit, verdict, next, words, remark}], verdict,
 // when, build, machine}: what was measured, without what is recommended by it.
 Json toJson(const Commissioning& of);

@@ -92,21 +92,44 @@ std::string changeText(const CommissionChange& change) {
          nameOf(change.now) + ") now";
 }
 
-Json toJson(const Commissioning& of) {
-  Json checks = Json::array();
-  for (const CommissionCheck& check : of.checks) {
-    checks.push_back({{"name", check.name},
-                      {"value", orNull(check.value)},
-                      {"unit", check.unit},
-                      {"limit", orNull(check.limit)},
-                      {"verdict", nameOf(check.verdict)},
-                      {"next", check.next},
-                      {"words", check.words},
-                      {"remark", check.remark}});
+Json toJson(const std::vector<CommissionCheck>& checks) {
+  Json rows = Json::array();
+  for (const CommissionCheck& check : checks) {
+    rows.push_back({{"name", check.name},
+                    {"value", orNull(check.value)},
+                    {"unit", check.unit},
+                    {"limit", orNull(check.limit)},
+                    {"verdict", nameOf(check.verdict)},
+                    {"next", check.next},
+                    {"words", check.words},
+                    {"remark", check.remark}});
   }
-  return {{"format", kFormat},    {"version", kVersion},
-          {"checks", checks},     {"verdict", nameOf(fitnessOf(of))},
-          {"when", of.when},      {"build", of.build},
+  return rows;
+}
+
+std::optional<std::vector<CommissionCheck>> checksOf(const Json& rows) try {
+  std::vector<CommissionCheck> checks;
+  for (const Json& row : rows) {
+    const auto verdict = fitnessNamed(row.at("verdict").get<std::string>());
+    if (!verdict) return {};
+    CommissionCheck check{row.at("name"), row.at("words"), {}, row.at("unit"), {}, *verdict,
+                          row.at("next"), row.at("remark")};
+    if (!row.at("value").is_null()) check.value = row.at("value").get<double>();
+    if (!row.at("limit").is_null()) check.limit = row.at("limit").get<double>();
+    checks.push_back(std::move(check));
+  }
+  return checks;
+} catch (const Json::exception&) {
+  return {};
+}
+
+Json toJson(const Commissioning& of) {
+  return {{"format", kFormat},
+          {"version", kVersion},
+          {"checks", toJson(of.checks)},
+          {"verdict", nameOf(fitnessOf(of))},
+          {"when", of.when},
+          {"build", of.build},
           {"machine", of.machine}};
 }
 
@@ -140,19 +163,12 @@ Result<Commissioning> readCommissioning(const std::filesystem::path& file) {
   try {
     if (json->at("format") != kFormat) return bad("format");
     if (json->at("version") != kVersion) return bad("version");
-    Commissioning of{{}, json->at("when"), json->at("build"), json->at("machine"), {}};
-    for (const Json& row : json->at("checks")) {
-      const auto verdict = fitnessNamed(row.at("verdict").get<std::string>());
-      if (!verdict) return bad("verdict");
-      CommissionCheck check{row.at("name"), row.at("words"), {}, row.at("unit"), {}, *verdict,
-                            row.at("next"), row.at("remark")};
-      if (!row.at("value").is_null()) check.value = row.at("value").get<double>();
-      if (!row.at("limit").is_null()) check.limit = row.at("limit").get<double>();
-      of.checks.push_back(std::move(check));
-    }
-    return of;
+    auto checks = checksOf(json->at("checks"));
+    if (!checks) return bad("checks");
+    return Commissioning{
+        *std::move(checks), json->at("when"), json->at("build"), json->at("machine"), {}};
   } catch (const Json::exception&) {
-    return bad("checks");
+    return bad("when");
   }
 }
 

@@ -9,10 +9,12 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdint>
 #include <cstring>
 #include <ctime>
+#include <optional>
 
 extern char** environ;
 
@@ -21,6 +23,7 @@ namespace trephine {
 namespace {
 
 constexpr int kPoll_ms = 100;
+constexpr std::int64_t kPatience_ns = 1'500'000'000;  // after it was asked to end
 
 std::int64_t now_ns() {
   timespec t{};
@@ -60,7 +63,7 @@ struct Report {
                                 int nothing, int reports) {
   Report report;
   if (::dup2(output, STDOUT_FILENO) >= 0 && ::dup2(nothing, STDERR_FILENO) >= 0 &&
-      ::dup2(nothing, STDIN_FILENO) >= 0 && ::prctl(PR_SET_PDEATHSIG, SIGKILL) == 0) {
+      ::dup2(nothing, STDIN_FILENO) >= 0 && ::prctl(PR_SET_PDEATHSIG, SIGTERM) == 0) {
     report.start_ns = now_ns();
     if (::write(reports, &report, sizeof report) == sizeof report) {
       ::execve(arguments[0], arguments, environment);
@@ -79,9 +82,11 @@ std::vector<char*> pointersTo(std::vector<std::string>& texts) {
 }
 
 std::vector<std::string> environmentWith(const std::filesystem::path& home) {
-  std::vector<std::string> environment{"HOME=" + home.string()};
+  std::vector<std::string> environment;
+  if (!home.empty()) environment.push_back("HOME=" + home.string());
   for (char** variable = environ; *variable; ++variable) {
-    if (std::strncmp(*variable, "HOME=", 5) != 0) environment.emplace_back(*variable);
+    if (home.empty() || std::strncmp(*variable, "HOME=", 5) != 0)
+      environment.emplace_back(*variable);
   }
   return environment;
 }
@@ -115,16 +120,28 @@ Result<ChildRun> runChild(const ChildCommand& command, const Progress& progress)
 
   const Descriptor process(int(::syscall(SYS_pidfd_open, child, 0)));
   ChildRun run;
+  // Asked first: one that has an arm takes its force away.
+  std::optional<std::int64_t> asked_ns;
   bool killed = false;
   const std::int64_t limit_ns = report.start_ns + std::int64_t(command.limit_s * 1e9);
   while (!killed) {
     pollfd ended{process.get(), POLLIN, 0};
     const int polled = ::poll(&ended, 1, kPoll_ms);
     if (polled > 0 && ended.revents != 0) break;
-    run.timed_out = now_ns() > limit_ns;
-    if (progress.cancelled() || run.timed_out || process.get() < 0) {
+    const std::int64_t now = now_ns();
+    run.timed_out = run.timed_out || now > limit_ns;
+    if (!command.step.empty()) {
+      const double share = 1e-9 * double(now - report.start_ns) / command.limit_s;
+      progress.at(std::min(share, 1.0), command.step);
+    }
+    const bool unknown = process.get() < 0;  // whether it has ended
+    if (!progress.cancelled() && !run.timed_out && !unknown) continue;
+    if (unknown || (asked_ns && now > *asked_ns + kPatience_ns)) {
       ::kill(child, SIGKILL);
       killed = true;
+    } else if (!asked_ns) {
+      ::kill(child, SIGTERM);
+      asked_ns = now;
     }
   }
   const std::int64_t end_ns = now_ns();

@@ -13,21 +13,23 @@ namespace trephine {
 struct ChildCommand {
   std::vector<std::string> words;  // the program's path, then its arguments
   std::filesystem::path output;    // a file that gets its stdout; stderr is dropped
-  std::filesystem::path home;      // its HOME, so that it leaves nothing in the user's
+  std::filesystem::path home;      // its HOME, so that it leaves nothing in the user's; empty: ours
   double limit_s = 120.0;          // after which it is ended
+  std::string step{};              // reported meanwhile, as the limit comes nearer; empty: nothing
 };
 
 struct ChildRun {
   int exit_code = 0;       // 128 + the signal's number where one ended it
-  bool timed_out = false;  // then it was killed
+  bool timed_out = false;  // then it was ended
   double seconds = 0.0;    // wall time from just before exec to its end
   // Resident memory at its peak, MB of 2^20 bytes. What a child inherits until its exec counts too:
   // the writable memory that this process has touched, so let go of large blocks first.
   double peak_rss_mb = 0.0;
 };
 
-// Waits for the child's end; it ends with this process too. Errors: CANCELLED (the child was
-// killed), CANNOT_RUN (says what the system refused).
+// Waits for the child's end; it ends with this process too. One that is to end gets a SIGTERM, and
+// 1.5 s later a SIGKILL. Errors: CANCELLED (the child was ended), CANNOT_RUN (says what the system
+// refused).
 Result<ChildRun> runChild(const ChildCommand& command, const Progress& progress);
 
 }  // namespace trephine

@@ -316,15 +316,14 @@ Result<DeviceTrial> trialOf(const TrialOptions& options, const fs::path& out,
   std::error_code ec;
   constexpr double kLongest_s = 60.0;
   const fs::path answer = out / "trial.json";
-  const Result<ChildRun> run =
-      runChild({{fs::read_symlink("/proc/self/exe", ec).string(), "measure", "devices", "--json",
-                 "--bench", options.bench.string(), "--out", out.string(), "--one",
-                 options.unplug ? "unplugged" : "blocked", "--wait", plainNumber(options.wait_s),
-                 "--recording", recording.string()},
-                answer,
-                out,
-                kLongest_s},
-               progress);
+  const Result<ChildRun> run = runChild(
+      {{labProgram().string(), "measure", "devices", "--json", "--bench", options.bench.string(),
+        "--out", out.string(), "--one", options.unplug ? "unplugged" : "blocked", "--wait",
+        plainNumber(options.wait_s), "--recording", recording.string()},
+       answer,
+       out,
+       kLongest_s},
+      progress);
   if (!run) return run.error();
   Result<Json> json = readJsonFile(answer);
   const std::string said = json ? json->dump() : json.error().sentence();

@@ -6,7 +6,7 @@
 #include <QPushButton>
 #include <QTextBrowser>
 
-#include "base/crash_report.h"
+#include "base/system.h"
 #include "gui_support.h"
 #include "lab/commission/start_check.h"
 #include "ui/commission/commission_page.h"

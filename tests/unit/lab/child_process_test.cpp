@@ -2,10 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <fstream>
 #include <iterator>
 #include <thread>
+#include <vector>
 
 #include "lab/import/read_floor.h"
 #include "support.h"
@@ -61,6 +63,48 @@ TEST_F(Child, HasItsOwnHomeAndTheRestOfTheEnvironment) {
   ::setenv("TREPHINE_CHILD_TEST", "kept", 1);
   ASSERT_TRUE(runChild(shell("echo $HOME $TREPHINE_CHILD_TEST"), progress_));
   EXPECT_EQ(output(), folder_.path().string() + " kept\n");
+}
+
+TEST_F(Child, HasOurHomeWhereNoOtherIsGiven) {
+  ChildCommand command = shell("echo $HOME");
+  command.home.clear();
+  ASSERT_TRUE(runChild(command, progress_));
+  EXPECT_EQ(output(), std::string(std::getenv("HOME")) + "\n");
+}
+
+TEST_F(Child, ThatIsToEndIsAskedFirst) {
+  ChildCommand command = shell("trap 'echo in order; exit 3' TERM; sleep 60 & wait");
+  command.limit_s = 0.3;
+  const Result<ChildRun> run = runChild(command, progress_);
+  ASSERT_TRUE(run);
+  EXPECT_TRUE(run->timed_out);
+  EXPECT_EQ(run->exit_code, 3);
+  EXPECT_EQ(output(), "in order\n");
+}
+
+TEST_F(Child, ThatDoesNotEndWhenAskedIsKilled) {
+  ChildCommand command = shell("trap '' TERM; while :; do sleep 0.1; done");
+  command.limit_s = 0.3;
+  const Result<ChildRun> run = runChild(command, progress_);
+  ASSERT_TRUE(run);
+  EXPECT_TRUE(run->timed_out);
+  EXPECT_EQ(run->exit_code, 128 + 9);
+}
+
+TEST_F(Child, SaysMeanwhileHowNearTheLimitIs) {
+  std::vector<double> shares;
+  const Progress progress([&](double share, const std::string& step) {
+    EXPECT_EQ(step, "Waiting");
+    shares.push_back(share);
+  });
+  ChildCommand command = shell("exec sleep 0.5");
+  command.limit_s = 10.0;
+  command.step = "Waiting";
+  ASSERT_TRUE(runChild(command, progress));
+  ASSERT_GT(shares.size(), 1u);
+  EXPECT_TRUE(std::is_sorted(shares.begin(), shares.end()));
+  EXPECT_GT(shares.back(), 0.01);
+  EXPECT_LE(shares.back(), 1.0);
 }
 
 TEST_F(Child, IsEndedWhenItTakesTooLong) {

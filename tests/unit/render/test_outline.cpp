@@ -89,9 +89,9 @@ TEST(Outline, IsAsWideAsItIsSaidAndHasADarkRim) {
     for (int y = 0; y < kHeight; ++y) {
       const std::size_t pixel = (std::size_t(y) * kWidth + kWidth / 2) * 3;
       const int red = picture.rgb[pixel], blue = picture.rgb[pixel + 2];
-      const bool line = blue > red + 80;
-      bright += line;
-      dark += !line && blue + 60 < int(none.rgb[pixel + 2]);
+      const bool drawn = blue > red + 80;
+      bright += drawn;
+      dark += !drawn && blue + 60 < int(none.rgb[pixel + 2]);
     }
     EXPECT_NEAR(bright, width_mm / mm, 2.0);
     EXPECT_GE(dark, 2);
