@@ -13,6 +13,7 @@ namespace fs = std::filesystem;
 Result<fs::path> storageOf(const std::string& given, const Policy& policy) {
   if (!given.empty()) return fs::path(given);
   if (!policy.storage.empty()) return policy.storage;
+  if (policy.problem) return *policy.problem;  // which says where it is, perhaps
   if (const auto own = dataFolder()) return *own;
   return Error{"NO_STORAGE", "It is not known where cases and exercises are kept", "--storage",
                "Give a folder"};

@@ -5,6 +5,7 @@
 
 #include "app/answer.h"
 #include "app/lab_commands.h"
+#include "base/utf8.h"
 #include "library/case_library.h"
 #include "library/shared_storage.h"
 
@@ -52,8 +53,9 @@ int listStorageCommand(const std::string& storage, bool open, const Policy& poli
                        {"name", all[i].record.name},
                        {"problem", problem ? errorJson(*problem) : Json(nullptr)}});
     } else {
-      std::printf("%s: %s\n", all[i].id.c_str(),
-                  problem ? problem->sentence().c_str() : all[i].record.name.c_str());
+      // The name of a folder that others made may hold what a terminal obeys.
+      const std::string said = problem ? problem->sentence() : all[i].record.name;
+      std::printf("%s: %s\n", cleanUtf8(all[i].id).c_str(), cleanUtf8(said).c_str());
     }
   }
   if (json) printAnswer("storage-list", {{"storage", at->string()}, {"cases", cases}});

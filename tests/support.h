@@ -13,6 +13,13 @@
 
 namespace trephine::test {
 
+// A sanitizer holds no memory, and has more of its own than the program.
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+inline constexpr bool kSanitized = true;
+#else
+inline constexpr bool kSanitized = false;
+#endif
+
 // An empty folder of this test's own, removed at the end.
 class TemporaryFolder {
  public:

@@ -2,8 +2,12 @@
 
 #include <QFileInfo>
 #include <QHBoxLayout>
+#include <QImage>
 #include <QKeyEvent>
 #include <QPushButton>
+#include <QResizeEvent>
+#include <QScrollBar>
+#include <QShortcut>
 #include <QVBoxLayout>
 
 #include "base/system.h"
@@ -25,13 +29,39 @@ QUrl pageUrl(const QString& page) {
 
 }  // namespace
 
+QVariant HelpText::loadResource(int type, const QUrl& name) {
+  const QVariant read = QTextBrowser::loadResource(type, name);
+  if (type != QTextDocument::ImageResource) return read;
+  QImage picture;
+  picture.loadFromData(read.toByteArray());
+  const int room = viewport()->width() - 2 * int(document()->documentMargin());
+  if (picture.isNull() || room <= 0) return read;
+  const double dots = devicePixelRatioF();
+  if (picture.width() > room * dots) {
+    picture = picture.scaledToWidth(int(room * dots), Qt::SmoothTransformation);
+  }
+  if (picture.width() > room) picture.setDevicePixelRatio(picture.width() / double(room));
+  return picture;
+}
+
+// Pictures are kept as they were loaded: a page that is wider or narrower has them anew.
+void HelpText::resizeEvent(QResizeEvent* event) {
+  QTextBrowser::resizeEvent(event);
+  if (event->size().width() == event->oldSize().width() || source().isEmpty()) return;
+  const int at = verticalScrollBar()->value();
+  reload();
+  verticalScrollBar()->setValue(at);
+}
+
 HelpPage::HelpPage(QWidget* parent) : QWidget(parent, Qt::Window) {
   setObjectName("helpPage");
   setAttribute(Qt::WA_DeleteOnClose);
   setWindowTitle(tr("Help"));
-  text_ = new QTextBrowser;
+  text_ = new HelpText;
   text_->setObjectName("helpText");
   text_->setOpenExternalLinks(false);
+  text_->setVerticalScrollBarPolicy(
+      Qt::ScrollBarAlwaysOn);  // it takes no room from a picture later
   auto* contents = new QPushButton(tr("&Contents"));
   contents->setObjectName("helpContents");
   auto* back = new QPushButton(tr("&Back"));
@@ -60,6 +90,20 @@ void HelpPage::open(const QString& page) {
 void HelpPage::keyPressEvent(QKeyEvent* event) {
   if (event->key() == Qt::Key_Escape) return void(close());
   QWidget::keyPressEvent(event);
+}
+
+void showHelp(QWidget* parent, const QString& page) {
+  auto* help = parent->findChild<HelpPage*>(QString(), Qt::FindDirectChildrenOnly);
+  if (!help) help = new HelpPage(parent);
+  help->open(page);
+  help->show();
+  help->raise();
+  help->activateWindow();
+}
+
+void helpByF1(QDialog* dialog, const QString& page) {
+  QObject::connect(new QShortcut(QKeySequence(Qt::Key_F1), dialog), &QShortcut::activated, dialog,
+                   [dialog, page] { showHelp(dialog, page); });
 }
 
 }  // namespace trephine

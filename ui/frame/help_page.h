@@ -2,10 +2,22 @@
 // of.
 #pragma once
 
+#include <QDialog>
 #include <QTextBrowser>
 #include <QWidget>
 
 namespace trephine {
+
+// Text whose pictures are no wider than it is.
+class HelpText : public QTextBrowser {
+  Q_OBJECT
+ public:
+  using QTextBrowser::QTextBrowser;
+
+ protected:
+  QVariant loadResource(int type, const QUrl& name) override;
+  void resizeEvent(QResizeEvent* event) override;
+};
 
 class HelpPage : public QWidget {
   Q_OBJECT
@@ -19,7 +31,12 @@ class HelpPage : public QWidget {
   void keyPressEvent(QKeyEvent* event) override;
 
  private:
-  QTextBrowser* text_;
+  HelpText* text_;
 };
+
+// The one of `parent`, in front.
+void showHelp(QWidget* parent, const QString& page);
+// A dialog keeps the keys from the window that it is over: F1 in it opens this page.
+void helpByF1(QDialog* dialog, const QString& page);
 
 }  // namespace trephine

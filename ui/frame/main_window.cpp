@@ -288,18 +288,13 @@ void MainWindow::showAbout() {
 
 // At the page of what is before a person.
 void MainWindow::showHelp() {
-  auto* page = findChild<HelpPage*>();
-  if (!page) page = new HelpPage(this);
   const auto* tabs = findChild<QTabWidget*>("prepareTabs");
   const bool structures = tabs && tabs->currentIndex() == PrepareWorkspace::kStructureTab;
-  page->open(place_ == Place::cases    ? "first-case"
-             : place_ == Place::train  ? "first-cut"
-             : place_ == Place::review ? "review"
-             : structures              ? "structures"
-                                       : "prepare");
-  page->show();
-  page->raise();
-  page->activateWindow();
+  trephine::showHelp(this, place_ == Place::cases    ? "first-case"
+                           : place_ == Place::train  ? "first-cut"
+                           : place_ == Place::review ? "review"
+                           : structures              ? "structures"
+                                                     : "prepare");
 }
 
 void MainWindow::showShortcuts() {
@@ -317,8 +312,10 @@ void MainWindow::showShortcuts() {
 }
 
 void MainWindow::showSettings() {
-  (new SettingsDialog(toQt(bench_.storage()), !workstation().policy().storage.empty(), this))
-      ->open();
+  auto* dialog =
+      new SettingsDialog(toQt(bench_.storage()), !workstation().policy().storage.empty(), this);
+  helpByF1(dialog, "settings");
+  dialog->open();
 }
 
 void MainWindow::showDevices() {
@@ -339,6 +336,7 @@ void MainWindow::showDevices() {
   tell();
   // Its marks are touched with the headset on.
   dialog->addActions({headset_->onAction(), headset_->recentreAction()});
+  helpByF1(dialog, "devices");
   dialog->open();
 }
 
@@ -369,6 +367,7 @@ void MainWindow::showHeadset() {
   });
   // A window over its screen must not keep the keys from coming back here.
   connect(dialog, &QDialog::finished, this, [this] { activateWindow(); });
+  helpByF1(dialog, "headset");
   dialog->open();
 }
 
@@ -392,6 +391,7 @@ void MainWindow::showCommission() {
     });
     dialog->open();
   });
+  helpByF1(page, "commission");
   page->open();
 }
 

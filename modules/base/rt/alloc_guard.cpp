@@ -27,6 +27,12 @@ void* allocate(std::size_t size, std::size_t alignment) {
   return memory;
 }
 
+void* allocateOrNull(std::size_t size, std::size_t alignment) noexcept try {
+  return allocate(size, alignment);
+} catch (const std::bad_alloc&) {
+  return nullptr;
+}
+
 void release(void* memory) {
   if (!memory) return;
   note();
@@ -48,6 +54,7 @@ std::uint64_t guardedAllocations() {
 }  // namespace trephine::rt
 
 using trephine::rt::allocate;
+using trephine::rt::allocateOrNull;
 using trephine::rt::release;
 
 void* operator new(std::size_t size) {
@@ -61,6 +68,18 @@ void* operator new(std::size_t size, std::align_val_t a) {
 }
 void* operator new[](std::size_t size, std::align_val_t a) {
   return allocate(size, std::size_t(a));
+}
+void* operator new(std::size_t size, const std::nothrow_t&) noexcept {
+  return allocateOrNull(size, 0);
+}
+void* operator new[](std::size_t size, const std::nothrow_t&) noexcept {
+  return allocateOrNull(size, 0);
+}
+void* operator new(std::size_t size, std::align_val_t a, const std::nothrow_t&) noexcept {
+  return allocateOrNull(size, std::size_t(a));
+}
+void* operator new[](std::size_t size, std::align_val_t a, const std::nothrow_t&) noexcept {
+  return allocateOrNull(size, std::size_t(a));
 }
 void operator delete(void* p) noexcept {
   release(p);
@@ -84,5 +103,17 @@ void operator delete(void* p, std::size_t, std::align_val_t) noexcept {
   release(p);
 }
 void operator delete[](void* p, std::size_t, std::align_val_t) noexcept {
+  release(p);
+}
+void operator delete(void* p, const std::nothrow_t&) noexcept {
+  release(p);
+}
+void operator delete[](void* p, const std::nothrow_t&) noexcept {
+  release(p);
+}
+void operator delete(void* p, std::align_val_t, const std::nothrow_t&) noexcept {
+  release(p);
+}
+void operator delete[](void* p, std::align_val_t, const std::nothrow_t&) noexcept {
   release(p);
 }

@@ -10,6 +10,7 @@
 #include <QMimeData>
 #include <QPushButton>
 #include <QRadioButton>
+#include <QScrollBar>
 #include <QSignalSpy>
 #include <QSpinBox>
 #include <QTextBrowser>
@@ -302,6 +303,41 @@ class CasesControlsGuiTest : public test::WindowTest {
     QVERIFY2(text->toPlainText().contains("OpenXR"), qPrintable(text->toPlainText().left(80)));
     QTest::keyClick(find<QWidget>("helpPage"), Qt::Key_Escape);
     QTRY_VERIFY(!window_->findChild<QWidget*>("helpPage"));
+  }
+
+  void helpOpensInADialogTooAndTakesItsKeys() {
+    const std::pair<const char*, const char*> pages[] = {{"devices", "devices.md"},
+                                                         {"commission", "commission.md"},
+                                                         {"settings", "settings.md"},
+                                                         {"headsetSettings", "headset.md"}};
+    for (const auto& [action, file] : pages) {
+      find<QAction>(action)->trigger();
+      QWidget* dialog = nullptr;
+      QTRY_VERIFY((dialog = QApplication::activeModalWidget()));
+      QTRY_VERIFY(dialog->isActiveWindow());
+      QTest::keyClick(dialog, Qt::Key_F1);
+      auto* help = find<QWidget>("helpPage");
+      QCOMPARE(find<QTextBrowser>("helpText")->source().fileName(), QString(file));
+      QTest::keyClick(help, Qt::Key_Escape);
+      QTRY_VERIFY(!window_->findChild<QWidget*>("helpPage"));
+      QVERIFY2(dialog->isVisible(), action);
+      QTest::keyClick(dialog, Qt::Key_Escape);
+      QTRY_VERIFY(!QApplication::activeModalWidget());
+    }
+  }
+
+  void picturesOfHelpAreNoWiderThanTheirWindow() {
+    find<QAction>("help")->trigger();
+    auto* page = find<QWidget>("helpPage");
+    auto* text = find<QTextBrowser>("helpText");
+    for (const int width : {860, 500, 1100}) {
+      page->resize(width, 600);
+      QTRY_COMPARE(page->width(), width);
+      QTest::qWait(50);
+      QVERIFY2(text->toHtml().contains("<img"), "the page has a picture");
+      QCOMPARE(text->horizontalScrollBar()->maximum(), 0);
+    }
+    page->close();
   }
 
   // As a file manager opens one; and what a crash leaves is offered likewise.

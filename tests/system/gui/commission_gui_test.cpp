@@ -128,7 +128,9 @@ class CommissionGuiTest : public test::WindowTest {
       return c.name.starts_with("lateness") || c.verdict == Fitness::fail;
     });
     keep(like);
-    const QString same = line();
+    QString same = line();
+    // What else the machine does may make ticks late, which is then said.
+    for (int i = 0; i < 5 && same.contains("late by"); ++i) same = line();
     QVERIFY2(same.startsWith("As commissioned on"), qPrintable(same));
     window_->grab().save(TREPHINE_ARTEFACTS "/fitness_green.png");
     for (CommissionCheck& check : like.checks) {

@@ -43,6 +43,16 @@ TEST(AllocationGuard, CountsOverAlignedMemory) {
             2u);
 }
 
+TEST(AllocationGuard, CountsWhatDoesNotThrow) {
+  EXPECT_EQ(counted([] {
+              ::operator delete(::operator new(64, std::nothrow));
+              ::operator delete (::operator new (256, std::align_val_t{128}, std::nothrow),
+                                 std::align_val_t{128});
+            }),
+            4u);
+  EXPECT_EQ(::operator new(std::size_t(1) << 62, std::nothrow), nullptr);
+}
+
 TEST(AllocationGuard, CountsNothingForWorkInPlace) {
   std::vector<int> values(64, 1);
   int sum = 0;

@@ -66,8 +66,9 @@ TEST(CrashReport, SaysVersionSignalLogAndStackAndTheRecordingsNameAlone) {
   ASSERT_TRUE(left);
   EXPECT_EQ(left->recording, recording);
   const std::string text = textOf(left->report);
-  for (const char* part :
-       {buildName().c_str(), "SIGSEGV", "the last words", "session-1.h5", "test_base +0x"}) {
+  const std::string parts[] = {buildName(), "SIGSEGV", "the last words", "session-1.h5",
+                               "test_base +0x"};
+  for (const std::string& part : parts) {
     EXPECT_NE(text.find(part), std::string::npos) << part << " in\n" << text;
   }
   EXPECT_EQ(text.find("Jane Doe"), std::string::npos) << text;

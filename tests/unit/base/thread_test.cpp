@@ -9,6 +9,8 @@
 #include <string>
 #include <vector>
 
+#include "support.h"
+
 namespace trephine::rt {
 namespace {
 
@@ -25,6 +27,7 @@ long heldKb() {
 }
 
 TEST(LockedMemory, SaysTheLimitThatKeptItFromHolding) {
+  if (test::kSanitized) GTEST_SKIP() << "A sanitizer holds no memory";
   const auto tryIt = [] {
     const rlimit limit{65536, 65536};
     setrlimit(RLIMIT_MEMLOCK, &limit);
@@ -37,6 +40,7 @@ TEST(LockedMemory, SaysTheLimitThatKeptItFromHolding) {
 }
 
 TEST(LockedMemory, HoldsAllUntilItIsReleased) {
+  if (test::kSanitized) GTEST_SKIP() << "A sanitizer holds no memory";
   const std::vector<char> much(std::size_t(64) << 20, 1);
   ASSERT_EQ(heldKb(), 0);
   LockedMemory memory;

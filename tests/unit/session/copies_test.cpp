@@ -39,6 +39,7 @@ Volume largeHead() {
 }
 
 TEST(Copies, AreOneOfACaseAndAnotherOfTheGridThatIsCutAndTheyAreHashedAndSearchedOnce) {
+  if (test::kSanitized) GTEST_SKIP() << "A sanitizer has memory of its own";
   test::TemporaryFolder folder;
   Scene scene = *readScene(resourceFolder() / "scenes" / "cranium.json");
   const std::size_t count = [&] {

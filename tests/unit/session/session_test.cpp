@@ -576,6 +576,7 @@ long lockedKiB() {
 }
 
 TEST(Session, HoldsItsMemoryWhileItRunsInRealTimeOrSaysHowThatIsAllowed) {
+  if (test::kSanitized) GTEST_SKIP() << "A sanitizer holds no memory";
   const long before = lockedKiB();
   auto session = *Session::create(cranium(), test::placed(cranium(), smallHead()), scripted());
   EXPECT_FALSE(session->memoryLocked()) << "not known yet";
