@@ -9,7 +9,6 @@
 #include <cerrno>
 #include <iterator>
 #include <optional>
-#include <set>
 #include <string>
 
 #include "base/file.h"
@@ -64,66 +63,90 @@ fs::path withoutDots(const fs::path& given) {
   return normal.has_filename() ? normal : normal.parent_path();
 }
 
-// Nothing but what Trephine keeps in a storage folder, so that no other folder is taken for one.
-Status checkIsStorage(const fs::path& storage) {
-  const auto refused = [&](const std::string& what, const fs::path& where) {
-    return Error{"NOT_A_STORAGE", what, where.string(),
-                 "Name a folder of its own, such as /srv/trephine; it is made where it is missing"};
-  };
-  if (!storage.is_absolute()) return refused("The folder must be given from the root on", storage);
+Error notAStorage(const std::string& what, const fs::path& where) {
+  return {"NOT_A_STORAGE", what, where.string(),
+          "Name a folder of its own, such as /srv/trephine; it is made where it is missing"};
+}
+
+// Where it lies: in no folder of the system, and where no link leads.
+Status checkPlace(const fs::path& storage) {
+  if (!storage.is_absolute()) {
+    return notAStorage("The folder must be given from the root on", storage);
+  }
   std::error_code ec;
   // Where a link lies on the way another folder would be shared than the one that was checked.
   if (fs::weakly_canonical(storage, ec) != storage || ec) {
-    return refused("There is a link on the way to this folder", storage);
+    return notAStorage("There is a link on the way to this folder", storage);
   }
   constexpr const char* kSystem[] = {"bin", "boot", "dev", "etc",  "lib", "lib32", "lib64",
                                      "opt", "proc", "run", "sbin", "sys", "usr",   "root"};
   const auto top = std::next(storage.begin());
   if (std::distance(storage.begin(), storage.end()) < 3 ||
       std::ranges::find(kSystem, top->string()) != std::end(kSystem)) {
-    return refused("This folder is the system's", storage);
+    return notAStorage("This folder is the system's", storage);
   }
-  const std::set<std::string> ours{"cases",   "exercises", "tissues", ".parts",
-                                   "private", "sessions",  ".lock"};
-  bool any = false;
-  for (fs::directory_iterator at(storage, ec), end; !ec && at != end; at.increment(ec)) {
-    const std::string name = at->path().filename().string();
-    if (!ours.contains(name)) return refused("There is something else in this folder", at->path());
-    const bool file = name == ".lock";
-    const auto type = at->symlink_status(ec).type();
-    if (type != (file ? fs::file_type::regular : fs::file_type::directory)) {
-      return refused("This is none of Trephine's files", at->path());
-    }
-    any = true;
-  }
-  ec.clear();
-  struct stat own {};
-  if (!any && ::stat(storage.c_str(), &own) == 0 && own.st_gid != 0) {
-    return refused("This folder is empty, and of a group of the system", storage);
+  return {};
+}
+
+// Of a file that is a part of a storage, or of what is in such a folder, at that depth.
+Status checkPart(const fs::directory_entry& part, int depth, bool of_folders) {
+  std::error_code ec;
+  const fs::file_type type = part.symlink_status(ec).type();
+  if (of_folders && depth == 0 && type != fs::file_type::directory) {
+    return notAStorage("This is none of Trephine's files", part.path());
   }
   // A file of two names is perhaps another's.
-  for (const char* of : {"cases", "exercises", "tissues", ".parts", ".lock"}) {
-    const fs::path at = storage / of;
-    if (fs::is_regular_file(at, ec) && fs::hard_link_count(at, ec) > 1) {
-      return refused("This file has another name elsewhere", at);
-    }
-    auto it = fs::recursive_directory_iterator(at, ec);
-    for (; !ec && it != fs::end(it); it.increment(ec)) {
-      if (it->symlink_status(ec).type() == fs::file_type::regular && it->hard_link_count(ec) > 1) {
-        return refused("This file has another name elsewhere", it->path());
-      }
-    }
-    ec.clear();
+  if (type == fs::file_type::regular && part.hard_link_count(ec) > 1) {
+    return notAStorage("This file has another name elsewhere", part.path());
   }
-  for (const char* of : {"cases", "exercises"}) {
-    for (fs::directory_iterator at(storage / of, ec), end; !ec && at != end; at.increment(ec)) {
-      if (at->symlink_status(ec).type() != fs::file_type::directory) {
-        return refused("This is none of Trephine's files", at->path());
-      }
+  return {};
+}
+
+// Nothing but what Trephine keeps in a storage folder, so that no other folder is taken for one.
+Status checkContents(const fs::path& storage) {
+  struct Part {
+    const char* name;
+    bool folder = true;
+    bool given = true;        // to the groups, with what is in it
+    bool of_folders = false;  // which has a folder for each of what it holds
+  };
+  constexpr Part kParts[] = {
+      {"cases", true, true, true}, {"exercises", true, true, true}, {"tissues"},     {".parts"},
+      {"private", true, false},    {"sessions", true, false},       {".lock", false}};
+  bool any = false;
+  std::error_code ec;
+  for (fs::directory_iterator at(storage, ec), end; !ec && at != end; at.increment(ec)) {
+    const std::string name = at->path().filename().string();
+    const auto part =
+        std::ranges::find(kParts, name, [](const Part& p) { return std::string(p.name); });
+    if (part == std::end(kParts)) {
+      return notAStorage("There is something else in this folder", at->path());
     }
-    ec.clear();
+    std::error_code unknown;
+    const fs::file_type type = at->symlink_status(unknown).type();
+    if (type != (part->folder ? fs::file_type::directory : fs::file_type::regular)) {
+      return notAStorage("This is none of Trephine's files", at->path());
+    }
+    any = true;
+    if (!part->given) continue;
+    if (!part->folder) {
+      if (Status good = checkPart(*at, 0, false); !good) return good;
+      continue;
+    }
+    auto inside = fs::recursive_directory_iterator(at->path(), unknown);
+    for (; !unknown && inside != fs::end(inside); inside.increment(unknown)) {
+      if (Status good = checkPart(*inside, inside.depth(), part->of_folders); !good) return good;
+    }
   }
-  // Who may not pass a folder on the way reaches none of it.
+  struct stat own {};
+  if (!any && ::stat(storage.c_str(), &own) == 0 && own.st_gid != 0) {
+    return notAStorage("This folder is empty, and of a group of the system", storage);
+  }
+  return {};
+}
+
+// Who may not pass a folder on the way reaches none of it.
+Status checkWay(const fs::path& storage) {
   for (fs::path on = storage.parent_path();; on = on.parent_path()) {
     struct stat at {};
     if (::stat(on.c_str(), &at) == 0 && (at.st_mode & S_IXOTH) == 0) {
@@ -142,7 +165,9 @@ Status shareStorage(const fs::path& given, const StorageGroups& groups) {
                  "Run it with sudo"};
   }
   const fs::path storage = withoutDots(given);
-  if (Status good = checkIsStorage(storage); !good) return good;
+  for (const auto check : {checkPlace, checkContents, checkWay}) {
+    if (Status good = check(storage); !good) return good;
+  }
   const Result<gid_t> readers = groupOf(groups.readers), writers = groupOf(groups.writers);
   if (!readers) return readers.error();
   if (!writers) return writers.error();
