@@ -96,8 +96,7 @@ int pinCommand(bool json, const Progress&);
 int exportExerciseCommand(const std::string& scene, const std::string& case_source,
                           const std::string& out, bool json, const Progress&);
 // Where the window keeps its cases: `given`, or where that is empty the workstation's folder, else
-// the user's own data. Errors: NO_STORAGE, and why the workstation's
-// settings cannot be read.
+// the user's own data. Errors: NO_STORAGE, and why the workstation's settings cannot be read.
 Result<std::filesystem::path> storageOf(const std::string& given, const Policy& policy);
 int importExerciseCommand(const std::string& folder, const std::string& storage,
                           const Policy& policy, bool json, const Progress&);

@@ -110,7 +110,7 @@ class Commission(unittest.TestCase):
                 self.assertIn(said, checks[name]["remark"])
                 self.assertIn("driver", checks[name]["next"])
             self.assertEqual(checks["clock"]["verdict"], "pass")
-        left = [path.name for path in Path(tempfile.gettempdir()).glob("trephine-arms-*")]
+        left = [path.name for path in Path(tempfile.gettempdir()).glob(".trephine-arms-*")]
         self.assertEqual(left, [])
 
     def test_loaded_cores_make_ticks_late(self):

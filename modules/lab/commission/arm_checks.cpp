@@ -1,7 +1,5 @@
 #include "lab/commission/arm_checks.h"
 
-#include <unistd.h>
-
 #include <algorithm>
 #include <chrono>
 #include <thread>
@@ -12,6 +10,7 @@
 #include "device/find_arms.h"
 #include "lab/commission/commission.h"
 #include "lab/common/child_process.h"
+#include "lab/common/temporary_folder.h"
 #include "session/arm_trial.h"
 
 namespace trephine {
@@ -157,19 +156,18 @@ std::vector<CommissionCheck> checkArms(double patience_s, const Progress& progre
   };
   const Result<std::filesystem::path> temporary = temporaryFolder();
   if (!temporary) return failed("There is no temporary folder");
-  const std::filesystem::path answer =
-      *temporary / ("trephine-arms-" + std::to_string(::getpid()) + ".json");
+  const Result<TemporaryFolder> folder = TemporaryFolder::in(*temporary, "trephine-arms");
+  if (!folder) return failed("The temporary folder cannot be written to");
+  const std::filesystem::path answer = *folder / "answer.json";
   const Result<ChildRun> run =
       runChild({{labProgram().string(), "commission", "--arms", "--json", "--out",
-                 temporary->string(), "--wait", plainNumber(patience_s)},
+                 folder->path().string(), "--wait", plainNumber(patience_s)},
                 answer,
                 {},
                 patience_s + kPushes_s + kOpening_s,
                 "Hold each arm and move it a little"},
                progress);
   const Result<Json> json = readJsonFile(answer);
-  std::error_code ec;
-  std::filesystem::remove(answer, ec);
   if (!run) return failed("The program that tries the arms could not be run");
   if (run->timed_out) return failed("The driver of a device does not answer");
   if (run->exit_code > 128) return failed("The driver of a device ended the program that asked it");
