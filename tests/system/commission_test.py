@@ -22,7 +22,8 @@ class Commission(unittest.TestCase):
 
     def run_it(self, environment=None, before=None, storage=None, more=()):
         environment = dict(environment or os.environ, XDG_STATE_HOME=str(self.folder / "state"),
-                           XDG_CONFIG_HOME=str(self.folder / "config"))
+                           XDG_CONFIG_HOME=str(self.folder / "config"),
+                           XDG_DATA_HOME=str(self.folder / "data"))
         done = subprocess.run(
             [LAB, "commission", "--json", "--seconds", SECONDS, "--out", str(self.folder / "out"),
              "--storage", str(storage or self.folder / "storage"), *more],
@@ -74,7 +75,7 @@ class Commission(unittest.TestCase):
                 os.setgroups([])
                 os.setgid(65534)
                 os.setuid(65534)
-        for name in ("out", "storage", "state", "config"):
+        for name in ("out", "storage", "state", "config", "data"):
             (self.folder / name).mkdir()
         for path in [self.folder, *self.folder.iterdir()]:
             path.chmod(0o777)

@@ -155,6 +155,7 @@ class LockedWindow(TraineeTest):
         self.environment = {**os.environ, "HOME": str(self.home),
                             "XDG_CONFIG_HOME": str(self.config),
                             "XDG_DATA_HOME": str(self.trainees_folder("home/data")),
+                            "XDG_STATE_HOME": str(self.trainees_folder("home/state")),
                             "XDG_RUNTIME_DIR": str(self.trainees_folder("home/run"))}
         if key := os.environ.get("XAUTHORITY"):
             mine = self.home / "xauthority"
