@@ -11,7 +11,9 @@ configure_file(${CPACK_TREPHINE_DEBIAN}/limits.conf ${root}/etc/security/limits.
                COPYONLY)
 configure_file(${CPACK_TREPHINE_DEBIAN}/lintian-overrides
                ${root}/usr/share/lintian/overrides/trephine COPYONLY)
-set(TREPHINE_RELEASED_RFC ${CPACK_TREPHINE_RELEASED_RFC})
+execute_process(COMMAND date --utc --rfc-email --date ${CPACK_TREPHINE_RELEASED}
+                OUTPUT_VARIABLE TREPHINE_RELEASED_RFC OUTPUT_STRIP_TRAILING_WHITESPACE
+                COMMAND_ERROR_IS_FATAL ANY)
 set(changelog ${root}/usr/share/doc/trephine/changelog)
 configure_file(${CPACK_TREPHINE_DEBIAN}/changelog.in ${changelog} @ONLY)
 execute_process(COMMAND gzip --no-name --best ${changelog} COMMAND_ERROR_IS_FATAL ANY)

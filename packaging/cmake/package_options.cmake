@@ -3,7 +3,7 @@
 # The date of all files in it is that of the release: two builds of one commit, in any two folders,
 # make the same package.
 if("$ENV{SOURCE_DATE_EPOCH}" STREQUAL "")
-  execute_process(COMMAND date --utc --date ${CPACK_TREPHINE_RELEASED_RFC} +%s
+  execute_process(COMMAND date --utc --date ${CPACK_TREPHINE_RELEASED} +%s
                   OUTPUT_VARIABLE released OUTPUT_STRIP_TRAILING_WHITESPACE COMMAND_ERROR_IS_FATAL ANY)
   set(ENV{SOURCE_DATE_EPOCH} ${released})
 endif()
