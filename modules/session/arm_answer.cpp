@@ -8,8 +8,6 @@ namespace trephine {
 
 namespace {
 
-constexpr double kMoved_m = 0.005;
-constexpr int kMovedSamples = 20;
 constexpr double kSlow_m_s = 0.05, kSlowOver_s = 0.05, kStillPatience_s = 3.0;
 constexpr double kTooFast_m_s = 0.5, kFastOver_s = 0.01;
 constexpr double kGentle_N = 0.8;  // beyond the friction of the arms that we know
@@ -67,7 +65,7 @@ void ArmAnswer::ask(double mass_kg, double delay_s, double most_N, double patien
   phase_ = Phase::waiting;
 }
 
-Vec3 ArmAnswer::tick(const ForceTest::Sample& sample, bool fresh, bool late, double period_s) {
+Vec3 ArmAnswer::tick(const HandSample& sample, bool fresh, bool late, double period_s) {
   if (!runs(phase_)) return Vec3(0.0);
   if (sample.away) {
     phase_ = Phase::lost;
@@ -75,7 +73,7 @@ Vec3 ArmAnswer::tick(const ForceTest::Sample& sample, bool fresh, bool late, dou
   }
   since_s_ += period_s;
   if (phase_ == Phase::waiting) return wait(sample);
-  if (sample.no_hand || (by_button_ && !sample.button)) {  // it was let go of
+  if (hand_.letsGo(sample)) {
     phase_ = Phase::lost;
     return Vec3(0.0);
   }
@@ -95,23 +93,12 @@ Vec3 ArmAnswer::tick(const ForceTest::Sample& sample, bool fresh, bool late, dou
   return push(sample.position_m, late, period_s);
 }
 
-Vec3 ArmAnswer::wait(const ForceTest::Sample& sample) {
+Vec3 ArmAnswer::wait(const HandSample& sample) {
   if (since_s_ > patience_s_) {
     phase_ = Phase::untouched;
     return Vec3(0.0);
   }
-  if (sample.no_hand) {
-    placed_ = false;
-    return Vec3(0.0);
-  }
-  if (!placed_) {
-    asked_at_m_ = sample.position_m;
-    away_ = 0;
-  }
-  placed_ = true;
-  away_ = glm::length(sample.position_m - asked_at_m_) < kMoved_m ? 0 : away_ + 1;
-  if (!sample.button && away_ < kMovedSamples) return Vec3(0.0);
-  by_button_ = sample.button;
+  if (!hand_.takes(sample)) return Vec3(0.0);
   last_m_ = before_last_m_ = sample.position_m;
   since_s_ = 0.0;
   phase_ = Phase::still;

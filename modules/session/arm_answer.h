@@ -5,18 +5,17 @@
 #include <array>
 
 #include "base/math.h"
-#include "session/force_test.h"
+#include "session/hand_on_arm.h"
 
 namespace trephine {
 
-// It begins with a hand on the arm, as ForceTest does: a button, or the arm moved by 5 mm for 20
-// samples. 500 samples in which it goes slower than 50 mm/s, or any
-// after 3 s, are looked at without a force. Then the
-// arm is pushed for some hundredths of a second, and as long the other way: an arm of the stated
-// mass is then at rest again, at most 3 mm further. Eight times along each axis, half of them each
-// way, with rests of different lengths, so that neither a hand that drifts nor its tremor counts;
-// 3 to 5 s together. What an arm does along all three axes is counted, so that what is wrong in a
-// joint shows wherever that joint points. An encoder and a motor that are both reversed agree.
+// It begins with a hand on the arm, which moves it for 20 samples. 500 samples in which it goes
+// slower than 50 mm/s, or any after 3 s, are looked at without a force. Then the arm is pushed for
+// some hundredths of a second, and as long the other way: an arm of the stated mass is then at rest
+// again, at most 3 mm further. Eight times along each axis, half of them each way, with rests of
+// different lengths, so that neither a hand that drifts nor its tremor counts; 3 to 5 s together.
+// What an arm does along all three axes is counted, so that what is wrong in a joint shows wherever
+// that joint points. An encoder and a motor that are both reversed agree.
 //
 // No force where the samples scatter so that they say nothing, on an arm that states less than 2 g,
 // and none any more once it goes 8 mm beside its line in a push, or faster than 0.5 m/s, or is let
@@ -33,7 +32,7 @@ class ArmAnswer {
   void ask(double mass_kg, double delay_s, double most_N, double patience_s, double step_m);
   // The force [N], device frame, that answers this sample; `fresh`: it was not seen before; `late`:
   // it comes so late that the force before has acted for longer than a period.
-  Vec3 tick(const ForceTest::Sample& sample, bool fresh, bool late, double period_s);
+  Vec3 tick(const HandSample& sample, bool fresh, bool late, double period_s);
 
   Phase phase() const { return phase_; }
   static bool runs(Phase phase) { return phase >= Phase::waiting && phase <= Phase::pushing; }
@@ -56,8 +55,9 @@ class ArmAnswer {
  private:
   static constexpr int kStill = 500, kBefore = 10, kTimes = 8;  // samples; pushes along an axis
   static constexpr int kLongest = 120;                          // samples of one push
+  static constexpr int kMovedSamples = 20;                      // by the hand that takes it
 
-  Vec3 wait(const ForceTest::Sample& sample);
+  Vec3 wait(const HandSample& sample);
   void takeStill(const Vec3& at_m, bool fresh);
   void judgeStill();
   Vec3 push(const Vec3& at_m, bool late, double period_s);
@@ -69,9 +69,10 @@ class ArmAnswer {
   double mass_kg_ = 0.0, delay_s_ = 0.0, most_N_ = 0.0, patience_s_ = 0.0, step_m_ = 0.0;
   double since_s_ = 0.0, noise_m_ = 0.0;
   Vec3 fast_m_s_{0.0}, slow_m_s_{0.0};  // over 10 and 50 ms
-  bool placed_ = false, by_button_ = false, pushed_ = false;
-  Vec3 asked_at_m_{0.0}, last_m_{0.0}, before_last_m_{0.0};
-  int away_ = 0, seen_ = 0, still_ = 0;
+  bool pushed_ = false;
+  HandOnArm hand_{kMovedSamples};
+  Vec3 last_m_{0.0}, before_last_m_{0.0};
+  int seen_ = 0, still_ = 0;
   int push_ = 0, tick_ = 0, half_ = 0, broken_ = 0;
   std::array<std::array<double, kStill>, 3> bends_m_{};
   std::array<Vec3, kLongest + kBefore> path_m_{};      // of this push

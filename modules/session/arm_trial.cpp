@@ -161,7 +161,7 @@ bool ArmTrial::Engine::tick(std::int64_t now_ns) {
       if (silences[i].tick(states[n].sequence, kPeriod_s, now_ns)) arm.flags |= TREPHINE_ARM_LOST;
       const bool away = arm.flags & (TREPHINE_ARM_LOST | TREPHINE_ARM_ERROR);
       const bool no_hand = arm.flags & TREPHINE_ARM_NO_HAND;
-      const ForceTest::Sample sample{arm.pose_m.position, arm.buttons != 0, no_hand, away};
+      const HandSample sample{arm.pose_m.position, arm.buttons != 0, no_hand, away};
       arm.force_N = tests[i].tick(sample, kPeriod_s);
       arm.test = tests[i].phase();
       const bool fresh = states[n].sequence != std::exchange(sequences[i], states[n].sequence);

@@ -7,7 +7,6 @@ namespace trephine {
 namespace {
 
 constexpr double kRise_s = 3.0, kHold_s = 2.0, kFall_s = 1.0;
-constexpr double kMoved_m = 0.005;
 constexpr double kPatience_s = 30.0;
 constexpr double kTooFast_m_s = 0.5;
 constexpr double kSpeedOver_s = 0.01;
@@ -20,41 +19,32 @@ void ForceTest::ask(double most_N) {
   phase_ = Phase::waiting;
 }
 
-double ForceTest::tick(const Sample& sample, double period_s) {
-  const Vec3& position_m = sample.position_m;
-  if (phase_ == Phase::off || phase_ == Phase::done || phase_ == Phase::lost) return 0.0;
+double ForceTest::tick(const HandSample& sample, double period_s) {
+  if (!runs(phase_)) return 0.0;
   if (sample.away) {
     phase_ = Phase::lost;
     return 0.0;
   }
   since_s_ += period_s;
-  if (phase_ == Phase::waiting && since_s_ > kPatience_s) {
-    phase_ = Phase::off;
-    return 0.0;
-  }
-  if (sample.no_hand) {
-    if (gives()) phase_ = Phase::done;
-    placed_ = false;
-    return 0.0;
-  }
-  if (!placed_) asked_at_m_ = last_m_ = position_m;
-  placed_ = true;
-  const double share = period_s / (period_s + kSpeedOver_s);
-  speed_m_s_ += share * (glm::length(position_m - last_m_) / period_s - speed_m_s_);
-  last_m_ = position_m;
   if (phase_ == Phase::waiting) {
-    if (!sample.button && glm::length(position_m - asked_at_m_) < kMoved_m) return 0.0;
-    by_button_ = sample.button;
-    phase_ = Phase::rising;
-    since_s_ = 0.0;
+    if (since_s_ > kPatience_s) {
+      phase_ = Phase::off;
+    } else if (hand_.takes(sample)) {
+      phase_ = Phase::rising;
+      since_s_ = 0.0;
+      last_m_ = sample.position_m;
+    }
     return 0.0;
   }
+  if (hand_.letsGo(sample)) {
+    phase_ = Phase::done;
+    return 0.0;
+  }
+  const double share = period_s / (period_s + kSpeedOver_s);
+  speed_m_s_ += share * (glm::length(sample.position_m - last_m_) / period_s - speed_m_s_);
+  last_m_ = sample.position_m;
   if (speed_m_s_ > kTooFast_m_s) {
     phase_ = Phase::lost;
-    return 0.0;
-  }
-  if (by_button_ && !sample.button) {
-    phase_ = Phase::done;
     return 0.0;
   }
   const double falling_s = since_s_ - kRise_s - kHold_s;

@@ -2,30 +2,23 @@
 // by a hand that is known to hold the arm. Pure.
 #pragma once
 
-#include "base/math.h"
+#include "session/hand_on_arm.h"
 
 namespace trephine {
 
 // Up to `most_N` over 3 s, held for 2 s, and gone over 1 s.
 //
-// It begins with a hand on the arm: a button that is held, and then lasts while that is; or, where
-// the arm is moved 5 mm from where it was when the test was asked for, without. Whoever lets go of
-// the button, or puts the arm back into its holder, has no force in that tick. A hand that goes
-// faster than 0.5 m/s has lost the arm: the test ends. So does one that nobody takes within 30 s.
+// It begins with a hand on the arm. Whoever lets go of it has no force in that tick. A hand that
+// goes faster than 0.5 m/s has lost the arm: the test ends. So does one that nobody takes within
+// 30 s.
 class ForceTest {
  public:
   enum class Phase { off, waiting, rising, holding, falling, done, lost };
 
   void ask(double most_N);
   void end() { phase_ = Phase::off; }
-  // What an arm says in a sample. `away`: it is lost, its sample is old, or it reports an error;
-  // `no_hand`: it knows that nobody holds it.
-  struct Sample {
-    Vec3 position_m{0.0};
-    bool button = false, no_hand = false, away = false;
-  };
   // The force [N] along the device's y for this sample.
-  double tick(const Sample& sample, double period_s);
+  double tick(const HandSample& sample, double period_s);
 
   // A person has asked for a force, and it is not over.
   static bool runs(Phase phase) { return phase >= Phase::waiting && phase <= Phase::falling; }
@@ -36,8 +29,8 @@ class ForceTest {
  private:
   Phase phase_ = Phase::off;
   double most_N_ = 0.0, since_s_ = 0.0;
-  bool placed_ = false, by_button_ = false;
-  Vec3 asked_at_m_{0.0}, last_m_{0.0};
+  HandOnArm hand_;
+  Vec3 last_m_{0.0};
   double speed_m_s_ = 0.0;  // over 10 ms
 };
 

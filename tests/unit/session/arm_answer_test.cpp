@@ -43,7 +43,7 @@ struct Plant {
   std::vector<Vec3> sent_N;
   double farthest_m = 0.0, time_s = 0.0;
   ArmAnswer answer;
-  ForceTest::Sample sample;
+  HandSample sample;
   std::mt19937 random{7};
 
   Vec3 reading() {

@@ -1,0 +1,34 @@
+// When a hand is on an arm, and when it has let go. Pure.
+#pragma once
+
+#include "base/math.h"
+
+namespace trephine {
+
+// What a sample of an arm says of the hand on it. `away`: it is lost, its sample is old, or it
+// reports an error; `no_hand`: it knows that nobody holds it, as in its holder.
+struct HandSample {
+  Vec3 position_m{0.0};
+  bool button = false, no_hand = false, away = false;
+};
+
+// A hand is on the arm once a button is held, and then for as long as that is; or, without, once
+// the arm has been moved 5 mm from where it was first seen, for so many samples that none of them
+// is a jump of an encoder.
+class HandOnArm {
+ public:
+  explicit HandOnArm(int samples = 1) : samples_(samples) {}
+  // Of each sample until it is true: the hand has taken the arm.
+  bool takes(const HandSample& sample);
+  // Of each sample after that.
+  bool letsGo(const HandSample& sample) const {
+    return sample.no_hand || (by_button_ && !sample.button);
+  }
+
+ private:
+  int samples_, moved_ = 0;
+  bool seen_ = false, by_button_ = false;
+  Vec3 seen_at_m_{0.0};
+};
+
+}  // namespace trephine
