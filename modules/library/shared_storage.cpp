@@ -20,6 +20,26 @@ namespace {
 
 namespace fs = std::filesystem;
 
+// What Trephine keeps in a storage folder: nothing else is in one.
+enum class Holds {
+  entries,          // a folder for each
+  files,            // files and folders
+  of_their_owners,  // what stays theirs
+  nothing           // it is a file
+};
+struct StoragePart {
+  const char* name;
+  Holds holds;
+  mode_t mode;
+};
+constexpr StoragePart kStorageParts[] = {{"cases", Holds::entries, 02775},
+                                         {"exercises", Holds::entries, 02775},
+                                         {"tissues", Holds::files, 02775},
+                                         {".parts", Holds::files, 02775},
+                                         {"private", Holds::of_their_owners, 03770},
+                                         {"sessions", Holds::of_their_owners, 03777},
+                                         {".lock", Holds::nothing, 0664}};
+
 Result<gid_t> groupOf(const std::string& name) {
   const group* found = ::getgrnam(name.c_str());
   if (found) return found->gr_gid;
@@ -41,6 +61,13 @@ Status giveFolder(const fs::path& path, gid_t group, mode_t mode) {
                  "Name the folder itself"};
   }
   if (::chown(path.c_str(), 0, group) != 0) return writeError(path, errno);
+  return give(path, group, mode);
+}
+
+Status giveFile(const fs::path& path, gid_t group, mode_t mode) {
+  const int fd = ::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, mode);
+  if (fd < 0) return writeError(path, errno);
+  ::close(fd);
   return give(path, group, mode);
 }
 
@@ -88,55 +115,49 @@ Status checkPlace(const fs::path& storage) {
   return {};
 }
 
-// Of a file that is a part of a storage, or of what is in such a folder, at that depth.
-Status checkPart(const fs::directory_entry& part, int depth, bool of_folders) {
+// A file of two names is perhaps another's.
+Status checkNames(const fs::directory_entry& entry) {
   std::error_code ec;
-  const fs::file_type type = part.symlink_status(ec).type();
-  if (of_folders && depth == 0 && type != fs::file_type::directory) {
-    return notAStorage("This is none of Trephine's files", part.path());
-  }
-  // A file of two names is perhaps another's.
-  if (type == fs::file_type::regular && part.hard_link_count(ec) > 1) {
-    return notAStorage("This file has another name elsewhere", part.path());
+  if (entry.symlink_status(ec).type() == fs::file_type::regular && entry.hard_link_count(ec) > 1) {
+    return notAStorage("This file has another name elsewhere", entry.path());
   }
   return {};
 }
 
-// Nothing but what Trephine keeps in a storage folder, so that no other folder is taken for one.
+Status checkInside(const fs::path& folder, Holds holds) {
+  std::error_code ec;
+  auto inside = fs::recursive_directory_iterator(folder, ec);
+  for (; !ec && inside != fs::end(inside); inside.increment(ec)) {
+    std::error_code unknown;
+    if (holds == Holds::entries && inside.depth() == 0 &&
+        inside->symlink_status(unknown).type() != fs::file_type::directory) {
+      return notAStorage("This is none of Trephine's files", inside->path());
+    }
+    if (Status good = checkNames(*inside); !good) return good;
+  }
+  return {};
+}
+
+// Nothing but what Trephine keeps there, so that no other folder is taken for a storage.
 Status checkContents(const fs::path& storage) {
-  struct Part {
-    const char* name;
-    bool folder = true;
-    bool given = true;        // to the groups, with what is in it
-    bool of_folders = false;  // which has a folder for each of what it holds
-  };
-  constexpr Part kParts[] = {
-      {"cases", true, true, true}, {"exercises", true, true, true}, {"tissues"},     {".parts"},
-      {"private", true, false},    {"sessions", true, false},       {".lock", false}};
   bool any = false;
   std::error_code ec;
   for (fs::directory_iterator at(storage, ec), end; !ec && at != end; at.increment(ec)) {
-    const std::string name = at->path().filename().string();
-    const auto part =
-        std::ranges::find(kParts, name, [](const Part& p) { return std::string(p.name); });
-    if (part == std::end(kParts)) {
+    const auto part = std::ranges::find(kStorageParts, at->path().filename(),
+                                        [](const StoragePart& p) { return fs::path(p.name); });
+    if (part == std::end(kStorageParts)) {
       return notAStorage("There is something else in this folder", at->path());
     }
+    const bool file = part->holds == Holds::nothing;
     std::error_code unknown;
-    const fs::file_type type = at->symlink_status(unknown).type();
-    if (type != (part->folder ? fs::file_type::directory : fs::file_type::regular)) {
+    if (at->symlink_status(unknown).type() !=
+        (file ? fs::file_type::regular : fs::file_type::directory)) {
       return notAStorage("This is none of Trephine's files", at->path());
     }
     any = true;
-    if (!part->given) continue;
-    if (!part->folder) {
-      if (Status good = checkPart(*at, 0, false); !good) return good;
-      continue;
-    }
-    auto inside = fs::recursive_directory_iterator(at->path(), unknown);
-    for (; !unknown && inside != fs::end(inside); inside.increment(unknown)) {
-      if (Status good = checkPart(*inside, inside.depth(), part->of_folders); !good) return good;
-    }
+    if (part->holds == Holds::of_their_owners) continue;
+    if (Status good = file ? checkNames(*at) : checkInside(at->path(), part->holds); !good)
+      return good;
   }
   struct stat own {};
   if (!any && ::stat(storage.c_str(), &own) == 0 && own.st_gid != 0) {
@@ -171,19 +192,17 @@ Status shareStorage(const fs::path& given, const StorageGroups& groups) {
   const Result<gid_t> readers = groupOf(groups.readers), writers = groupOf(groups.writers);
   if (!readers) return readers.error();
   if (!writers) return writers.error();
-  constexpr mode_t kLook = 0750, kGroups = 02775, kOwnOfWriters = 03770, kOwnOfAll = 03777;
+  constexpr mode_t kLook = 0750;
   if (Status done = giveFolder(storage, *readers, kLook); !done) return done;
-  for (const char* name : {"cases", "exercises", "tissues", ".parts"}) {
-    if (Status done = giveFolder(storage / name, *writers, kGroups); !done) return done;
-    if (Status done = giveInside(storage / name, *writers); !done) return done;
+  for (const StoragePart& part : kStorageParts) {
+    const fs::path path = storage / part.name;
+    const bool file = part.holds == Holds::nothing;
+    Status done =
+        file ? giveFile(path, *writers, part.mode) : giveFolder(path, *writers, part.mode);
+    if (done && !file && part.holds != Holds::of_their_owners) done = giveInside(path, *writers);
+    if (!done) return done;
   }
-  if (Status done = giveFolder(storage / "private", *writers, kOwnOfWriters); !done) return done;
-  if (Status done = giveFolder(storage / "sessions", *writers, kOwnOfAll); !done) return done;
-  const fs::path lock = storage / ".lock";
-  const int fd = ::open(lock.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0664);
-  if (fd < 0) return writeError(lock, errno);
-  ::close(fd);
-  return give(lock, *writers, 0664);
+  return {};
 }
 
 }  // namespace trephine
