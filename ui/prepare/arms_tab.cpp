@@ -1,7 +1,5 @@
 #include "ui/prepare/arms_tab.h"
 
-#include <unistd.h>
-
 #include <QStandardPaths>
 #include <algorithm>
 #include <cmath>
@@ -10,6 +8,7 @@
 #include "base/log.h"
 #include "base/system.h"
 #include "lab/common/child_process.h"
+#include "lab/common/temporary_folder.h"
 #include "lab/touch/law_costs.h"
 #include "lab/trades/recommended.h"
 #include "lab/trades/trades_measurement.h"
@@ -131,36 +130,30 @@ void ArmsTab::measureTrades() {
       [to = ownFolder()](const Progress& progress) -> Status {
         const Result<std::filesystem::path> temporary = temporaryFolder();
         if (!temporary) return temporary.error();
-        const std::filesystem::path out =
-            *temporary / ("trephine-trades-" + std::to_string(::getpid()));
-        std::error_code failed;
-        std::filesystem::create_directories(out, failed);
+        const Result<TemporaryFolder> out = TemporaryFolder::in(*temporary, "trephine-trades");
+        if (!out) return out.error();
         progress.at(0.0, "Measuring, some minutes");
         constexpr double kLongest_s = 1200.0;
-        const Result<ChildRun> run =
-            runChild({{labProgram().string(), "measure", "trades", "--out", out.string(), "--json"},
-                      out / "answer.json",
-                      out,
-                      kLongest_s},
-                     progress);
-        Status done;
-        if (!run) {
-          done = run.error();
-        } else if (run->exit_code != 0) {
-          done = Error{"NOT_MEASURED", "The measurement did not come to its end", "trephine-lab",
+        const Result<ChildRun> run = runChild(
+            {{labProgram().string(), "measure", "trades", "--out", out->path().string(), "--json"},
+             *out / "answer.json",
+             out->path(),
+             kLongest_s},
+            progress);
+        if (!run) return run.error();
+        if (run->exit_code != 0) {
+          return Error{"NOT_MEASURED", "The measurement did not come to its end", "trephine-lab",
                        "Run 'trephine-lab measure trades --out DIR' to see why"};
         }
+        if (Status made = makeFolder(to); !made) return made;
         for (const char* file : {"trades.json", "recommended.json"}) {
-          if (!done) break;
-          const Result<Json> json = readJsonFile(out / file);
-          if (!json) {
-            done = json.error();
-          } else if (done = makeFolder(to); done) {
-            done = writeTextFile(to / file, json->dump(1) + '\n');
+          const Result<Json> json = readJsonFile(*out / file);
+          if (!json) return json.error();
+          if (Status written = writeTextFile(to / file, json->dump(1) + '\n'); !written) {
+            return written;
           }
         }
-        std::filesystem::remove_all(out, failed);
-        return done;
+        return {};
       },
       [this] { showTrades(); });
 }
