@@ -90,14 +90,19 @@ class Commission(unittest.TestCase):
     def test_a_small_disk_fails(self):
         if os.geteuid() != 0:
             self.skipTest("only root can mount a small disk")
-        small = self.folder / "small"
-        small.mkdir()
-        subprocess.run(["mount", "-t", "tmpfs", "-o", "size=1g", "tmpfs", str(small)], check=True)
-        self.addCleanup(subprocess.run, ["umount", str(small)], check=True)
-        checks = self.run_it(without_display(), storage=small)
-        self.assertEqual(checks["disk_room"]["verdict"], "fail")
-        self.assertLess(checks["disk_room"]["value"], 1.1)
-        self.assertEqual(list(small.iterdir()), [], "nothing is left on it")
+        for size in ("1g", "2m"):
+            small = self.folder / size
+            small.mkdir()
+            subprocess.run(["mount", "-t", "tmpfs", "-o", f"size={size}", "tmpfs", str(small)],
+                           check=True)
+            self.addCleanup(subprocess.run, ["umount", str(small)], check=True)
+            checks = self.run_it(without_display(), storage=small)
+            self.assertEqual(checks["disk_room"]["verdict"], "fail")
+            self.assertLess(checks["disk_room"]["value"], 1.1)
+            self.assertEqual(list(small.iterdir()), [], "nothing is left on it")
+        self.assertEqual(checks["disk_write"]["verdict"], "fail")
+        self.assertIsNone(checks["disk_write"]["value"], "on a full one no speed can be told")
+        self.assertIn("space", checks["disk_write"]["next"])
 
     def test_an_ill_driver_is_a_check_that_fails_and_all_else_is_measured(self):
         plugins = self.folder / "plugins"

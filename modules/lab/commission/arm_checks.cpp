@@ -111,8 +111,8 @@ std::vector<CommissionCheck> tryArms(double patience_s, const Progress& progress
     return checks;
   };
   if (here.arms.empty())
-    return with(both(Fitness::warn, {"NO_ARMS", "No arm is plugged in", "",
-                                     "Plug them in, and commission again"}));
+    return with(
+        both(Fitness::warn, {"NO_ARMS", "No arm is plugged in", "", "See to the arms first"}));
   if (patience_s <= 0.0) {
     return with(both(Fitness::warn, {"NOT_TRIED", "The arms were not tried", "",
                                      "Commission again, and hold each arm meanwhile"}));

@@ -64,9 +64,13 @@ std::vector<CommissionCheck> checkDisk(const std::filesystem::path& folder, std:
             notMeasured("disk_write", Fitness::fail, why)};
   }
   const bool there = std::filesystem::exists(folder, ec);
-  return {judged("disk_room", double(space.available) / kBytesOfGB,
-                 there ? "" : "the folder is not there yet: of the disk that it would be on"),
-          written(existing, std::min<std::size_t>(bytes, space.available / 4), most_s, progress)};
+  constexpr std::uintmax_t kLeast = 4'000'000;  // of less no speed can be told
+  return {
+      judged("disk_room", double(space.available) / kBytesOfGB,
+             there ? "" : "the folder is not there yet: of the disk that it would be on"),
+      space.available < kLeast
+          ? notMeasured("disk_write", Fitness::fail, writeError(folder, ENOSPC))
+          : written(existing, std::min<std::size_t>(bytes, space.available / 4), most_s, progress)};
 }
 
 }  // namespace trephine
