@@ -16,6 +16,14 @@
 
 namespace trephine {
 
+// OpenXR's structures say of themselves what they are.
+template <class T>
+T typed(XrStructureType type) {
+  T of{};
+  of.type = type;
+  return of;
+}
+
 struct OpenXr {
   // Once loaded it stays. Error: NO_LOADER.
   static Result<const OpenXr*> load();

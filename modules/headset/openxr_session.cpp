@@ -5,20 +5,18 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
-#include <cstdlib>
 #include <cstring>
-#include <filesystem>
 #include <optional>
-#include <sstream>
 #include <string>
 #include <thread>
 #include <vector>
 
+#include "headset/active_runtime.h"
 #include "headset/room_place.h"
 //
 #include <unistd.h>
 // Xlib comes with it.
-#include "headset/openxr_functions.h"
+#include "headset/openxr_layers.h"
 
 namespace trephine {
 
@@ -36,71 +34,10 @@ constexpr double kTryEvery_s = 0.5;     // a pair of eyes, while the flat screen
 constexpr double kPanelEvery_s = 0.03;  // its picture, on that screen
 constexpr int kScreenWidth = 1280, kScreenHeight = 800;  // pixels
 
-// OpenXR's structures say of themselves what they are.
-template <class T>
-T typed(XrStructureType type) {
-  T of{};
-  of.type = type;
-  return of;
-}
-
 // Leaves the functions below; caught in runOpenXr.
 struct Over {
   HeadsetEnd how;
 };
-
-Pose poseOf(const XrPosef& of) {
-  return {{of.position.x, of.position.y, of.position.z},
-          Quat(of.orientation.w, of.orientation.x, of.orientation.y, of.orientation.z)};
-}
-
-XrPosef poseOf(const Pose& of) {
-  const Quat& q = of.orientation;
-  const Vec3& p = of.position;
-  return {{float(q.x), float(q.y), float(q.z), float(q.w)}, {float(p.x), float(p.y), float(p.z)}};
-}
-
-EyeView viewOf(const XrView& of) {
-  return {poseOf(of.pose),
-          {std::tan(of.fov.angleLeft), std::tan(of.fov.angleRight), std::tan(of.fov.angleDown),
-           std::tan(of.fov.angleUp)}};
-}
-
-XrFovf fovOf(const FieldOfView& of) {
-  return {float(std::atan(of.left)), float(std::atan(of.right)), float(std::atan(of.up)),
-          float(std::atan(of.down))};
-}
-
-// The runtime that the loader was told of, if any: where it looks, in its order.
-std::string toldOf() {
-  if (const char* named = std::getenv("XR_RUNTIME_JSON"); named && *named) return named;
-  const auto folder = [](const char* variable) {
-    const char* value = std::getenv(variable);
-    return std::string(value ? value : "");
-  };
-  const std::string own = folder("XDG_CONFIG_HOME"), home = folder("HOME");
-  std::vector<std::string> folders{!own.empty() ? own : home + "/.config"};
-  std::istringstream shared(folder("XDG_CONFIG_DIRS"));
-  for (std::string each; std::getline(shared, each, ':');) folders.push_back(each);
-  for (const char* each : {"/etc/xdg", "/etc"}) folders.push_back(each);
-  for (const std::string& each : folders) {
-    const std::string file = each + "/openxr/1/active_runtime.json";
-    std::error_code problem;
-    if (std::filesystem::exists(file, problem)) return file;
-  }
-  return {};
-}
-
-// To the loader one that is broken is none.
-Error noRuntime(const std::string& where) {
-  if (const std::string broken = toldOf(); !broken.empty()) {
-    return {"NO_RUNTIME", "The active OpenXR runtime cannot be used", broken,
-            "Install the headset's software anew, or make another one the active runtime"};
-  }
-  return {"NO_RUNTIME", "No OpenXR runtime is active on this computer", where,
-          "Install the headset's software, such as Monado or SteamVR, and make it the active "
-          "runtime"};
-}
 
 class OpenXrSession {
  public:
@@ -118,23 +55,6 @@ class OpenXrSession {
     int width = 0, height = 0;
   };
   enum class Shows { nothing, eyes, flat };
-  // Of one frame, and what they point to.
-  struct Layers {
-    XrCompositionLayerProjectionView views[2] = {};
-    XrCompositionLayerProjection pair =
-        typed<XrCompositionLayerProjection>(XR_TYPE_COMPOSITION_LAYER_PROJECTION);
-    XrCompositionLayerQuad quads[2] = {
-        typed<XrCompositionLayerQuad>(XR_TYPE_COMPOSITION_LAYER_QUAD),
-        typed<XrCompositionLayerQuad>(XR_TYPE_COMPOSITION_LAYER_QUAD)};
-    const XrCompositionLayerBaseHeader* all[2] = {};
-    std::uint32_t count = 0;
-
-    template <class Layer>
-    void add(const Layer& layer) {
-      all[count++] = reinterpret_cast<const XrCompositionLayerBaseHeader*>(&layer);
-    }
-  };
-
   template <class Call>
   XrResult call(Call&& function);
   void check(XrResult result, const char* function);
@@ -148,13 +68,7 @@ class OpenXrSession {
   bool pollEvents();  // false: it has ended as it was asked to
   void changeState(XrSessionState state);
   void frame();
-  static XrSwapchainSubImage wholeOf(const Chain& chain) {
-    return {chain.handle, {{0, 0}, {chain.width, chain.height}}, 0};
-  }
-  void addShown(Layers& layers);
-  void addPair(Layers& layers);
-  void addStanding(Layers& layers);
-  void addScreen(Layers& layers);
+  void addShown(OpenXrLayers& layers);
   bool locate(XrTime at);
   void showEyes();
   void showFlat();
@@ -212,7 +126,7 @@ void OpenXrSession::check(XrResult result, const char* function) {
   const std::string where = std::string(function) + ", XrResult " + std::to_string(int(result));
   switch (result) {
     case XR_ERROR_RUNTIME_UNAVAILABLE:
-      end(noRuntime(where), false);
+      end(noActiveRuntime(where), false);
     case XR_ERROR_FORM_FACTOR_UNAVAILABLE:
     case XR_ERROR_FORM_FACTOR_UNSUPPORTED:
       end(Error{"NO_HEADSET", "No headset is found", where, "Plug it in, switch it on, try again"},
@@ -598,56 +512,21 @@ void OpenXrSession::showFlat() {
   release(pair_);
 }
 
-void OpenXrSession::addShown(Layers& layers) {
-  if (shows_ == Shows::flat) return addScreen(layers);
+void OpenXrSession::addShown(OpenXrLayers& layers) {
+  const auto whole = [](const Chain& chain) {
+    return XrSwapchainSubImage{chain.handle, {{0, 0}, {chain.width, chain.height}}, 0};
+  };
+  if (shows_ == Shows::flat) {
+    return layers.addScreen(screen_pose_m_, shared_.options.screen_width_m, screen_height_m_,
+                            whole(screen_));
+  }
   if (shows_ != Shows::eyes) return;
   state_.pose_age_ms = 1e-6 * double(monotonic_ns() - pair_shown_.asked_ns);
   state_.most_pose_age_ms = std::max(state_.most_pose_age_ms, state_.pose_age_ms);
-  repeats_ > 1 ? addStanding(layers) : addPair(layers);
-}
-
-void OpenXrSession::addPair(Layers& layers) {
-  for (std::size_t eye = 0; eye < 2; ++eye) {
-    // What it was drawn for and not where the eyes are now: the runtime moves the picture.
-    const EyeView& of_eye = pair_shown_.eyes_m[eye];
-    XrCompositionLayerProjectionView& view = layers.views[eye];
-    view.type = XR_TYPE_COMPOSITION_LAYER_PROJECTION_VIEW;
-    view.pose = poseOf(of_eye.pose);
-    view.fov = fovOf(of_eye.sees);
-    view.subImage = wholeOf(eyes_[eye]);
-  }
-  layers.pair.space = room_;
-  layers.pair.viewCount = 2;
-  layers.pair.views = layers.views;
-  layers.add(layers.pair);
-}
-
-// The last pair as two flat pictures that the runtime places, one before each eye.
-void OpenXrSession::addStanding(Layers& layers) {
-  const double away_m = shared_.options.screen_m;
-  for (std::size_t eye = 0; eye < 2; ++eye) {
-    const EyeView& of_eye = pair_shown_.eyes_m[eye];
-    const FieldOfView& sees = of_eye.sees;
-    const Vec3 middle(0.5 * (sees.left + sees.right), 0.5 * (sees.down + sees.up), -1.0);
-    XrCompositionLayerQuad& quad = layers.quads[eye];
-    quad.space = room_;
-    quad.eyeVisibility = eye == 0 ? XR_EYE_VISIBILITY_LEFT : XR_EYE_VISIBILITY_RIGHT;
-    quad.subImage = wholeOf(eyes_[eye]);
-    quad.pose = poseOf(Pose{of_eye.pose.position + of_eye.pose.orientation * (away_m * middle),
-                            of_eye.pose.orientation});
-    quad.size = {float(away_m * (sees.right - sees.left)), float(away_m * (sees.up - sees.down))};
-    layers.add(quad);
-  }
-}
-
-void OpenXrSession::addScreen(Layers& layers) {
-  XrCompositionLayerQuad& quad = layers.quads[0];
-  quad.space = room_;
-  quad.eyeVisibility = XR_EYE_VISIBILITY_BOTH;
-  quad.subImage = wholeOf(screen_);
-  quad.pose = poseOf(screen_pose_m_);
-  quad.size = {float(shared_.options.screen_width_m), float(screen_height_m_)};
-  layers.add(quad);
+  const OpenXrLayers::Images images{whole(eyes_[0]), whole(eyes_[1])};
+  // What they were drawn for and not where the eyes are now: the runtime moves the pictures.
+  repeats_ > 1 ? layers.addStanding(pair_shown_.eyes_m, shared_.options.screen_m, images)
+               : layers.addPair(pair_shown_.eyes_m, images);
 }
 
 void OpenXrSession::frame() {
@@ -660,11 +539,11 @@ void OpenXrSession::frame() {
     const bool flat = pace_.tooSlow();
     flat ? showFlat() : showEyes();
   }
-  Layers layers;
+  OpenXrLayers layers(room_);
   if (draws) addShown(layers);
-  const XrFrameEndInfo info{
-      XR_TYPE_FRAME_END_INFO,           nullptr,      of.predictedDisplayTime,
-      XR_ENVIRONMENT_BLEND_MODE_OPAQUE, layers.count, layers.count > 0 ? layers.all : nullptr};
+  const XrFrameEndInfo info{XR_TYPE_FRAME_END_INFO,  nullptr,
+                            of.predictedDisplayTime, XR_ENVIRONMENT_BLEND_MODE_OPAQUE,
+                            layers.count(),          layers.all()};
   check(call([&] { return xr_.endFrame(session_, &info); }), "xrEndFrame");
   state_.flat = shows_ == Shows::flat;
   state_.pairs_hz = pace_.pairs_hz();
