@@ -1,4 +1,6 @@
 // `storage list` and `storage share`: the folder of cases, exercises and recordings of a machine.
+#include <sys/stat.h>
+
 #include <cstdio>
 #include <filesystem>
 #include <system_error>
@@ -64,19 +66,20 @@ int listStorageCommand(const std::string& storage, bool open, const Policy& poli
 }
 
 int shareStorageCommand(const std::string& folder, bool json) {
-  if (const Status shared = shareStorage(folder); !shared) {
-    return printError("storage-share", shared.error(), json);
-  }
+  ::umask(022);  // what is made on the way others may pass
+  const auto shared = shareStorage(folder);
+  if (!shared) return printError("storage-share", shared.error(), json);
   const StorageGroups groups;
   if (json) {
-    printAnswer("storage-share",
-                {{"storage", folder}, {"readers", groups.readers}, {"writers", groups.writers}});
+    printAnswer(
+        "storage-share",
+        {{"storage", shared->string()}, {"readers", groups.readers}, {"writers", groups.writers}});
   } else {
     std::printf(
         "%s: the group %s may look at cases and exercises, the group %s may change them, and each\n"
         "keeps recordings of his own. Accounts that make cases belong to both groups.\n"
         "Name the folder as \"storage\" in /etc/trephine/settings.json.\n",
-        folder.c_str(), groups.readers.c_str(), groups.writers.c_str());
+        shared->c_str(), groups.readers.c_str(), groups.writers.c_str());
   }
   return 0;
 }

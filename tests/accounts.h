@@ -42,7 +42,7 @@ class SharedStorage : public ::testing::Test {
   void SetUp() override {
     if (::geteuid() != 0) GTEST_SKIP() << "only root can be other accounts";
     std::filesystem::permissions(folder_.path(), std::filesystem::perms(0755));
-    const Status shared = shareStorage(storage_, kGroups);
+    const auto shared = shareStorage(storage_, kGroups);
     ASSERT_TRUE(shared) << shared.error().sentence();
   }
 

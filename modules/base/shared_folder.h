@@ -4,6 +4,8 @@
 // nothing below does anything to what lies in them. Nothing throws.
 #pragma once
 
+#include <sys/stat.h>
+
 #include <filesystem>
 
 namespace trephine {
@@ -11,7 +13,10 @@ namespace trephine {
 bool isGroups(const std::filesystem::path& folder);
 bool isEachOnesOwn(const std::filesystem::path& folder);
 
-// What was made in a group's folder, with all that is in it: its group may change it as well.
+// Of what lies in a group's folder of that mode: the group may do what the owner may, and whoever
+// may look into the folder may look at it, whatever the umask of its maker. Nothing beyond that.
+mode_t modeInGroups(mode_t own, mode_t folder);
+// What was made in a group's folder, with all that is in it, has that mode; a link is left alone.
 // Whoever made it calls this; a file system without modes is not in the way.
 void giveToGroup(const std::filesystem::path& made);
 // What was made in a folder where each has his own: its group may read it, others not.

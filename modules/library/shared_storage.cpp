@@ -1,5 +1,6 @@
 #include "library/shared_storage.h"
 
+#include <dirent.h>
 #include <fcntl.h>
 #include <grp.h>
 #include <sys/stat.h>
@@ -8,11 +9,12 @@
 #include <algorithm>
 #include <cerrno>
 #include <iterator>
-#include <optional>
+#include <memory>
 #include <string>
 
 #include "base/file.h"
 #include "base/shared_folder.h"
+#include "base/utf8.h"
 
 namespace trephine {
 
@@ -38,50 +40,13 @@ constexpr StoragePart kStorageParts[] = {{"cases", Holds::entries, 02775},
                                          {".parts", Holds::files, 02775},
                                          {"private", Holds::of_their_owners, 03770},
                                          {"sessions", Holds::of_their_owners, 03777},
-                                         {".lock", Holds::nothing, 0664}};
+                                         {".lock", Holds::nothing, 0660}};
 
 Result<gid_t> groupOf(const std::string& name) {
   const group* found = ::getgrnam(name.c_str());
   if (found) return found->gr_gid;
   return Error{"NO_GROUP", "There is no such group on this machine", name,
                "Install Trephine's package, or make it: addgroup --system " + name};
-}
-
-Status give(const fs::path& path, gid_t group, std::optional<mode_t> mode) {
-  if (::lchown(path.c_str(), uid_t(-1), group) != 0) return writeError(path, errno);
-  if (mode && ::chmod(path.c_str(), *mode) != 0) return writeError(path, errno);
-  return {};
-}
-
-Status giveFolder(const fs::path& path, gid_t group, mode_t mode) {
-  if (Status made = makeFolder(path); !made) return made;
-  std::error_code ec;
-  if (fs::is_symlink(path, ec)) {
-    return Error{"CANNOT_WRITE", "This is a link to another folder", path.string(),
-                 "Name the folder itself"};
-  }
-  if (::chown(path.c_str(), 0, group) != 0) return writeError(path, errno);
-  return give(path, group, mode);
-}
-
-Status giveFile(const fs::path& path, gid_t group, mode_t mode) {
-  const int fd = ::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, mode);
-  if (fd < 0) return writeError(path, errno);
-  ::close(fd);
-  return give(path, group, mode);
-}
-
-// What is in it already.
-Status giveInside(const fs::path& folder, gid_t group) {
-  std::error_code ec;
-  auto it = fs::recursive_directory_iterator(folder, ec);
-  for (; !ec && it != fs::end(it); it.increment(ec)) {
-    if (Status given = give(it->path(), group, {}); !given) return given;
-  }
-  for (fs::directory_iterator at(folder, ec), end; !ec && at != end; at.increment(ec)) {
-    giveToGroup(at->path());
-  }
-  return {};
 }
 
 // "/srv/a/../trephine/" is /srv/trephine.
@@ -100,28 +65,40 @@ Status checkPlace(const fs::path& storage) {
   if (!storage.is_absolute()) {
     return notAStorage("The folder must be given from the root on", storage);
   }
+  if (storage.string() != cleanUtf8(storage.string())) {
+    return notAStorage("The name of this folder holds what settings cannot name", storage);
+  }
   std::error_code ec;
   // Where a link lies on the way another folder would be shared than the one that was checked.
-  if (fs::weakly_canonical(storage, ec) != storage || ec) {
-    return notAStorage("There is a link on the way to this folder", storage);
-  }
+  const fs::path reached = fs::weakly_canonical(storage, ec);
+  if (ec) return notAStorage("This folder cannot be reached: " + ec.message(), storage);
+  if (reached != storage) return notAStorage("There is a link on the way to this folder", storage);
   constexpr const char* kSystem[] = {"bin", "boot", "dev", "etc",  "lib", "lib32", "lib64",
                                      "opt", "proc", "run", "sbin", "sys", "usr",   "root"};
   const auto top = std::next(storage.begin());
-  if (std::distance(storage.begin(), storage.end()) < 3 ||
+  const int least = *top == "var" ? 4 : 3;  // names, with the root's
+  if (std::distance(storage.begin(), storage.end()) < least ||
       std::ranges::find(kSystem, top->string()) != std::end(kSystem)) {
     return notAStorage("This folder is the system's", storage);
   }
   return {};
 }
 
-// A file of two names is perhaps another's.
-Status checkNames(const fs::directory_entry& entry) {
-  std::error_code ec;
-  if (entry.symlink_status(ec).type() == fs::file_type::regular && entry.hard_link_count(ec) > 1) {
-    return notAStorage("This file has another name elsewhere", entry.path());
+// A file of two names is perhaps another's, and a link leads elsewhere.
+Status checkEntry(const struct stat& at, const fs::path& path) {
+  if (!S_ISDIR(at.st_mode) && !S_ISREG(at.st_mode)) {
+    return notAStorage("This is neither a file nor a folder", path);
+  }
+  if (S_ISREG(at.st_mode) && at.st_nlink > 1) {
+    return notAStorage("This file has another name elsewhere", path);
   }
   return {};
+}
+
+Status checkEntry(const fs::path& path) {
+  struct stat at {};
+  if (::lstat(path.c_str(), &at) != 0) return {};  // gone meanwhile
+  return checkEntry(at, path);
 }
 
 Status checkInside(const fs::path& folder, Holds holds) {
@@ -133,7 +110,7 @@ Status checkInside(const fs::path& folder, Holds holds) {
         inside->symlink_status(unknown).type() != fs::file_type::directory) {
       return notAStorage("This is none of Trephine's files", inside->path());
     }
-    if (Status good = checkNames(*inside); !good) return good;
+    if (Status good = checkEntry(inside->path()); !good) return good;
   }
   return {};
 }
@@ -156,12 +133,16 @@ Status checkContents(const fs::path& storage) {
     }
     any = true;
     if (part->holds == Holds::of_their_owners) continue;
-    if (Status good = file ? checkNames(*at) : checkInside(at->path(), part->holds); !good)
+    if (Status good = file ? checkEntry(at->path()) : checkInside(at->path(), part->holds); !good)
       return good;
   }
   struct stat own {};
-  if (!any && ::stat(storage.c_str(), &own) == 0 && own.st_gid != 0) {
+  if (::stat(storage.c_str(), &own) != 0) return {};
+  if (!any && own.st_gid != 0) {
     return notAStorage("This folder is empty, and of a group of the system", storage);
+  }
+  if (own.st_mode & (S_IWOTH | S_ISVTX)) {
+    return notAStorage("All accounts of this machine may write into this folder", storage);
   }
   return {};
 }
@@ -170,7 +151,9 @@ Status checkContents(const fs::path& storage) {
 Status checkWay(const fs::path& storage) {
   for (fs::path on = storage.parent_path();; on = on.parent_path()) {
     struct stat at {};
-    if (::stat(on.c_str(), &at) == 0 && (at.st_mode & S_IXOTH) == 0) {
+    const bool there = ::stat(on.c_str(), &at) == 0;
+    if (there && !S_ISDIR(at.st_mode)) return notAStorage("This is a file, not a folder", on);
+    if (there && (at.st_mode & S_IXOTH) == 0) {
       return Error{"CANNOT_REACH", "Other accounts may not pass this folder on the way",
                    on.string(), "Let them pass it (chmod o+x), or name another"};
     }
@@ -178,31 +161,98 @@ Status checkWay(const fs::path& storage) {
   }
 }
 
+// ---- From here on by descriptors: whatever a writer puts in the place of a name meanwhile, what
+// is given away is what was looked at.
+
+class Opened {
+ public:
+  Opened(int folder, const char* name, int how)
+      : fd_(::openat(folder, name, how | O_NOFOLLOW | O_CLOEXEC, 0600)) {}
+  ~Opened() {
+    if (fd_ >= 0) ::close(fd_);
+  }
+  Opened(const Opened&) = delete;
+  Opened& operator=(const Opened&) = delete;
+  int fd() const { return fd_; }
+  bool ok() const { return fd_ >= 0; }
+
+ private:
+  int fd_;
+};
+
+Status give(int fd, gid_t group, mode_t mode, const fs::path& path) {
+  if (::fchown(fd, 0, group) != 0 || ::fchmod(fd, mode) != 0) return writeError(path, errno);
+  return {};
+}
+
+// What is in it already is root's, and the group's to change: who made it has no right of his own.
+Status giveInside(int folder, gid_t group, mode_t mode, const fs::path& path) {
+  DIR* listed = ::fdopendir(::dup(folder));
+  if (!listed) return writeError(path, errno);
+  const std::unique_ptr<DIR, int (*)(DIR*)> closed(listed, &::closedir);
+  for (const dirent* entry; (entry = ::readdir(listed));) {
+    const std::string name = entry->d_name;
+    if (name == "." || name == "..") continue;
+    const fs::path at_path = path / name;
+    const Opened one(folder, name.c_str(), O_RDONLY | O_NONBLOCK);
+    struct stat at {};
+    if (!one.ok() && errno == ENOENT) continue;
+    if (!one.ok() || ::fstat(one.fd(), &at) != 0) {
+      return notAStorage("This is neither a file nor a folder", at_path);
+    }
+    if (Status good = checkEntry(at, at_path); !good) return good;
+    if (Status given = give(one.fd(), group, modeInGroups(at.st_mode, mode), at_path); !given)
+      return given;
+    if (!S_ISDIR(at.st_mode)) continue;
+    if (Status given = giveInside(one.fd(), group, mode, at_path); !given) return given;
+  }
+  return {};
+}
+
+Status givePart(int storage, const StoragePart& part, gid_t group, const fs::path& path) {
+  const bool file = part.holds == Holds::nothing;
+  if (!file && ::mkdirat(storage, part.name, 0700) != 0 && errno != EEXIST) {
+    return writeError(path, errno);
+  }
+  const Opened one(storage, part.name, file ? O_RDWR | O_CREAT | O_NONBLOCK : O_DIRECTORY);
+  struct stat at {};
+  if (!one.ok() || ::fstat(one.fd(), &at) != 0) return writeError(path, errno);
+  if (Status good = checkEntry(at, path); !good) return good;
+  if (Status given = give(one.fd(), group, part.mode, path); !given) return given;
+  if (file || part.holds == Holds::of_their_owners) return {};
+  return giveInside(one.fd(), group, part.mode, path);
+}
+
 }  // namespace
 
-Status shareStorage(const fs::path& given, const StorageGroups& groups) {
+Result<fs::path> shareStorage(const fs::path& given, const StorageGroups& groups) {
   if (::geteuid() != 0) {
     return Error{"NOT_ROOT", "Only an administrator can give a folder to groups", given.string(),
                  "Run it with sudo"};
   }
   const fs::path storage = withoutDots(given);
   for (const auto check : {checkPlace, checkContents, checkWay}) {
-    if (Status good = check(storage); !good) return good;
+    if (Status good = check(storage); !good) return good.error();
   }
   const Result<gid_t> readers = groupOf(groups.readers), writers = groupOf(groups.writers);
   if (!readers) return readers.error();
   if (!writers) return writers.error();
-  constexpr mode_t kLook = 0750;
-  if (Status done = giveFolder(storage, *readers, kLook); !done) return done;
-  for (const StoragePart& part : kStorageParts) {
-    const fs::path path = storage / part.name;
-    const bool file = part.holds == Holds::nothing;
-    Status done =
-        file ? giveFile(path, *writers, part.mode) : giveFolder(path, *writers, part.mode);
-    if (done && !file && part.holds != Holds::of_their_owners) done = giveInside(path, *writers);
-    if (!done) return done;
+  if (Status made = makeFolder(storage); !made) return made.error();
+  const Opened folder(AT_FDCWD, storage.c_str(), O_DIRECTORY);
+  if (!folder.ok()) return writeError(storage, errno);
+  std::error_code ec;
+  if (fs::read_symlink("/proc/self/fd/" + std::to_string(folder.fd()), ec) != storage) {
+    return notAStorage("There is a link on the way to this folder", storage);
   }
-  return {};
+  constexpr mode_t kLook = 0750;
+  if (Status done = give(folder.fd(), *readers, kLook, storage); !done) return done.error();
+  for (const StoragePart& part : kStorageParts) {
+    if (Status done = givePart(folder.fd(), part, *writers, storage / part.name); !done)
+      return done.error();
+  }
+  // Folders on the way that were made now are as the umask has it.
+  if (Status passed = checkWay(storage); !passed) return passed.error();
+  return storage;
 }
 
 }  // namespace trephine

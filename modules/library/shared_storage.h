@@ -17,10 +17,12 @@ struct StorageGroups {
   std::string readers = "trephine", writers = "trephine-teach";
 };
 
-// Makes what is missing, and gives all of it, with what is in it already, to these groups. What is
-// in sessions/ and private/ stays its owner's. Root's to do. Errors: NOT_ROOT, NO_GROUP,
-// NOT_A_STORAGE (relative, a folder of the system, or one that holds anything else), CANNOT_REACH
-// (below a folder that others may not pass), CANNOT_WRITE.
-Status shareStorage(const std::filesystem::path& storage, const StorageGroups& groups = {});
+// Makes what is missing, and gives all of it, with what is in it already, to root and these groups.
+// What is in sessions/ and private/ stays its owner's. Root's to do; a writer who changes names in
+// it meanwhile gets nothing else by it. The folder, as settings name it. Errors: NOT_ROOT,
+// NO_GROUP, NOT_A_STORAGE (relative, a folder of the system or of everybody, or one that holds
+// anything else), CANNOT_REACH (below a folder that others may not pass), CANNOT_WRITE.
+Result<std::filesystem::path> shareStorage(const std::filesystem::path& storage,
+                                           const StorageGroups& groups = {});
 
 }  // namespace trephine

@@ -72,7 +72,7 @@ Vec3 ArmAnswer::tick(const HandSample& sample, bool fresh, bool late, double per
     return Vec3(0.0);
   }
   since_s_ += period_s;
-  if (phase_ == Phase::waiting) return wait(sample);
+  if (phase_ == Phase::waiting) return wait(sample, period_s);
   if (hand_.letsGo(sample)) {
     phase_ = Phase::lost;
     return Vec3(0.0);
@@ -93,12 +93,12 @@ Vec3 ArmAnswer::tick(const HandSample& sample, bool fresh, bool late, double per
   return push(sample.position_m, late, period_s);
 }
 
-Vec3 ArmAnswer::wait(const HandSample& sample) {
+Vec3 ArmAnswer::wait(const HandSample& sample, double period_s) {
   if (since_s_ > patience_s_) {
     phase_ = Phase::untouched;
     return Vec3(0.0);
   }
-  if (!hand_.takes(sample)) return Vec3(0.0);
+  if (!hand_.takes(sample, period_s)) return Vec3(0.0);
   last_m_ = before_last_m_ = sample.position_m;
   since_s_ = 0.0;
   phase_ = Phase::still;

@@ -9,7 +9,7 @@
 
 namespace trephine {
 
-// It begins with a hand on the arm, which moves it for 20 samples. 500 samples in which it goes
+// It begins with a hand on the arm. 500 samples in which it goes
 // slower than 50 mm/s, or any after 3 s, are looked at without a force. Then the arm is pushed for
 // some hundredths of a second, and as long the other way: an arm of the stated mass is then at rest
 // again, at most 3 mm further. Eight times along each axis, half of them each way, with rests of
@@ -55,9 +55,8 @@ class ArmAnswer {
  private:
   static constexpr int kStill = 500, kBefore = 10, kTimes = 8;  // samples; pushes along an axis
   static constexpr int kLongest = 120;                          // samples of one push
-  static constexpr int kMovedSamples = 20;                      // by the hand that takes it
 
-  Vec3 wait(const HandSample& sample);
+  Vec3 wait(const HandSample& sample, double period_s);
   void takeStill(const Vec3& at_m, bool fresh);
   void judgeStill();
   Vec3 push(const Vec3& at_m, bool late, double period_s);
@@ -70,7 +69,7 @@ class ArmAnswer {
   double since_s_ = 0.0, noise_m_ = 0.0;
   Vec3 fast_m_s_{0.0}, slow_m_s_{0.0};  // over 10 and 50 ms
   bool pushed_ = false;
-  HandOnArm hand_{kMovedSamples};
+  HandOnArm hand_;
   Vec3 last_m_{0.0}, before_last_m_{0.0};
   int seen_ = 0, still_ = 0;
   int push_ = 0, tick_ = 0, half_ = 0, broken_ = 0;

@@ -29,7 +29,7 @@ double ForceTest::tick(const HandSample& sample, double period_s) {
   if (phase_ == Phase::waiting) {
     if (since_s_ > kPatience_s) {
       phase_ = Phase::off;
-    } else if (hand_.takes(sample)) {
+    } else if (hand_.takes(sample, period_s)) {
       phase_ = Phase::rising;
       since_s_ = 0.0;
       last_m_ = sample.position_m;

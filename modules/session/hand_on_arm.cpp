@@ -2,20 +2,22 @@
 
 namespace trephine {
 
-bool HandOnArm::takes(const HandSample& sample) {
-  constexpr double kMoved_m = 0.005;
+bool HandOnArm::takes(const HandSample& sample, double period_s) {
+  constexpr double kMoved_m = 0.005, kTooFast_m_s = 0.5, kSpeedOver_s = 0.01;
+  constexpr int kSamples = 20;
   if (sample.no_hand) {
-    seen_ = false;
+    *this = HandOnArm();
     return false;
   }
-  if (!seen_) {
-    seen_at_m_ = sample.position_m;
-    moved_ = 0;
-  }
+  const Vec3 step_m = seen_ ? sample.position_m - last_m_ : Vec3(0.0);
+  last_m_ = sample.position_m;
+  speed_m_s_ += period_s / (period_s + kSpeedOver_s) * (step_m / period_s - speed_m_s_);
+  const bool struck = glm::length(step_m) > kMoved_m || glm::length(speed_m_s_) > kTooFast_m_s;
+  if (!seen_ || struck) seen_at_m_ = sample.position_m;
   seen_ = true;
   moved_ = glm::length(sample.position_m - seen_at_m_) < kMoved_m ? 0 : moved_ + 1;
   by_button_ = sample.button;
-  return by_button_ || moved_ >= samples_;
+  return by_button_ || moved_ >= kSamples;
 }
 
 }  // namespace trephine

@@ -13,22 +13,22 @@ struct HandSample {
 };
 
 // A hand is on the arm once a button is held, and then for as long as that is; or, without, once
-// the arm has been moved 5 mm from where it was first seen, for so many samples that none of them
-// is a jump of an encoder.
+// the arm has been moved 5 mm from where it was first seen, for 20 samples. Where it jumps by 5 mm
+// from one sample to the next, or goes faster than 0.5 m/s over 10 ms, an encoder has jumped or the
+// arm was struck: it is then first seen where it comes to rest.
 class HandOnArm {
  public:
-  explicit HandOnArm(int samples = 1) : samples_(samples) {}
   // Of each sample until it is true: the hand has taken the arm.
-  bool takes(const HandSample& sample);
+  bool takes(const HandSample& sample, double period_s);
   // Of each sample after that.
   bool letsGo(const HandSample& sample) const {
     return sample.no_hand || (by_button_ && !sample.button);
   }
 
  private:
-  int samples_, moved_ = 0;
+  int moved_ = 0;  // samples
   bool seen_ = false, by_button_ = false;
-  Vec3 seen_at_m_{0.0};
+  Vec3 seen_at_m_{0.0}, last_m_{0.0}, speed_m_s_{0.0};
 };
 
 }  // namespace trephine

@@ -8,7 +8,9 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <cstdio>
 #include <fstream>
+#include <thread>
 
 #include "base/file.h"
 #include "base/shared_folder.h"
@@ -144,7 +146,7 @@ TEST_F(Accounts, OnlyAStorageFolderIsShared) {
     struct stat before {
     }, after{};
     ::stat(folder.c_str(), &before);
-    const Status shared = shareStorage(folder, kGroups);
+    const auto shared = shareStorage(folder, kGroups);
     ::stat(folder.c_str(), &after);
     EXPECT_EQ(before.st_mode, after.st_mode) << folder;
     EXPECT_EQ(before.st_gid, after.st_gid) << folder;
@@ -152,7 +154,8 @@ TEST_F(Accounts, OnlyAStorageFolderIsShared) {
   };
   for (const char* system :
        {"/", "/srv", "/srv/", "/srv/.", "/srv//", "/home", "relative/folder", "/tmp/..",
-        "/usr/../srv", "/srv/x/..", "/usr/local/src", "/etc/apt/auth.conf.d", "/var/mail"}) {
+        "/usr/../srv", "/srv/x/..", "/usr/local/src", "/etc/apt/auth.conf.d", "/var/mail",
+        "/var/tmp", "/var/opt", "/srv/a\nb", "/srv/\xff"}) {
     EXPECT_EQ(refused(system), "NOT_A_STORAGE") << system;
   }
   fs::create_directories(folder_ / "home" / "alice");
@@ -172,11 +175,96 @@ TEST_F(Accounts, OnlyAStorageFolderIsShared) {
   fs::create_hard_link(folder_ / "key", folder_ / "locked" / ".lock");
   EXPECT_EQ(refused(folder_ / "locked"), "NOT_A_STORAGE");
   EXPECT_EQ(fs::status(folder_ / "key").permissions(), fs::perms(0600));
+  for (const fs::perms open : {fs::perms(0777), fs::perms(01775)}) {
+    fs::create_directories(folder_ / "everybodys");
+    fs::permissions(folder_ / "everybodys", open);
+    EXPECT_EQ(refused(folder_ / "everybodys"), "NOT_A_STORAGE");
+  }
+  EXPECT_EQ(refused(folder_ / "key" / "storage"), "NOT_A_STORAGE") << "a file is in the way";
   fs::create_directories(folder_ / "closed");
   fs::permissions(folder_ / "closed", fs::perms(0700));
   EXPECT_EQ(refused(folder_ / "closed" / "storage"), "CANNOT_REACH");
   EXPECT_FALSE(fs::exists(folder_ / "closed" / "storage"));
   EXPECT_TRUE(shareStorage(storage_, kGroups)) << "again";
+}
+
+TEST_F(Accounts, ATraineeOpensWhatATeacherSavesWhateverItsUmask) {
+  EXPECT_TRUE(as(kTeacher, [&] {
+    ::umask(077);
+    return CaseLibrary(storage_).save(named("Closed")).ok();
+  }));
+  const std::string id = CaseLibrary(storage_).list().front().id;
+  EXPECT_TRUE(as(kTrainee, [&] { return CaseLibrary(storage_).load(id).ok(); }));
+  EXPECT_FALSE(as(kStranger, [&] { return CaseLibrary(storage_).load(id).ok(); }));
+}
+
+TEST_F(Accounts, WhatATraineeHasMadeBeforeIsNotItsToChangeAnyMore) {
+  const std::string id = savedBy(kTeacher, "Skull one");
+  const fs::path file = storage_ / "cases" / id / "case.json";
+  ASSERT_EQ(::chown(file.c_str(), kTrainee, gid_t(-1)), 0);
+  fs::permissions(file, fs::perms(04666));
+  ASSERT_EQ(::chown((storage_ / "cases" / id).c_str(), kTrainee, gid_t(-1)), 0);
+  ASSERT_TRUE(shareStorage(storage_, kGroups));
+  EXPECT_FALSE(as(kTrainee, [&] { return std::ofstream(file, std::ios::app).good(); }));
+  EXPECT_FALSE(as(kTrainee, [&] { return std::remove(file.c_str()) == 0; }));
+  EXPECT_FALSE(as(kTrainee, [&] { return ::chmod(file.c_str(), 0666) == 0; }));
+  EXPECT_TRUE(as(kTeacher, [&] { return CaseLibrary(storage_).rename(id, "Skull two").ok(); }));
+  EXPECT_EQ(fs::status(file).permissions(), fs::perms(0664));
+}
+
+TEST_F(Accounts, ATraineeCannotKeepTheLock) {
+  EXPECT_FALSE(as(kTrainee, [&] {
+    const int fd = ::open((storage_ / ".lock").c_str(), O_RDONLY | O_CLOEXEC);
+    return fd >= 0 && ::flock(fd, LOCK_EX | LOCK_NB) == 0;
+  }));
+}
+
+TEST_F(Accounts, SharingFollowsNoLinkOutOfTheStorage) {
+  const fs::path secret = folder_ / "secret";
+  fs::create_directories(secret);
+  std::ofstream(secret / "key") << "x";
+  fs::permissions(secret / "key", fs::perms(0600));
+  fs::permissions(secret, fs::perms(0700));
+  for (const char* in : {"tissues", ".parts", "cases"}) {
+    const fs::path link = storage_ / in / "link";
+    fs::create_directory_symlink(secret, link);
+    EXPECT_EQ(shareStorage(storage_, kGroups).error().code, "NOT_A_STORAGE") << in;
+    giveToGroup(link);
+    fs::remove(link);
+  }
+  ASSERT_EQ(::mkfifo((storage_ / "tissues" / "fifo").c_str(), 0600), 0);
+  EXPECT_EQ(shareStorage(storage_, kGroups).error().code, "NOT_A_STORAGE");
+  fs::remove(storage_ / "tissues" / "fifo");
+  EXPECT_EQ(fs::status(secret / "key").permissions(), fs::perms(0600));
+  EXPECT_EQ(fs::status(secret).permissions(), fs::perms(0700));
+}
+
+// A teacher puts a link in the place of a folder and takes it away, as fast as it can.
+TEST_F(Accounts, WhoChangesNamesWhileItIsSharedGetsNothingElse) {
+  const fs::path secret = folder_ / "secret", inside = storage_ / "cases" / "a";
+  fs::create_directories(secret);
+  fs::create_directories(inside / "real");
+  for (int i = 0; i < 50; ++i) {
+    for (const fs::path& at : {secret, inside / "real"}) {
+      std::ofstream(at / std::to_string(i)) << "x";
+      fs::permissions(at / std::to_string(i), fs::perms(0600));
+    }
+  }
+  fs::create_directory_symlink(secret, folder_ / "link");
+  std::jthread teacher([&](const std::stop_token& stop) {
+    while (!stop.stop_requested()) {
+      ::renameat2(AT_FDCWD, (inside / "real").c_str(), AT_FDCWD, (folder_ / "link").c_str(),
+                  RENAME_EXCHANGE);
+    }
+  });
+  for (int i = 0; i < 60; ++i) (void)shareStorage(storage_, kGroups);
+  teacher = {};
+  for (const auto& file : fs::directory_iterator(secret)) {
+    struct stat at {};
+    ASSERT_EQ(::stat(file.path().c_str(), &at), 0);
+    ASSERT_EQ(at.st_mode & 0777, 0600u);
+    ASSERT_EQ(at.st_gid, 0u);
+  }
 }
 
 TEST(SharedFolder, OneOfAPersonsOwnIsLeftAsItIs) {

@@ -3,48 +3,81 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 namespace trephine {
 namespace {
+
+constexpr double kPeriod_s = 1e-3;
 
 HandSample sampleAt(double x_m, bool button = false, bool no_hand = false) {
   return {Vec3(x_m, 0.0, 0.0), button, no_hand, false};
 }
 
+// Whether a hand has taken an arm that goes there at this speed, and then lies for half a second.
+struct ArmThatLay {
+  HandOnArm hand;
+  double x_m = 0.0;
+
+  bool taken(double to_m, double speed_m_s, bool no_hand = false) {
+    const int ticks = std::max(1, int(std::lround(std::abs(to_m - x_m) / speed_m_s / kPeriod_s)));
+    const double step_m = (to_m - x_m) / ticks;
+    bool taken = false;
+    for (int i = 0; i < ticks + 500; ++i) {
+      if (i < ticks) x_m += step_m;
+      taken = taken || hand.takes(sampleAt(x_m, false, no_hand), kPeriod_s);
+    }
+    return taken;
+  }
+};
+
 TEST(HandOnArm, AButtonIsAHandForAsLongAsItIsHeld) {
   HandOnArm hand;
-  EXPECT_FALSE(hand.takes(sampleAt(0.0)));
-  EXPECT_TRUE(hand.takes(sampleAt(0.0, true)));
+  EXPECT_FALSE(hand.takes(sampleAt(0.0), kPeriod_s));
+  EXPECT_TRUE(hand.takes(sampleAt(0.0, true), kPeriod_s));
   EXPECT_FALSE(hand.letsGo(sampleAt(0.1, true)));
   EXPECT_TRUE(hand.letsGo(sampleAt(0.1)));
 }
 
 TEST(HandOnArm, AnArmThatIsMovedHasAHandUntilItSaysThatItHasNone) {
-  HandOnArm hand;
-  EXPECT_FALSE(hand.takes(sampleAt(0.2)));
-  EXPECT_FALSE(hand.takes(sampleAt(0.2049)));
-  EXPECT_TRUE(hand.takes(sampleAt(0.2051)));
-  EXPECT_FALSE(hand.letsGo(sampleAt(0.2)));
-  EXPECT_TRUE(hand.letsGo(sampleAt(0.2, false, true)));
+  ArmThatLay arm;
+  EXPECT_FALSE(arm.taken(0.0, 0.1));
+  EXPECT_FALSE(arm.taken(0.0049, 0.1));
+  EXPECT_TRUE(arm.taken(0.0055, 0.1));
+  EXPECT_FALSE(arm.hand.letsGo(sampleAt(0.0)));
+  EXPECT_TRUE(arm.hand.letsGo(sampleAt(0.0, false, true)));
 }
 
-TEST(HandOnArm, AJumpOfAnEncoderIsNoHand) {
-  HandOnArm hand(3);
-  for (int i = 0; i < 10; ++i) {
-    EXPECT_FALSE(hand.takes(sampleAt(0.0)));
-    EXPECT_FALSE(hand.takes(sampleAt(0.02)));
-    EXPECT_FALSE(hand.takes(sampleAt(0.02)));
+TEST(HandOnArm, AJumpOfAnEncoderThatComesBackIsNoHand) {
+  HandOnArm hand;
+  for (int i = 0; i < 1000; ++i) {
+    EXPECT_FALSE(hand.takes(sampleAt(i % 50 < 15 ? 0.02 : 0.0), kPeriod_s));
   }
-  EXPECT_TRUE(hand.takes(sampleAt(0.02)));
+}
+
+TEST(HandOnArm, AnEncoderThatJumpsForGoodIsNoHand) {
+  for (const double jump_m : {0.0051, 0.0065, 0.01, 0.05, 0.2}) {
+    ArmThatLay arm;
+    EXPECT_FALSE(arm.taken(0.0, 0.1));
+    EXPECT_FALSE(arm.taken(jump_m, 1e3)) << jump_m;
+    EXPECT_TRUE(arm.taken(jump_m + 0.006, 0.1)) << "moved from there";
+  }
+}
+
+TEST(HandOnArm, AnArmThatIsStruckAndThenLiesHasNone) {
+  for (const auto& [by_m, at_m_s] : {std::pair(0.008, 0.9), {0.012, 1.5}, {0.03, 0.7}}) {
+    ArmThatLay arm;
+    EXPECT_FALSE(arm.taken(0.0, 0.1));
+    EXPECT_FALSE(arm.taken(by_m, at_m_s)) << by_m;
+  }
 }
 
 TEST(HandOnArm, AnArmInItsHolderIsMovedFromWhereItLeavesIt) {
-  HandOnArm hand;
-  EXPECT_FALSE(hand.takes(sampleAt(0.0)));
-  EXPECT_FALSE(hand.takes(sampleAt(0.1, true, true)))
-      << "nobody holds it, whatever its button says";
-  EXPECT_FALSE(hand.takes(sampleAt(0.1)));
-  EXPECT_FALSE(hand.takes(sampleAt(0.102)));
-  EXPECT_TRUE(hand.takes(sampleAt(0.106)));
+  ArmThatLay arm;
+  EXPECT_FALSE(arm.taken(0.1, 0.1, true));
+  EXPECT_FALSE(arm.hand.takes(sampleAt(0.1, true, true), kPeriod_s)) << "whatever its button says";
+  EXPECT_FALSE(arm.taken(0.102, 0.1));
+  EXPECT_TRUE(arm.taken(0.106, 0.1));
 }
 
 }  // namespace
