@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cerrno>
 #include <csignal>
 #include <cstdio>
 #include <cstring>
@@ -69,6 +70,11 @@ int guarded(const std::string& name, bool json, const std::function<int()>& work
   std::signal(SIGXFSZ, SIG_IGN);  // then the write fails and says so
   try {
     const int code = work();
+    if (code == 0 && (std::fflush(stdout) != 0 || std::ferror(stdout))) {
+      std::fprintf(stderr, "The answer could not be written: %s. Send it to another place.\n",
+                   std::strerror(errno));
+      return 1;
+    }
     return signalReceived() != 0 ? 128 + signalReceived() : code;
   } catch (const std::bad_alloc&) {
     return printError(name, {"OUT_OF_MEMORY", "There is not enough memory", "",

@@ -1,8 +1,5 @@
 // `commission`: whether this machine is fit, as JSON, in lines and as a page to be printed.
-#include <unistd.h>
-
 #include <algorithm>
-#include <cerrno>
 #include <cstdio>
 #include <tuple>
 
@@ -21,19 +18,28 @@ namespace trephine {
 int commissionCommand(const CommissionArguments& arguments, const Policy& policy, bool json,
                       const Progress& progress) {
   const char* name = "commission";
+  const std::filesystem::path out = arguments.out;
   if (arguments.say_progress) reportInLines();
   if (arguments.arms_alone) {
-    printAnswer(name, {{"checks", toJson(tryArms(arguments.patience_s, progress))}});
-    return 0;
+    const Json checks = toJson(tryArms(arguments.patience_s, progress));
+    // Not to stdout, to which drivers may write as well.
+    const Status told = writeTextFile(out / kArmsAnswer, Json{{"checks", checks}}.dump());
+    return told ? 0 : printError(name, told.error(), json);
   }
   const auto storage = storageOf(arguments.storage, policy);
   if (!storage) return printError(name, storage.error(), json);
-  const std::filesystem::path out = arguments.out;
   if (Status made = makeFolder(out); !made) return printError(name, made.error(), json);
-  // Before the minutes that it takes.
-  if (::access(out.c_str(), W_OK) != 0) return printError(name, writeError(out, errno), json);
+  // Room for its pages, before the minutes that it takes.
+  const std::filesystem::path room = out / ".trephine-commission";
+  if (Status fits = writeTextFile(room, std::string(100'000, ' ')); !fits) {
+    const Error& why = fits.error();
+    return printError(name, {why.code, why.what, out.string(), why.next}, json);
+  }
+  std::error_code ec;
+  std::filesystem::remove(room, ec);
   CommissionOptions options;
   options.storage = *storage;
+  options.storage_is_set = *storage == policy.storage;
   options.seconds = arguments.seconds;
   options.patience_s = arguments.patience_s;
   for (const ListedCase& one : CaseLibrary(*storage).list()) {
@@ -48,11 +54,7 @@ int commissionCommand(const CommissionArguments& arguments, const Policy& policy
   const auto before = lastCommissioning(state.value_or(std::filesystem::path()), policy.folder);
   if (before) changes = changesSince(*before, *made);
   const std::string text = toJson(*made).dump(1) + "\n";
-  Status written = writeTextFile(out / "commission.json", text);
-  if (written) written = writeTextFile(out / "commission.html", toHtml(*made, changes));
   const std::string recommended = toJson(made->recommended).dump(2) + "\n";
-  if (written) written = writeTextFile(out / "recommended.json", recommended);
-  if (!written) return printError(name, written.error(), json);
   // The next compares with it, and what is recommended here stands from now on.
   for (const auto& [folder, file, words] :
        {std::tuple(state, "commission.json", &text),
@@ -62,6 +64,10 @@ int commissionCommand(const CommissionArguments& arguments, const Policy& policy
     if (kept) kept = writeTextFile(*folder / file, *words);
     if (!kept) spdlog::warn("{} is not kept for the next time: {}", file, kept.error().what);
   }
+  Status written = writeTextFile(out / "commission.json", text);
+  if (written) written = writeTextFile(out / "commission.html", toHtml(*made, changes));
+  if (written) written = writeTextFile(out / "recommended.json", recommended);
+  if (!written) return printError(name, written.error(), json);
   if (json) {
     Json answer = toJson(*made);
     answer["changes"] = toJson(changes);

@@ -338,8 +338,10 @@ int measureDevicesCommand(const DeviceArguments& arguments, const std::string& o
         tryDevice({arguments.benches[0], arguments.one == "unplugged", arguments.wait_s},
                   arguments.recording);
     if (!trial) return printError(kName, trial.error(), true);
-    printAnswer(kName, toJson(*trial));
-    return 0;
+    // Not to stdout, to which drivers may write as well.
+    const Status told =
+        writeTextFile(std::filesystem::path(out) / kTrialAnswer, toJson(*trial).dump());
+    return told ? 0 : printError(kName, told.error(), true);
   }
   DeviceOptions options{{}, arguments.seconds, arguments.trials};
   for (const std::string& library : arguments.benches) options.benches.emplace_back(library);

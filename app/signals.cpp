@@ -1,5 +1,6 @@
 #include "app/signals.h"
 
+#include <time.h>
 #include <unistd.h>
 
 #include <csignal>
@@ -10,7 +11,11 @@ namespace {
 
 constexpr unsigned kGrace_s = 30;  // a large volume may still have to be saved
 
+// A SIGTERM that comes again so soon is the same wish of another, such as a parent that ends.
+constexpr time_t kSame_s = 2;
+
 volatile std::sig_atomic_t received = 0;
+volatile time_t received_at_s = 0;
 Progress* work = nullptr;
 
 void endNow() {
@@ -19,8 +24,14 @@ void endNow() {
 
 // On any thread, the haptic one too: async-signal-safe calls alone.
 void onSignal(int signal) {
-  if (received != 0) endNow();
+  timespec now{};
+  ::clock_gettime(CLOCK_MONOTONIC, &now);
+  if (received != 0) {
+    if (signal == SIGTERM && now.tv_sec - received_at_s <= kSame_s) return;
+    endNow();
+  }
   received = signal;
+  received_at_s = now.tv_sec;
   work->cancel();
   ::alarm(kGrace_s);
 }

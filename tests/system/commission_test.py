@@ -2,6 +2,7 @@
 
 import json
 import os
+import re
 import resource
 import shutil
 import subprocess
@@ -9,7 +10,7 @@ import tempfile
 import unittest
 from pathlib import Path
 
-from lab_support import LAB, without_display
+from lab_support import LAB, main, without_display
 
 SECONDS = "0.3"
 
@@ -19,13 +20,16 @@ class Commission(unittest.TestCase):
         temporary = tempfile.TemporaryDirectory()
         self.addCleanup(temporary.cleanup)
         self.folder = Path(temporary.name)
+        self.temporary = self.folder / "tmp"
+        self.temporary.mkdir()
 
-    def run_it(self, environment=None, before=None, storage=None, more=()):
+    def run_it(self, environment=None, before=None, storage=None, more=(), around=()):
         environment = dict(environment or os.environ, XDG_STATE_HOME=str(self.folder / "state"),
                            XDG_CONFIG_HOME=str(self.folder / "config"),
-                           XDG_DATA_HOME=str(self.folder / "data"))
+                           XDG_DATA_HOME=str(self.folder / "data"), TMPDIR=str(self.temporary))
         done = subprocess.run(
-            [LAB, "commission", "--json", "--seconds", SECONDS, "--out", str(self.folder / "out"),
+            [*around, LAB, "commission", "--json", "--seconds", SECONDS,
+             "--out", str(self.folder / "out"),
              "--storage", str(storage or self.folder / "storage"), *more],
             env=environment, preexec_fn=before, capture_output=True, text=True, timeout=240)
         self.assertEqual(done.returncode, 0, done.stderr[-500:])
@@ -60,7 +64,8 @@ class Commission(unittest.TestCase):
 
     def test_without_a_display_what_is_drawn_fails_and_says_so(self):
         checks = self.run_it(without_display())
-        for name in ("opengl", "frame_time"):
+        for name in ("screen", "opengl", "volume_edge", "frame_time", "removal_to_pixel",
+                     "hand_to_tool"):
             self.assertEqual(checks[name]["verdict"], "fail")
             self.assertTrue(checks[name]["next"])
 
@@ -104,10 +109,43 @@ class Commission(unittest.TestCase):
         self.assertIsNone(checks["disk_write"]["value"], "on a full one no speed can be told")
         self.assertIn("space", checks["disk_write"]["next"])
 
+    def test_a_small_screen_little_memory_and_no_loader_are_said(self):
+        if os.geteuid() != 0:
+            self.skipTest("only root can put another /proc/meminfo in the place of this one")
+        (self.folder / "lib").mkdir()
+        (self.folder / "lib" / "libopenxr_loader.so.1").write_text("")
+        little = self.folder / "meminfo"
+        little.write_text(re.sub(r"MemAvailable: *\d+", "MemAvailable: 1000000",
+                                 Path("/proc/meminfo").read_text()))
+        checks = self.run_it(
+            dict(os.environ, LD_LIBRARY_PATH=str(self.folder / "lib")),
+            around=("xvfb-run", "-a", "-s", "-screen 0 640x400x24", "unshare", "-m", "sh", "-c",
+                    'mount --bind "$0" /proc/meminfo && exec "$@"', str(little)))
+        for name, verdict in (("screen", "fail"), ("memory", "fail"), ("headset", "warn")):
+            self.assertEqual(checks[name]["verdict"], verdict, checks[name])
+
+    def test_a_full_folder_for_the_page_is_said_before_the_minutes_that_it_takes(self):
+        if os.geteuid() != 0:
+            self.skipTest("only root can mount a small disk")
+        full = self.folder / "full"
+        full.mkdir()
+        subprocess.run(["mount", "-t", "tmpfs", "-o", "size=8k", "tmpfs", str(full)], check=True)
+        self.addCleanup(subprocess.run, ["umount", str(full)], check=True)
+        done = subprocess.run([LAB, "commission", "--json", "--out", str(full), "--storage",
+                               str(self.folder)], capture_output=True, text=True, timeout=20)
+        error = json.loads(done.stdout)["error"]
+        self.assertEqual((done.returncode, error["code"]), (1, "CANNOT_WRITE"))
+        self.assertIn("space", error["next"])
+        self.assertEqual(list(full.iterdir()), [])
+
     def test_an_ill_driver_is_a_check_that_fails_and_all_else_is_measured(self):
         plugins = self.folder / "plugins"
         shutil.copytree(os.environ["PLUGINS"], plugins)
         shutil.copy(os.environ["ILL_PLUGIN_FILE"], plugins)
+        checks = self.run_it(dict(without_display(), TREPHINE_PLUGINS=str(plugins),
+                                  ILL_PLUGIN="talks"), more=("--wait", "0.1"))
+        self.assertEqual(checks["arms"]["verdict"], "warn", "one that talks does not")
+        self.assertEqual(checks["arms"]["value"], 0)
         for how, said in (("ends", "ended the program"), ("blocks", "does not answer")):
             checks = self.run_it(dict(without_display(), TREPHINE_PLUGINS=str(plugins),
                                       ILL_PLUGIN=how), more=("--wait", "0.1"))
@@ -116,8 +154,14 @@ class Commission(unittest.TestCase):
                 self.assertIn(said, checks[name]["remark"])
                 self.assertIn("driver", checks[name]["next"])
             self.assertEqual(checks["clock"]["verdict"], "pass")
-        left = [path.name for path in Path(tempfile.gettempdir()).glob(".trephine-arms-*")]
-        self.assertEqual(left, [])
+        self.assertEqual(list(self.temporary.iterdir()), [])
+
+    def test_no_folder_for_temporary_files_is_said_of_it_and_not_of_devices(self):
+        self.temporary = self.folder / "gone"
+        checks = self.run_it(without_display())
+        for name in ("arms", "arm_encoders", "arm_forces"):
+            self.assertEqual(checks[name]["verdict"], "fail")
+            self.assertIn("TMPDIR", checks[name]["next"])
 
     def test_loaded_cores_make_ticks_late(self):
         loads = [subprocess.Popen(["sh", "-c", "while :; do :; done"])
@@ -180,4 +224,4 @@ class CommissionArms(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    unittest.main()
+    main()

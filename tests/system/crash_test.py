@@ -9,7 +9,7 @@ import time
 import unittest
 from pathlib import Path
 
-from lab_support import SCENES, WINDOW, lab
+from lab_support import SCENES, WINDOW, lab, main
 
 
 def start(state, out):
@@ -61,4 +61,4 @@ class Crash(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    unittest.main()
+    main()

@@ -10,7 +10,7 @@ import time
 import unittest
 from pathlib import Path
 
-from lab_support import LAB, PATIENCE_S, SCENES, SOURCE, WINDOW, EndingTest, lab, small_head
+from lab_support import LAB, PATIENCE_S, SCENES, SOURCE, WINDOW, EndingTest, lab, main, small_head
 
 SIGNALS = (signal.SIGTERM, signal.SIGINT, signal.SIGHUP)
 
@@ -48,6 +48,28 @@ class Signals(EndingTest):
                 self.assertEqual(code, 128 + by)
                 self.assert_error(answer, "CANCELLED")
         self.assertEqual([f for f in out.rglob("*.part*")], [])
+
+    def test_a_sigterm_that_comes_twice_is_one_and_a_second_sigint_ends_at_once(self):
+        for by, code in ((signal.SIGTERM, 128 + signal.SIGTERM), (signal.SIGINT, None)):
+            process = self.start(LAB, "run", SCENES / "cranium.json", "--seconds", 3000, "--out",
+                                 self.folder / by.name, "--json")
+            self.wait_for(process, lambda: listens(process))
+            time.sleep(0.3)
+            process.send_signal(by)
+            process.send_signal(by)
+            said, _ = process.communicate(timeout=PATIENCE_S)
+            if code:
+                self.assertEqual(process.returncode, code)
+                self.assertEqual(json.loads(said)["error"]["code"], "CANCELLED")
+            else:
+                self.assertIn(process.returncode, (128 + by, -by))
+
+    def test_an_answer_that_cannot_be_written_is_no_success(self):
+        with open("/dev/full", "w") as full:
+            done = subprocess.run([LAB, "storage", "list", "--storage", self.folder, "--json"],
+                                  stdout=full, stderr=subprocess.PIPE, text=True)
+        self.assertEqual(done.returncode, 1)
+        self.assertIn("could not be written", done.stderr)
 
     def test_an_import_and_a_replay_end_on_a_signal(self):
         lab("phantom", "cranium", "--out", self.folder / "ct")
@@ -210,4 +232,4 @@ class Damage(EndingTest):
 
 
 if __name__ == "__main__":
-    unittest.main()
+    main()

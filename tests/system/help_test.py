@@ -5,7 +5,7 @@ import re
 import subprocess
 import unittest
 
-from lab_support import LAB, SOURCE
+from lab_support import LAB, SOURCE, main
 
 HELP = SOURCE / "resources" / "help"
 
@@ -48,4 +48,4 @@ class Help(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    unittest.main()
+    main()

@@ -6,7 +6,7 @@ import shutil
 import subprocess
 import unittest
 
-from lab_support import LAB, SCENES, SOURCE, LabTest, lab
+from lab_support import LAB, SCENES, SOURCE, LabTest, lab, main
 
 DEVICES = SOURCE / "resources" / "devices"
 
@@ -123,4 +123,4 @@ class MeasureDevices(LabTest):
 
 
 if __name__ == "__main__":
-    unittest.main()
+    main()

@@ -10,7 +10,7 @@ import unittest
 from pathlib import Path
 
 from lab_support import (
-    LAB, SCENES, SHIPPED, SOURCE, WINDOW, LabTest, first_ten_seconds, lab, small_head,
+    LAB, SCENES, SHIPPED, SOURCE, WINDOW, LabTest, first_ten_seconds, lab, main, small_head,
     small_scene, without_display)
 
 IMPORT_KEYS = {
@@ -525,4 +525,4 @@ class BadInput(LabTest):
 
 
 if __name__ == "__main__":
-    unittest.main()
+    main()

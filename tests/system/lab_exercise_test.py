@@ -4,7 +4,7 @@ import os
 import subprocess
 import unittest
 
-from lab_support import LAB, SCENES, LabTest, lab
+from lab_support import LAB, SCENES, LabTest, lab, main
 
 SCENE = SCENES / "liver-one-arm.json"
 
@@ -56,4 +56,4 @@ class Exercise(LabTest):
 
 
 if __name__ == "__main__":
-    unittest.main()
+    main()

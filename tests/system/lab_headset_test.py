@@ -3,7 +3,7 @@
 import os
 import unittest
 
-from lab_support import LabTest, lab
+from lab_support import LabTest, lab, main
 
 
 class MeasureHeadset(LabTest):
@@ -48,4 +48,4 @@ class RealRuntime(LabTest):
 
 
 if __name__ == "__main__":
-    unittest.main()
+    main()

@@ -9,8 +9,8 @@ import subprocess
 import time
 import unittest
 
-from lab_support import (LAB, PATIENCE_S, SCENES, TRAINEE, WINDOW, LabTest, TraineeTest,
-                         without_display)
+from lab_support import (
+    LAB, PATIENCE_S, SCENES, TRAINEE, WINDOW, LabTest, TraineeTest, main, without_display)
 
 PRODUCT = SCENES / "cranium-one-arm.json"
 
@@ -249,4 +249,4 @@ class LockedWindow(TraineeTest):
 
 
 if __name__ == "__main__":
-    unittest.main()
+    main()

@@ -6,7 +6,7 @@ import subprocess
 import unittest
 from pathlib import Path
 
-from lab_support import LAB, LabTest, lab, without_display
+from lab_support import LAB, LabTest, lab, main, without_display
 
 
 class Stability(LabTest):
@@ -251,4 +251,4 @@ class BadInput(LabTest):
 
 
 if __name__ == "__main__":
-    unittest.main()
+    main()

@@ -3,7 +3,7 @@
 import json
 import unittest
 
-from lab_support import SCENES, LabTest, data_folder, lab
+from lab_support import SCENES, LabTest, data_folder, lab, main
 
 ALL = sorted(file.stem for file in SCENES.glob("*.json"))
 CRANIAL = [name for name in ALL if json.loads((SCENES / f"{name}.json").read_text())["anatomy"] == "cranium"]
@@ -53,4 +53,4 @@ class OtherCases(LabTest):
 
 
 if __name__ == "__main__":
-    unittest.main()
+    main()

@@ -11,7 +11,7 @@ import time
 import unittest
 from pathlib import Path
 
-from lab_support import LAB, SCENES, SHIPPED, LabTest, data_folder, first_ten_seconds, lab
+from lab_support import LAB, SCENES, SHIPPED, LabTest, data_folder, first_ten_seconds, lab, main
 
 SKIPPED = 77
 
@@ -187,4 +187,4 @@ if __name__ == "__main__":
     if data_folder() is None:
         print("skipped: TREPHINE_TEST_DATA is not set, and these tests need the real CT")
         sys.exit(SKIPPED)
-    unittest.main()
+    main()

@@ -6,7 +6,7 @@ import struct
 import subprocess
 import unittest
 
-from lab_support import LAB, SCENES, LabTest, data_folder, lab
+from lab_support import LAB, SCENES, LabTest, data_folder, lab, main
 
 GROWN = {"schema", "build", "name", "voxels", "ml", "seconds", "leaked", "hu", "steps"}
 IN_LIVER = "-60,-20,20"  # of the built-in abdomen
@@ -267,4 +267,4 @@ class GrowReal(LabTest):
 
 
 if __name__ == "__main__":
-    unittest.main()
+    main()

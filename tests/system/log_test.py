@@ -7,7 +7,7 @@ import re
 import subprocess
 import unittest
 
-from lab_support import LAB, SCENES, PatientsScanTest, lab
+from lab_support import LAB, SCENES, PatientsScanTest, lab, main
 
 
 class Import(PatientsScanTest):
@@ -134,4 +134,4 @@ class Exercise(PatientsScanTest):
 
 
 if __name__ == "__main__":
-    unittest.main()
+    main()

@@ -13,7 +13,7 @@ import time
 import unittest
 from pathlib import Path
 
-from lab_support import LAB, PATIENCE_S, SCENES, WINDOW, LabTest, lab, without_display
+from lab_support import LAB, PATIENCE_S, SCENES, WINDOW, LabTest, lab, main, without_display
 
 MB = 2**20
 
@@ -195,4 +195,4 @@ class Window(UnderALimit, LabTest):
 
 
 if __name__ == "__main__":
-    unittest.main()
+    main()

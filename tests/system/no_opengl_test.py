@@ -11,7 +11,7 @@ import time
 import unittest
 from pathlib import Path
 
-from lab_support import SCENES, WINDOW, LabTest, lab
+from lab_support import SCENES, WINDOW, LabTest, lab, main
 
 LIMIT_S = 30
 # Where a context cannot be made, where only an old one can, and where Qt would draw elsewhere.
@@ -206,4 +206,4 @@ if __name__ == "__main__":
     if not shutil.which("Xvfb"):
         print("SKIP: there is no Xvfb to draw on")
         sys.exit(77)
-    unittest.main()
+    main()

@@ -13,7 +13,7 @@ import tempfile
 import unittest
 from pathlib import Path
 
-from lab_support import LAB, SOURCE, WINDOW
+from lab_support import LAB, SOURCE, WINDOW, main
 
 BUILD = Path(LAB).parents[1]
 
@@ -142,4 +142,4 @@ class Package(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    unittest.main()
+    main()

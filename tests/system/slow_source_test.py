@@ -11,7 +11,7 @@ import time
 import unittest
 from pathlib import Path
 
-from lab_support import LAB, PATIENCE_S
+from lab_support import LAB, PATIENCE_S, main
 
 SLOW_SOURCE = os.environ["SLOW_SOURCE"]
 STICK = 5e6  # bytes a second
@@ -72,4 +72,4 @@ class SlowSource(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    unittest.main()
+    main()

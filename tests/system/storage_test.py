@@ -4,7 +4,7 @@ import json
 import subprocess
 import unittest
 
-from lab_support import LAB, LabTest, TraineeTest
+from lab_support import LAB, LabTest, TraineeTest, main
 
 
 class StorageList(LabTest):
@@ -27,4 +27,4 @@ class StorageOfSettings(TraineeTest):
 
 
 if __name__ == "__main__":
-    unittest.main()
+    main()

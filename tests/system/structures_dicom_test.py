@@ -4,7 +4,7 @@ threshold, an order of structures that overlap. What is written is read by pydic
 import subprocess
 import unittest
 
-from lab_support import LAB, LabTest, lab
+from lab_support import LAB, LabTest, lab, main
 
 try:
     import numpy as np
@@ -159,4 +159,4 @@ class Order(LabTest):
 
 
 if __name__ == "__main__":
-    unittest.main()
+    main()

@@ -9,7 +9,7 @@ import subprocess
 import unittest
 import zlib
 
-from lab_support import LabTest, lab
+from lab_support import LabTest, lab, main
 
 NIFTI_TOOL = shutil.which("nifti_tool")
 UNU = shutil.which("teem-unu") or shutil.which("unu")
@@ -229,4 +229,4 @@ class Nrrd(Places, LabTest):
 
 
 if __name__ == "__main__":
-    unittest.main()
+    main()

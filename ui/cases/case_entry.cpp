@@ -57,7 +57,8 @@ QString cardWords(const CaseEntry& entry) {
       lines << verdictWord(*entry.record.verdict);
     }
     const std::size_t structures = entry.record.structures.size();
-    if (structures > 0) lines << tr("%1 structures").arg(structures);
+    if (structures == 1) lines << tr("1 structure");
+    if (structures > 1) lines << tr("%1 structures").arg(structures);
   }
   return lines.join('\n');
 }

@@ -108,8 +108,9 @@ class SeriesDelegate : public QStyledItemDelegate {
     bold.setBold(true);
     p.setFont(bold);
     p.setPen(colours::kText);
-    p.drawText(row, Qt::AlignVCenter,
-               QFontMetrics(bold).elidedText(index.data().toString(), Qt::ElideRight, row.width()));
+    p.drawText(
+        row, Qt::AlignVCenter,
+        QFontMetrics(bold).elidedText(index.data().toString(), Qt::ElideMiddle, row.width()));
     row.translate(0, line);
     p.setFont(option.font);
     p.setPen(colours::kQuiet);

@@ -32,14 +32,17 @@ void FitnessLine::look() {
   if (phase != Phase::empty && phase != Phase::ready) return;
   StartSurroundings here;
   here.storage = bench_.storage();
+  here.storage_is_set = bench_.storage() == bench_.workstation().policy().storage;
   here.driver = bench_.view().openGlDescription();
   // All screens together, as a program without a window sees them.
   const QScreen* screen = QGuiApplication::primaryScreen();
   const QSizeF pixels = QSizeF(screen->virtualSize()) * screen->devicePixelRatio();
-  here.screen = {int(pixels.width()), int(pixels.height())};
+  // Qt counts whole points, which are fewer pixels where one has a fraction of them.
+  here.screen = {qCeil(pixels.width()), qCeil(pixels.height())};
   looking_.run(
       [here, folders = commissionFolders(bench_.workstation().policy()),
        arms = bench_.workstation().opensArms()](const Progress& progress) -> Result<StartWords> {
+        if (const auto away = storageWords(here)) return *away;
         const auto last = lastCommissioning(folders.own, folders.hospital);
         if (!last) return startWords({}, {});
         StartSurroundings with = here;

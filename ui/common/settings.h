@@ -4,6 +4,7 @@
 #pragma once
 
 #include <QByteArray>
+#include <QFileInfo>
 #include <QSettings>
 #include <QStandardPaths>
 #include <QString>
@@ -13,9 +14,12 @@
 namespace trephine {
 
 inline QSettings windowSettings() {
-  return QSettings(
-      QStandardPaths::writableLocation(QStandardPaths::AppConfigLocation) + "/window.ini",
-      QSettings::IniFormat);
+  const QString file =
+      QStandardPaths::writableLocation(QStandardPaths::AppConfigLocation) + "/window.ini";
+  // A pipe in its place would never be read to its end.
+  const QFileInfo there(file);
+  const bool usable = !there.exists() || there.isFile();
+  return QSettings(usable ? file : file + ".new", QSettings::IniFormat);
 }
 
 template <class Value>

@@ -31,7 +31,7 @@ ReviewPage::ReviewPage(QWidget* parent) : QWidget(parent) {
   list_->setObjectName("recordings");
   list_->setRootIsDecorated(false);
   list_->setAllColumnsShowFocus(true);
-  list_->setHeaderLabels({tr("When"), tr("Exercise"), tr("Case"), tr("Length"), tr("State")});
+  list_->setHeaderLabels({tr("Ended"), tr("Exercise"), tr("Case"), tr("Length"), tr("State")});
   list_->header()->setSectionResizeMode(kExerciseColumn, QHeaderView::Stretch);
   list_->header()->setStretchLastSection(false);
   for (int column : {kTimeColumn, kCaseColumn, kLengthColumn, kStateColumn}) {
@@ -90,6 +90,7 @@ const ListedRecording* ReviewPage::chosen() const {
 
 void ReviewPage::showRecordings(const std::vector<ListedRecording>& rows, const std::string& in_use,
                                 const std::map<std::string, QString>& cases) {
+  cases_ = cases;
   const ListedRecording* before = chosen();
   const std::filesystem::path file = before ? before->file : std::filesystem::path();
   in_use_ = in_use;
@@ -130,11 +131,12 @@ void ReviewPage::selectNewestOf(const std::string& case_key) {
 
 void ReviewPage::showChosen() {
   const ListedRecording* of = chosen();
-  const bool at_hand = of && (!of->case_source.empty() || of->volume_sha256 == in_use_);
+  const bool at_hand = of && (cases_.contains(of->caseKey()) || of->volume_sha256 == in_use_);
   replay_->setVisible(!rows_.empty());
   replay_->setEnabled(of && !of->problem && at_hand && !busy_);
   outcome_->setText(of && of->problem ? toQt(of->problem->sentence())
-                    : of && !at_hand  ? tr("Open the case that it was done on, to replay it.")
+                    : of && !at_hand  ? tr("The case that it was done on is not kept here. Open "
+                                            "that case, to replay it.")
                                       : QString());
 }
 

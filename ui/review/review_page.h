@@ -20,7 +20,7 @@ class ReviewPage : public QWidget {
  public:
   explicit ReviewPage(QWidget* parent = nullptr);
 
-  // `in_use` is the sha256 of the open case's voxels, or empty; `cases`: names by
+  // `in_use` is the sha256 of the open case's voxels, or empty; `cases`: those at hand, names by
   // ListedRecording::caseKey().
   void showRecordings(const std::vector<ListedRecording>& rows, const std::string& in_use,
                       const std::map<std::string, QString>& cases);
@@ -42,6 +42,7 @@ class ReviewPage : public QWidget {
 
   std::vector<ListedRecording> rows_;
   std::string in_use_;
+  std::map<std::string, QString> cases_;
   bool busy_ = false;
   QTreeWidget* list_;
   QLabel *empty_, *outcome_, *step_;

@@ -4,9 +4,28 @@
 
 #include "training/replay.h"
 #include "ui/common/words.h"
+#include "ui/work/stored_case.h"
 #include "volume/phantom.h"
 
 namespace trephine {
+
+namespace {
+
+// The case that it was done on: one that comes with the program, or one that is kept.
+Result<Case> recordedCase(const ListedRecording& recording, CaseLibrary& library,
+                          const Progress& progress) {
+  if (!recording.case_source.empty()) return readCase(recording.case_source, progress);
+  for (const ListedCase& one : library.list()) {
+    if (one.problem || one.record.volume_sha256 != recording.volume_sha256) continue;
+    Result<Workstation::Stored> stored = storedCase(library, one.id, progress);
+    if (!stored) return stored.error();
+    return std::move(stored->of);
+  }
+  return Error{"MISSING_CASE", "The case that it was done on is not kept here", "",
+               "Open that case, to replay it"};
+}
+
+}  // namespace
 
 ReviewWorkspace::ReviewWorkspace(Bench& bench)
     : Workspace(&bench), bench_(bench), page_(new ReviewPage) {
@@ -79,12 +98,12 @@ void ReviewWorkspace::replay(const ListedRecording& of) {
   std::optional<Case> at_hand;
   if (open && open->sha256 == of.volume_sha256) at_hand = open;
   const bool begun = replaying_.run(
-      [of, at_hand](const Progress& progress) -> Result<ReplayResult> {
+      [of, at_hand, library = bench_.library()](const Progress& progress) -> Result<ReplayResult> {
         Result<std::unique_ptr<SessionReader>> recording = SessionReader::open(of.file);
         if (!recording) return recording.error();
         std::optional<Case> on = at_hand;
         if (!on) {
-          Result<Case> read = readCase(of.case_source, Progress(progress, 0.0, 0.2));
+          Result<Case> read = recordedCase(of, *library, Progress(progress, 0.0, 0.2));
           if (!read) return read.error();
           on = *std::move(read);
         }

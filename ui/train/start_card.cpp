@@ -63,7 +63,7 @@ StartCard::StartCard(QWidget& over) : FloatingCard(over, At::middle, kStartWides
 }
 
 void StartCard::showNoCase() {
-  title_->setText(tr("There is no case to practise on yet"));
+  title_->setText(tr("No case is open"));
   goal_->setText(tr("Choose one of your own or a built-in one."));
   for (QWidget* part :
        {static_cast<QWidget*>(steps_), static_cast<QWidget*>(hands_), static_cast<QWidget*>(keys_),

@@ -202,8 +202,8 @@ void Bench::unlessCutsAreLost(Next go_on) {
   if (!cuts_unsaved_) return go_on();
   QMessageBox* question =
       ask(&window_, "cutsQuestion", tr("What was cut is not saved as a volume."),
-          tr("Going on takes it from the view. The recording of the exercise is kept."),
-          tr("&Go on without it"), go_on);
+          tr("It then goes from the view. The recording of the exercise is kept."),
+          tr("&Do not save it"), go_on);
   orElse(*question, "saveFirst", tr("&Save volume\u2026"),
          [this, go_on = std::move(go_on)] { askToSaveVolume(go_on); });
 }

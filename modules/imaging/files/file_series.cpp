@@ -74,7 +74,7 @@ SeriesReport assessFile(const std::filesystem::path& file, const std::string& na
     add(report, "LEFT_HANDED", "notice", "The file counts its slices from the other end",
         "They were reversed; every voxel stays where it was in the patient");
   }
-  if (namesLabels(name)) {
+  if (namesLabels(file.filename().string())) {  // whatever its folder is called
     add(report, "NAMED_AS_LABELS", "notice", "The file is named like a label map",
         "Make sure that it is the CT");
   }

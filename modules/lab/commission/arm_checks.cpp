@@ -146,28 +146,36 @@ std::vector<CommissionCheck> tryArms(double patience_s, const Progress& progress
 
 std::vector<CommissionCheck> checkArms(double patience_s, const Progress& progress) {
   constexpr double kOpening_s = 20.0;
-  const auto failed = [](const char* what) {
-    const Error why{"NOT_ANSWERED", what, "",
-                    "Unplug one device after the other, commission again each time, and have the "
-                    "driver mended of the one without which it passes"};
+  const auto failedFor = [](const Error& why) {
     std::vector<CommissionCheck> checks = both(Fitness::fail, why);
     checks.insert(checks.begin(), notMeasured("arms", Fitness::fail, why));
     return checks;
   };
+  const auto failed = [&](const char* what) {
+    return failedFor({"NOT_ANSWERED", what, "",
+                      "Unplug one device after the other, commission again each time, and have the "
+                      "driver mended of the one without which it passes"});
+  };
+  constexpr const char* kTemporaryNext = "Let TMPDIR name a folder that you may write to";
   const Result<std::filesystem::path> temporary = temporaryFolder();
-  if (!temporary) return failed("There is no temporary folder");
+  if (!temporary) {
+    return failedFor(
+        {"CANNOT_WRITE", "There is no folder for temporary files", "", kTemporaryNext});
+  }
   const Result<TemporaryFolder> folder = TemporaryFolder::in(*temporary, "trephine-arms");
-  if (!folder) return failed("The temporary folder cannot be written to");
-  const std::filesystem::path answer = *folder / "answer.json";
+  if (!folder) {
+    return failedFor({"CANNOT_WRITE", "The folder for temporary files cannot be written to", "",
+                      kTemporaryNext});
+  }
   const Result<ChildRun> run =
       runChild({{labProgram().string(), "commission", "--arms", "--json", "--out",
                  folder->path().string(), "--wait", plainNumber(patience_s)},
-                answer,
+                *folder / "said",
                 {},
                 patience_s + kPushes_s + kOpening_s,
                 "Hold each arm and move it a little"},
                progress);
-  const Result<Json> json = readJsonFile(answer);
+  const Result<Json> json = readJsonFile(*folder / kArmsAnswer);
   if (!run) return failed("The program that tries the arms could not be run");
   if (run->timed_out) return failed("The driver of a device does not answer");
   if (run->exit_code > 128) return failed("The driver of a device ended the program that asked it");

@@ -10,6 +10,9 @@
 
 namespace trephine {
 
+// The file of its --out folder in which trephine-lab tells what its tried arms answered.
+inline constexpr const char* kArmsAnswer = "arms.json";
+
 struct ArmAnswered {
   std::string model;
   double step_m = 0.0;

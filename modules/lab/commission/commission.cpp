@@ -55,7 +55,6 @@ class Run {
   Status lateness();
   void memory();
   Status trades();
-  void clock();
   void take(std::vector<CommissionCheck> more) {
     checks.insert(checks.end(), more.begin(), more.end());
   }
@@ -119,15 +118,6 @@ void Run::memory() {
   const double pages = double(::sysconf(_SC_PHYS_PAGES)) * double(::sysconf(_SC_PAGESIZE));
   add("memory", availableMemoryMb() * kMB / kGB,
       "of " + std::to_string(std::lround(pages / kGB)) + " GB");
-}
-
-void Run::clock() {
-  std::tm made{};
-  ::strptime(kReleased, "%Y-%m-%d", &made);
-  const double seconds = std::difftime(std::time(nullptr), ::timegm(&made));
-  constexpr double kYear_s = 365.25 * 86400.0, kDay_s = 86400.0;  // a day for time zones
-  add("clock", std::floor((seconds + kDay_s) / kYear_s * 100.0) / 100.0,
-      localTime("%Y-%m-%d %H:%M"));
 }
 
 // The best of what this machine keeps: a rate whose ticks come late here is not recommended.
@@ -205,6 +195,14 @@ Status Run::drawing() {
 
 }  // namespace
 
+CommissionCheck judgedClock(std::time_t now, const std::string& shown) {
+  std::tm made{};
+  ::strptime(kReleased, "%Y-%m-%d", &made);
+  const double seconds = std::difftime(now, ::timegm(&made));
+  constexpr double kYear_s = 365.25 * 86400.0, kDay_s = 86400.0;  // a day for time zones
+  return judged("clock", std::floor((seconds + kDay_s) / kYear_s * 100.0) / 100.0, shown);
+}
+
 Fitness fitnessOf(const Commissioning& of) {
   Fitness worst = Fitness::pass;
   for (const CommissionCheck& check : of.checks) worst = std::max(worst, check.verdict);
@@ -228,8 +226,8 @@ Result<Commissioning> commission(const CommissionOptions& options, const Progres
   }
   run.memory();
   progress.at(0.42, "The disk");
-  run.take(checkDisk(options.storage, kDiskTry, kDiskMost_s, progress));
-  run.clock();
+  run.take(checkDisk(options.storage, kDiskTry, kDiskMost_s, progress, options.storage_is_set));
+  run.take({judgedClock(std::time(nullptr), localTime("%Y-%m-%d %H:%M"))});
   run.take(checkArms(options.patience_s, Progress(progress, 0.44, 0.5)));
   run.take({judged("headset", openXrInstalled() ? 1.0 : 0.0)});
   if (progress.cancelled()) return stopped();

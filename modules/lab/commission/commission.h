@@ -2,6 +2,7 @@
 // (commission_limits.h), under three minutes together.
 #pragma once
 
+#include <ctime>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -16,6 +17,7 @@ namespace trephine {
 
 struct CommissionOptions {
   std::filesystem::path storage;  // the folder of cases: its disk
+  bool storage_is_set = false;    // by the workstation's settings: it has to be there
   int largest_edge = 0;           // voxels, of the cases there; 0: none is larger than usual
   double seconds = 5.0;           // of each row of lateness, 0.2 to 60
   double patience_s = 15.0;       // until somebody holds the arms; 0: they are not tried, to 600
@@ -30,6 +32,8 @@ struct Commissioning {
   // finds in minutes.
   std::vector<RecommendedSetting> recommended;
 };
+// Fails before this version was made. Pure; `shown` is how a person reads that time.
+CommissionCheck judgedClock(std::time_t now, const std::string& shown);
 Fitness fitnessOf(const Commissioning& of);  // the worst
 
 // Errors: BAD_OPTION, CANCELLED. What cannot be measured is a check that says why.

@@ -126,8 +126,7 @@ CommissionCheck judgedCard(const std::string& driver) {
 
 // A screen that is higher than wide has as many lines as its width allows.
 CommissionCheck judgedScreen(const std::array<int, 2>& size) {
-  constexpr double kWide = 1.6;
-  return judged("screen", std::min(double(size[1]), std::floor(size[0] / kWide)),
+  return judged("screen", double(std::min(size[1], size[0] * 5 / 8)),
                 std::to_string(size[0]) + " x " + std::to_string(size[1]));
 }
 

@@ -48,8 +48,16 @@ CommissionCheck written(const std::filesystem::path& into, std::size_t bytes, do
 }  // namespace
 
 std::vector<CommissionCheck> checkDisk(const std::filesystem::path& folder, std::size_t bytes,
-                                       double most_s, const Progress& progress) {
+                                       double most_s, const Progress& progress,
+                                       bool has_to_be_there) {
   std::error_code ec;
+  if (has_to_be_there && !std::filesystem::is_directory(folder, ec)) {
+    const Error why{"MISSING_FOLDER", "This folder is not there", folder.string(),
+                    "Check its name in /etc/trephine/settings.json, and whether its disk is "
+                    "connected"};
+    return {notMeasured("disk_room", Fitness::fail, why),
+            notMeasured("disk_write", Fitness::fail, why)};
+  }
   std::filesystem::path existing = std::filesystem::absolute(folder, ec);
   while (!std::filesystem::exists(existing, ec) && existing.has_parent_path() &&
          existing != existing.parent_path()) {

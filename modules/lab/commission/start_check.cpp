@@ -49,10 +49,11 @@ Result<std::vector<CommissionCheck>> checkAtStart(const StartSurroundings& surro
   }
   checks.push_back(judged("priority", granted ? 1.0 : 0.0));
   checks.push_back(late);
-  std::vector<CommissionCheck> disk =
-      checkDisk(surroundings.storage, kDiskBytes, kDiskTry_s, progress);
+  std::vector<CommissionCheck> disk = checkDisk(surroundings.storage, kDiskBytes, kDiskTry_s,
+                                                progress, surroundings.storage_is_set);
   if (disk[1].value && disk[1].verdict != Fitness::pass) {  // another may have been writing
-    const auto again = checkDisk(surroundings.storage, kDiskBytes, kDiskTry_s, progress);
+    const auto again = checkDisk(surroundings.storage, kDiskBytes, kDiskTry_s, progress,
+                                 surroundings.storage_is_set);
     if (again[1].value > disk[1].value) disk[1] = again[1];
   }
   checks.insert(checks.end(), disk.begin(), disk.end());
@@ -61,6 +62,16 @@ Result<std::vector<CommissionCheck>> checkAtStart(const StartSurroundings& surro
   if (surroundings.driver != "none") checks.push_back(judgedCard(surroundings.driver));
   progress.at(1.0, "done");
   return checks;
+}
+
+std::optional<StartWords> storageWords(const StartSurroundings& surroundings) {
+  std::error_code ec;
+  if (!surroundings.storage_is_set || std::filesystem::is_directory(surroundings.storage, ec)) {
+    return {};
+  }
+  return StartWords{Fitness::fail,
+                    "The folder of cases is not there: see whether its disk is connected.",
+                    surroundings.storage.string() + ", as /etc/trephine/settings.json has it."};
 }
 
 StartWords startWords(const std::optional<Commissioning>& commissioned,

@@ -21,6 +21,7 @@ Result<Commissioning> lastCommissioning(const std::filesystem::path& own_folder,
 
 struct StartSurroundings {
   std::filesystem::path storage;  // of cases
+  bool storage_is_set = false;    // by the workstation's settings: it has to be there
   std::string driver;             // of the window's pictures; "none": it has drawn none yet
   std::array<int, 2> screen{};    // pixels
   bool arms = true;               // false: they are in use, and not counted
@@ -35,6 +36,8 @@ struct StartWords {
   std::string words;  // one line
   std::string all;    // each change in a line of its own, with its next step
 };
+// What is wrong whether or not it was commissioned: a folder of cases that is not there.
+std::optional<StartWords> storageWords(const StartSurroundings& surroundings);
 // `commissioned`: nothing where it never was. Pure.
 StartWords startWords(const std::optional<Commissioning>& commissioned,
                       const std::vector<CommissionCheck>& now);

@@ -33,7 +33,12 @@ std::int64_t now_ns() {
 
 class Descriptor {
  public:
-  explicit Descriptor(int fd = -1) : fd_(fd) {}
+  // Above those of stdin, stdout and stderr, also where this program has none of them.
+  explicit Descriptor(int fd) : fd_(fd) {
+    if (fd < 0 || fd > STDERR_FILENO) return;
+    fd_ = ::fcntl(fd, F_DUPFD_CLOEXEC, STDERR_FILENO + 1);
+    ::close(fd);
+  }
   ~Descriptor() { close(); }
   Descriptor(const Descriptor&) = delete;
   Descriptor& operator=(const Descriptor&) = delete;
@@ -62,6 +67,7 @@ struct Report {
 [[noreturn]] void becomeProgram(char* const* arguments, char* const* environment, int output,
                                 int nothing, int reports) {
   Report report;
+  ::setpgid(0, 0);  // Ctrl-C is told to us, and we ask it once
   if (::dup2(output, STDOUT_FILENO) >= 0 && ::dup2(nothing, STDERR_FILENO) >= 0 &&
       ::dup2(nothing, STDIN_FILENO) >= 0 && ::prctl(PR_SET_PDEATHSIG, SIGTERM) == 0) {
     report.start_ns = now_ns();

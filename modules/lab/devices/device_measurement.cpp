@@ -315,18 +315,20 @@ Result<DeviceTrial> trialOf(const TrialOptions& options, const fs::path& out,
                             const fs::path& recording, const Progress& progress) {
   std::error_code ec;
   constexpr double kLongest_s = 60.0;
-  const fs::path answer = out / "trial.json";
+  const fs::path answer = out / kTrialAnswer, said_file = out / "trial.txt";
+  fs::remove(answer, ec);
   const Result<ChildRun> run = runChild(
       {{labProgram().string(), "measure", "devices", "--json", "--bench", options.bench.string(),
         "--out", out.string(), "--one", options.unplug ? "unplugged" : "blocked", "--wait",
         plainNumber(options.wait_s), "--recording", recording.string()},
-       answer,
+       said_file,
        out,
        kLongest_s},
       progress);
   if (!run) return run.error();
   Result<Json> json = readJsonFile(answer);
   const std::string said = json ? json->dump() : json.error().sentence();
+  fs::remove(said_file, ec);
   if (run->exit_code != 0 || !json || !json->contains("zero_ms")) {
     return Error{"NOT_MEASURED", "A trial did not come to its end: " + said, "", ""};
   }

@@ -76,6 +76,8 @@ struct TrialOptions {
 };
 // In a program of its own, since a device that blocked is left behind. Errors: NO_BENCH, NO_DEVICE,
 // those of sessions.
+// The file of its --out folder in which trephine-lab tells what came of one trial.
+inline constexpr const char* kTrialAnswer = "trial.json";
 Result<DeviceTrial> tryDevice(const TrialOptions& options, const std::filesystem::path& recording);
 Json toJson(const DeviceTrial& trial);
 

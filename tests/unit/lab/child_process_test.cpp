@@ -1,6 +1,7 @@
 #include "lab/common/child_process.h"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cstdlib>
@@ -70,6 +71,23 @@ TEST_F(Child, HasOurHomeWhereNoOtherIsGiven) {
   command.home.clear();
   ASSERT_TRUE(runChild(command, progress_));
   EXPECT_EQ(output(), std::string(std::getenv("HOME")) + "\n");
+}
+
+TEST_F(Child, IsInAGroupOfItsOwnSoThatATerminalsSignalsAreOurs) {
+  ASSERT_TRUE(runChild(
+      shell("read pid name state parent group rest < /proc/self/stat; echo $((group - $$))"),
+      progress_));
+  EXPECT_EQ(output(), "0\n");
+}
+
+TEST_F(Child, WritesWhereItIsToldToWhereThisProgramHasNoStdout) {
+  const int saved = ::dup(STDOUT_FILENO);
+  ::close(STDOUT_FILENO);
+  const bool ran = runChild(shell("echo out"), progress_).ok();
+  ::dup2(saved, STDOUT_FILENO);
+  ::close(saved);
+  EXPECT_TRUE(ran);
+  EXPECT_EQ(output(), "out\n");
 }
 
 TEST_F(Child, ThatIsToEndIsAskedFirst) {

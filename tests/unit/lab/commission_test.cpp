@@ -97,6 +97,14 @@ Commissioning some() {
       {}};
 }
 
+TEST(Commissioning, AClockFromBeforeThisVersionFails) {
+  EXPECT_EQ(judgedClock(std::time(nullptr), "").verdict, Fitness::pass);
+  const CommissionCheck early = judgedClock(std::time_t(1577836800), "2020-01-01 00:00");
+  EXPECT_EQ(early.verdict, Fitness::fail);
+  EXPECT_LT(*early.value, -5.0);
+  EXPECT_EQ(early.next, "Set the clock");
+}
+
 TEST(Commissioning, IsReadAsItWasWritten) {
   test::TemporaryFolder folder;
   const Commissioning now = some();
@@ -216,6 +224,19 @@ TEST(DiskCheck, WritesBesideTheCasesKeepsItsTimeAndLeavesNothing) {
   EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
 }
 
+TEST(DiskCheck, AFolderThatTheWorkstationIsSetToHasToBeThere) {
+  const test::TemporaryFolder folder;
+  const StartSurroundings away{folder / "away", true, "none", {}, false};
+  for (const CommissionCheck& check : checkDisk(away.storage, 1000, 0.1, Progress(), true)) {
+    EXPECT_EQ(check.verdict, Fitness::fail) << check.name;
+    EXPECT_NE(check.next.find("disk is connected"), std::string::npos);
+  }
+  ASSERT_TRUE(storageWords(away));
+  EXPECT_EQ(storageWords(away)->fitness, Fitness::fail);
+  EXPECT_FALSE(storageWords({folder / "away", false, "none", {}, false})) << "a person's own";
+  EXPECT_FALSE(storageWords({folder.path(), true, "none", {}, false}));
+}
+
 TEST(StartCheck, SaysOneLineWhetherItIsAsCommissioned) {
   Commissioning before = some();
   before.checks = {judged("disk_room", 100.0), judged("arms", 2.0), judged("screen", 1080.0),
@@ -267,7 +288,7 @@ TEST(StartCheck, ThePersonsLastCommissioningOrTheHospitalsWhereThatIsNewer) {
 
 TEST(StartCheck, HasWhatCommissioningHasToCompareWith) {
   test::TemporaryFolder folder;
-  StartSurroundings here{folder.path(), "none", {1920, 1080}, true};
+  StartSurroundings here{folder.path(), false, "none", {1920, 1080}, true};
   const auto begun = std::chrono::steady_clock::now();
   const auto checks = checkAtStart(here, Progress());
   const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begun;
