@@ -107,6 +107,23 @@ void writeStack(Report& report) {
   }
 }
 
+// "2026-11-27 09:15:02 UTC", by arithmetic alone.
+void writeTime(Report& report, std::time_t of) {
+  const std::chrono::sys_seconds at{std::chrono::seconds(of)};
+  const auto day = std::chrono::floor<std::chrono::days>(at);
+  const std::chrono::year_month_day date(day);
+  const std::chrono::hh_mm_ss time(at - day);
+  const auto two = [&](long number) -> Report& {
+    return report << (number < 10 ? "0" : "") << number;
+  };
+  report << long(int(date.year())) << "-";
+  two(long(unsigned(date.month()))) << "-";
+  two(long(unsigned(date.day()))) << " ";
+  two(time.hours().count()) << ":";
+  two(time.minutes().count()) << ":";
+  two(time.seconds().count()) << " UTC";
+}
+
 void onCrash(int signal) {
   // One that comes while this is at work ends the program as it would have ended.
   if (!reporting.exchange(true)) {
@@ -114,10 +131,10 @@ void onCrash(int signal) {
     if (fd >= 0) {
       Report report(fd);
       report << "Trephine ended unexpectedly.\n\nversion    " << version << "\nsignal     "
-             << nameOf(signal) << "\nended      " << long(::time(nullptr))
-             << " s after 1970-01-01, UTC\nran        " << long(::time(nullptr) - started)
-             << " s\nrecording  " << (recording_name[0] ? recording_name : "none")
-             << "\n\nLast lines of the log:\n";
+             << nameOf(signal) << "\nended      ";
+      writeTime(report, ::time(nullptr));
+      report << "\nran        " << long(::time(nullptr) - started) << " s\nrecording  "
+             << (recording_name[0] ? recording_name : "none") << "\n\nLast lines of the log:\n";
       const std::size_t kept = lines_kept;
       for (std::size_t i = kept > kLines ? kept - kLines : 0; i < kept; ++i) {
         report << "  " << last_lines[i % kLines] << "\n";

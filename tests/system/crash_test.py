@@ -2,11 +2,13 @@
 says what can be said without naming anybody, and the next start knows of both."""
 
 import os
+import re
 import signal
 import subprocess
 import tempfile
 import time
 import unittest
+from datetime import datetime, timezone
 from pathlib import Path
 
 from lab_support import SCENES, WINDOW, lab, main
@@ -53,6 +55,9 @@ class Crash(unittest.TestCase):
         text = report.read_text()
         for part in ("SIGSEGV", "version    0", "recording  session-", "trephine +0x"):
             self.assertIn(part, text)
+        ended = re.search(r"^ended +(\d+-\d\d-\d\d \d\d:\d\d:\d\d) UTC$", text, re.M)
+        at = datetime.strptime(ended[1], "%Y-%m-%d %H:%M:%S").replace(tzinfo=timezone.utc)
+        self.assertLess(abs((datetime.now(timezone.utc) - at).total_seconds()), 120)
         self.assertNotIn("Jane", text)
         self.assertNotIn(str(Path.home()), text.replace("recording", ""))
 

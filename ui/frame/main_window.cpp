@@ -268,9 +268,10 @@ void MainWindow::showHint() {
   hint_->setText(room(place_).parts.page  ? QString()
                  : !help_words_.isEmpty() ? help_words_
                                           : hint_words_);
-  const bool first = place_ == Place::cases;
-  fitness_->setVisible(first);
-  hint_->setVisible(!first);
+  // A message stands in their place.
+  const bool free = statusBar()->currentMessage().isEmpty(), first = place_ == Place::cases;
+  fitness_->setVisible(free && first);
+  hint_->setVisible(free && !first);
 }
 
 void MainWindow::showAbout() {

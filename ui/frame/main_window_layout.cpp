@@ -302,6 +302,7 @@ void MainWindow::connectParts() {
   // What is said needs the room.
   connect(statusBar(), &QStatusBar::messageChanged, rates_, [this](const QString& said) {
     rates_->setVisible(said.isEmpty());
+    showHint();
     showEyes();
   });
   connect(&workstation, &Workstation::openingEnded, opening_box_, &QWidget::hide);

@@ -83,15 +83,23 @@ void HandBar::showHand(const QString& hand, const QColor& colour, const QString&
 }
 
 void HandBar::fit(int width, int) {
-  touches_->show();
+  const auto fits = [&] {  // or it knows the width that it had
+    for (int i = 0; i < lines_->count(); ++i) lines_->itemAt(i)->invalidate();
+    layout()->invalidate();
+    return layout()->totalMinimumSize().width() <= width;
+  };
+  // The last to stay is how hard it presses: its arm's card has the rest.
+  const std::initializer_list<QWidget*> goes{touches_, tool_, bar_};
+  for (QWidget* part : goes) part->show();
   lines_->setDirection(QBoxLayout::LeftToRight);
   lines_->setSpacing(10);
-  layout()->invalidate();  // or it knows the width of the other direction
-  if (layout()->totalMinimumSize().width() <= width) return;
+  if (fits()) return;
   lines_->setDirection(QBoxLayout::TopToBottom);
   lines_->setSpacing(4);
-  layout()->invalidate();
-  touches_->setVisible(layout()->totalMinimumSize().width() <= width);  // its arm's card has it
+  for (QWidget* part : goes) {
+    if (fits()) return;
+    part->hide();
+  }
 }
 
 }  // namespace trephine

@@ -283,6 +283,16 @@ class CasesControlsGuiTest : public test::WindowTest {
     click("replay");
     QTRY_VERIFY_WITH_TIMEOUT(find<QLabel>("replayOutcome")->text().contains("bit for bit"),
                              kLong_ms);
+    // With another case open, too: its own is kept.
+    QSignalSpy opened(&workstation(), &Workstation::caseOpened);
+    workstation().openPhantom("abdomen");
+    QVERIFY(opened.count() == 1 || opened.wait(kLong_ms));
+    window_->show(Place::cases);
+    window_->show(Place::review);
+    QTRY_VERIFY_WITH_TIMEOUT(find<QPushButton>("replay")->isEnabled(), kLong_ms);
+    click("replay");
+    QTRY_VERIFY_WITH_TIMEOUT(find<QLabel>("replayOutcome")->text().contains("bit for bit"),
+                             kLong_ms);
   }
 
   void helpOpensAtThePageOfWhatIsBeforeAPersonAndItsLinksLead() {

@@ -178,6 +178,20 @@ class GuiTest : public test::WindowTest {
     QVERIFY(!find<QAction>("start")->isEnabled());
   }
 
+  void aMessageStandsAloneInItsLine() {
+    QStatusBar& line = *window_->statusBar();
+    const auto* hint = find<QLabel>("hint");
+    for (const Place place : {Place::prepare, Place::cases, Place::train}) {
+      line.showMessage("A message", 60000);
+      window_->show(place);
+      QCOMPARE(line.currentMessage(), "A message");
+      QVERIFY(!hint->isVisible());
+      line.clearMessage();
+      QCOMPARE(hint->isVisible(), place != Place::cases);
+    }
+    window_->show(Place::cases);
+  }
+
   void whileAnExerciseIsOpenedItIsTheOneThatIsShown() {
     auto *scenes = find<QComboBox>("scenes"), *controller = find<QComboBox>("controller");
     const QString before = scenes->currentText();

@@ -145,6 +145,12 @@ TEST_F(FileSeries, AFileNamedLikeALabelMapIsTheLastToBeChosen) {
   EXPECT_EQ(codes(ct.report().series.front()), "ASSUMED_HU NAMED_AS_LABELS ");
 }
 
+TEST_F(FileSeries, WhatItsFolderIsCalledMakesNoLabelMapOfAFile) {
+  fs::create_directories(folder() / "totalsegmentator");
+  writeRaw("totalsegmentator/patient", kCt);
+  EXPECT_EQ(codesOfReading(), "ASSUMED_HU ");
+}
+
 TEST_F(FileSeries, AFileThatCannotBeReadIsListedWithWhatIsWrong) {
   writeBytes(folder() / "case.raw", "1234");
   EXPECT_EQ(codesOfReading(), "NO_SIDECAR ");

@@ -544,6 +544,24 @@ TEST_F(PanelTest, TheBarOfTheHandSaysThatAPushIsTheMostAndThatAToolInTissueRests
   EXPECT_EQ(words(2.0, "", true), "the arm reaches no further");
 }
 
+TEST_F(PanelTest, InANarrowViewTheBarOfTheHandStillSaysHowHardItPresses) {
+  QWidget over;
+  HandBar bar(over);
+  for (const int width : {500, 400, 300, 250, 220}) {
+    over.resize(width, 400);
+    over.show();
+    bar.showHand("Right hand", Qt::white, "blade, 50 mm", false, 2.0, 3.0, "Brain and CSF", false);
+    QApplication::processEvents();
+    const QLabel& push = find<QLabel>(bar, "pushWords");
+    EXPECT_TRUE(push.isVisible());
+    EXPECT_GE(push.width(), push.sizeHint().width()) << width;
+    EXPECT_LE(push.mapTo(&bar, QPoint(push.width(), 0)).x(), bar.width()) << width;
+    if (width == 220) {
+      EXPECT_FALSE(find<QLabel>(bar, "handTouches").isVisible());
+    }
+  }
+}
+
 TEST_F(PanelTest, WhatIsChangedInTheForceIsSaidByWhatItIs) {
   ArmRecord arm;
   EXPECT_EQ(forceChangeWords(arm, false), "as the tissue demands");
