@@ -10,10 +10,19 @@ namespace {
 
 namespace fs = std::filesystem;
 
-bool has(const fs::path& folder, mode_t bits) {
+// Of a folder; 0 of what is none.
+mode_t modeOf(const fs::path& folder) {
   struct stat at {};
-  return ::stat(folder.empty() ? "." : folder.c_str(), &at) == 0 && S_ISDIR(at.st_mode) &&
-         (at.st_mode & bits) == bits;
+  const bool there = ::stat(folder.empty() ? "." : folder.c_str(), &at) == 0;
+  return there && S_ISDIR(at.st_mode) ? at.st_mode : 0;
+}
+
+bool has(mode_t mode, mode_t bits) {
+  return (mode & bits) == bits;
+}
+
+bool isGroups(mode_t folder) {
+  return has(folder, S_ISGID | S_IWGRP) && !has(folder, S_ISVTX);
 }
 
 void openToGroup(const fs::path& path, mode_t folder) {
@@ -25,11 +34,11 @@ void openToGroup(const fs::path& path, mode_t folder) {
 }  // namespace
 
 bool isGroups(const fs::path& folder) {
-  return has(folder, S_ISGID | S_IWGRP) && !has(folder, S_ISVTX);
+  return isGroups(modeOf(folder));
 }
 
 bool isEachOnesOwn(const fs::path& folder) {
-  return has(folder, S_ISGID | S_ISVTX | S_IWGRP);
+  return has(modeOf(folder), S_ISGID | S_ISVTX | S_IWGRP);
 }
 
 mode_t modeInGroups(mode_t own, mode_t folder) {
@@ -40,16 +49,12 @@ mode_t modeInGroups(mode_t own, mode_t folder) {
 }
 
 void giveToGroup(const fs::path& made) {
-  const fs::path folder = made.parent_path();
-  struct stat at {};
+  const mode_t folder = modeOf(made.parent_path());
   std::error_code ec;
-  if (!isGroups(folder) || fs::is_symlink(made, ec) ||
-      ::stat(folder.empty() ? "." : folder.c_str(), &at) != 0) {
-    return;
-  }
-  openToGroup(made, at.st_mode);
+  if (!isGroups(folder) || fs::is_symlink(made, ec)) return;
+  openToGroup(made, folder);
   auto it = fs::recursive_directory_iterator(made, ec);
-  for (; !ec && it != fs::end(it); it.increment(ec)) openToGroup(it->path(), at.st_mode);
+  for (; !ec && it != fs::end(it); it.increment(ec)) openToGroup(it->path(), folder);
 }
 
 void keepOwn(const fs::path& made) {

@@ -9,7 +9,6 @@ namespace trephine {
 namespace {
 
 constexpr double kSlow_m_s = 0.05, kSlowOver_s = 0.05, kStillPatience_s = 3.0;
-constexpr double kTooFast_m_s = 0.5, kFastOver_s = 0.01;
 constexpr double kGentle_N = 0.8;  // beyond the friction of the arms that we know
 constexpr double kFarthest_m = 0.003, kBesideLine_m = 0.008;
 constexpr double kLongestHalf_s = 0.04;
@@ -80,13 +79,13 @@ Vec3 ArmAnswer::tick(const HandSample& sample, bool fresh, bool late, double per
   if (phase_ == Phase::still) takeStill(sample.position_m, fresh);
   if (fresh) {
     const Vec3 now_m_s = (sample.position_m - last_m_) / period_s;
-    fast_m_s_ += period_s / (period_s + kFastOver_s) * (now_m_s - fast_m_s_);
+    fast_m_s_ += period_s / (period_s + HandOnArm::kSpeedOver_s) * (now_m_s - fast_m_s_);
     slow_m_s_ += period_s / (period_s + kSlowOver_s) * (now_m_s - slow_m_s_);
     before_last_m_ = last_m_;
     last_m_ = sample.position_m;
   }
   if (phase_ != Phase::pushing) return Vec3(0.0);
-  if (glm::length(fast_m_s_) > kTooFast_m_s) {
+  if (glm::length(fast_m_s_) > HandOnArm::kTooFast_m_s) {
     phase_ = Phase::lost;
     return Vec3(0.0);
   }

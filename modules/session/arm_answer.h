@@ -9,16 +9,16 @@
 
 namespace trephine {
 
-// It begins with a hand on the arm. 500 samples in which it goes
-// slower than 50 mm/s, or any after 3 s, are looked at without a force. Then the arm is pushed for
-// some hundredths of a second, and as long the other way: an arm of the stated mass is then at rest
-// again, at most 3 mm further. Eight times along each axis, half of them each way, with rests of
-// different lengths, so that neither a hand that drifts nor its tremor counts; 3 to 5 s together.
-// What an arm does along all three axes is counted, so that what is wrong in a joint shows wherever
-// that joint points. An encoder and a motor that are both reversed agree.
+// It begins with a hand on the arm. 500 samples in which it goes slower than 50 mm/s, or any after
+// 3 s, are looked at without a force. Then the arm is pushed for some hundredths of a second, and
+// as long the other way: an arm of the stated mass is then at rest again, at most 3 mm further.
+// Eight times along each axis, half of them each way, with rests of different lengths, so that
+// neither a hand that drifts nor its tremor counts; 3 to 5 s together. What an arm does along all
+// three axes is counted, so that what is wrong in a joint shows wherever that joint points. An
+// encoder and a motor that are both reversed agree.
 //
 // No force where the samples scatter so that they say nothing, on an arm that states less than 2 g,
-// and none any more once it goes 8 mm beside its line in a push, or faster than 0.5 m/s, or is let
+// and none any more once it goes 8 mm beside its line in a push, or faster than a hand, or is let
 // go of. A push that a late tick has broken is done again.
 class ArmAnswer {
  public:

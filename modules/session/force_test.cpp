@@ -8,8 +8,6 @@ namespace {
 
 constexpr double kRise_s = 3.0, kHold_s = 2.0, kFall_s = 1.0;
 constexpr double kPatience_s = 30.0;
-constexpr double kTooFast_m_s = 0.5;
-constexpr double kSpeedOver_s = 0.01;
 
 }  // namespace
 
@@ -40,10 +38,10 @@ double ForceTest::tick(const HandSample& sample, double period_s) {
     phase_ = Phase::done;
     return 0.0;
   }
-  const double share = period_s / (period_s + kSpeedOver_s);
+  const double share = period_s / (period_s + HandOnArm::kSpeedOver_s);
   speed_m_s_ += share * (glm::length(sample.position_m - last_m_) / period_s - speed_m_s_);
   last_m_ = sample.position_m;
-  if (speed_m_s_ > kTooFast_m_s) {
+  if (speed_m_s_ > HandOnArm::kTooFast_m_s) {
     phase_ = Phase::lost;
     return 0.0;
   }

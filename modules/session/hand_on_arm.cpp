@@ -3,7 +3,7 @@
 namespace trephine {
 
 bool HandOnArm::takes(const HandSample& sample, double period_s) {
-  constexpr double kMoved_m = 0.005, kTooFast_m_s = 0.5, kSpeedOver_s = 0.01;
+  constexpr double kMoved_m = 0.005;
   constexpr int kSamples = 20;
   if (sample.no_hand) {
     *this = HandOnArm();

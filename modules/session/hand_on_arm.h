@@ -14,10 +14,13 @@ struct HandSample {
 
 // A hand is on the arm once a button is held, and then for as long as that is; or, without, once
 // the arm has been moved 5 mm from where it was first seen, for 20 samples. Where it jumps by 5 mm
-// from one sample to the next, or goes faster than 0.5 m/s over 10 ms, an encoder has jumped or the
-// arm was struck: it is then first seen where it comes to rest.
+// from one sample to the next, or goes faster than a hand, an encoder has jumped or the arm was
+// struck: it is then first seen where it comes to rest.
 class HandOnArm {
  public:
+  // No hand that holds an arm goes faster, over this time: it was struck, or has lost the hand.
+  static constexpr double kTooFast_m_s = 0.5, kSpeedOver_s = 0.01;
+
   // Of each sample until it is true: the hand has taken the arm.
   bool takes(const HandSample& sample, double period_s);
   // Of each sample after that.
