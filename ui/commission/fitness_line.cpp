@@ -3,6 +3,7 @@
 #include <QGuiApplication>
 #include <QScreen>
 #include <mutex>
+#include <utility>
 
 #include "base/log.h"
 #include "base/system.h"
@@ -27,6 +28,11 @@ FitnessLine::FitnessLine(Bench& bench) : bench_(bench) {
 }
 
 void FitnessLine::look() {
+  if (looking_.busy()) {  // at what was before
+    again_ = true;
+    looking_.cancel();
+    return;
+  }
   using Phase = Workstation::Phase;
   const Phase phase = bench_.workstation().phase();
   if (phase != Phase::empty && phase != Phase::ready) return;
@@ -53,6 +59,7 @@ void FitnessLine::look() {
         return startWords(*last, *now);
       },
       [this](const Result<StartWords>& words) {
+        if (std::exchange(again_, false)) return look();
         if (words) {
           say(*words);
         } else if (words.error().code != "CANCELLED") {

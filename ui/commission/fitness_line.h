@@ -15,7 +15,7 @@ class FitnessLine : public ElidedLabel {
   explicit FitnessLine(Bench& bench);
 
   // Some seconds, in the background; an exercise that begins meanwhile ends it. Nothing while one
-  // runs.
+  // runs. Asked again meanwhile, it looks anew: there may be another commissioning.
   void look();
   void say(const StartWords& words);
 
@@ -25,6 +25,7 @@ class FitnessLine : public ElidedLabel {
  private:
   Bench& bench_;
   BackgroundTask looking_;
+  bool again_ = false;
 };
 
 // Where the last commissioning and what it recommends are, of this person and of the hospital.

@@ -127,6 +127,13 @@ class CommissionGuiTest : public test::WindowTest {
     std::erase_if(like.checks, [](const auto& c) {
       return c.name.starts_with("lateness") || c.verdict == Fitness::fail;
     });
+    line();  // what looked at the commissioning that was made
+    // It looks already, at one that was not fit.
+    Commissioning unfit = like;
+    unfit.checks.push_back(judged("frame_time", 1000.0));
+    keep(unfit);
+    find<FitnessLine>("fitness")->look();
+    QTest::qWait(200);
     keep(like);
     QString same = line();
     // What else the machine does may make ticks late, which is then said.
