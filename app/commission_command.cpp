@@ -30,13 +30,7 @@ int commissionCommand(const CommissionArguments& arguments, const Policy& policy
   if (!storage) return printError(name, storage.error(), json);
   if (Status made = makeFolder(out); !made) return printError(name, made.error(), json);
   // Room for its pages, before the minutes that it takes.
-  const std::filesystem::path room = out / ".trephine-commission";
-  if (Status fits = writeTextFile(room, std::string(100'000, ' ')); !fits) {
-    const Error& why = fits.error();
-    return printError(name, {why.code, why.what, out.string(), why.next}, json);
-  }
-  std::error_code ec;
-  std::filesystem::remove(room, ec);
+  if (Status fits = tryRoom(out, 100'000); !fits) return printError(name, fits.error(), json);
   CommissionOptions options;
   options.storage = *storage;
   options.storage_is_set = *storage == policy.storage;

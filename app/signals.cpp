@@ -3,7 +3,9 @@
 #include <time.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <csignal>
+#include <cstdint>
 
 namespace trephine {
 
@@ -12,10 +14,11 @@ namespace {
 constexpr unsigned kGrace_s = 30;  // a large volume may still have to be saved
 
 // A SIGTERM that comes again so soon is the same wish of another, such as a parent that ends.
-constexpr time_t kSame_s = 2;
+constexpr std::int64_t kSame_ms = 2000;
 
-volatile std::sig_atomic_t received = 0;
-volatile time_t received_at_s = 0;
+std::atomic<int> received{0};
+std::atomic<std::int64_t> received_at_ms{0};
+static_assert(std::atomic<std::int64_t>::is_always_lock_free);
 Progress* work = nullptr;
 
 void endNow() {
@@ -26,12 +29,13 @@ void endNow() {
 void onSignal(int signal) {
   timespec now{};
   ::clock_gettime(CLOCK_MONOTONIC, &now);
+  const std::int64_t now_ms = std::int64_t(now.tv_sec) * 1000 + now.tv_nsec / 1'000'000;
   if (received != 0) {
-    if (signal == SIGTERM && now.tv_sec - received_at_s <= kSame_s) return;
+    if (signal == SIGTERM && now_ms - received_at_ms <= kSame_ms) return;
     endNow();
   }
+  received_at_ms = now_ms;  // first: another thread may have the second one now
   received = signal;
-  received_at_s = now.tv_sec;
   work->cancel();
   ::alarm(kGrace_s);
 }

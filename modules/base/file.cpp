@@ -8,6 +8,7 @@
 #include <cstring>
 #include <fstream>
 
+#include "base/descriptor.h"
 #include "base/shared_folder.h"
 
 namespace trephine {
@@ -92,9 +93,9 @@ Status checkNewFile(const fs::path& file, const std::string& option) {
                  "Make it, or give " + option + " another place"};
   }
   const fs::path temporary = temporaryFor(file);
-  const int fd = ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0600);
-  if (fd < 0) return writeError(file, errno);
-  ::close(fd);
+  if (!Descriptor(::open(temporary.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0600)).ok()) {
+    return writeError(file, errno);
+  }
   fs::remove(temporary, ec);
   return {};
 }
@@ -108,6 +109,17 @@ Status writeTextFile(const fs::path& target, std::string_view text) {
     if (!out) return writeError(target, errno);
     return {};
   });
+}
+
+Status tryRoom(const fs::path& folder, std::size_t bytes) {
+  const fs::path file = folder / (".trephine-room-" + std::to_string(::getpid()));
+  const Status fits = writeTextFile(file, std::string(bytes, ' '));
+  if (!fits) {
+    return Error{fits.error().code, fits.error().what, folder.string(), fits.error().next};
+  }
+  std::error_code ec;
+  fs::remove(file, ec);
+  return {};
 }
 
 Status makeFolder(const fs::path& folder) {

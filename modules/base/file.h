@@ -30,6 +30,9 @@ std::string afterFailedWrite(int error);
 
 Status writeTextFile(const std::filesystem::path& target, std::string_view text);
 
+// Whether `bytes` can be written into this folder now. Error: CANNOT_WRITE, of the folder.
+Status tryRoom(const std::filesystem::path& folder, std::size_t bytes);
+
 // Makes the folder and its parents.
 Status makeFolder(const std::filesystem::path& folder);
 

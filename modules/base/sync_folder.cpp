@@ -5,6 +5,7 @@
 
 #include <cerrno>
 
+#include "base/descriptor.h"
 #include "base/file.h"
 
 namespace trephine {
@@ -12,10 +13,9 @@ namespace trephine {
 namespace fs = std::filesystem;
 
 Status syncFolder(const fs::path& folder) {
-  const int fd = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  if (fd < 0) return writeError(folder, errno);
-  const int failed = ::fsync(fd) == 0 ? 0 : errno;
-  ::close(fd);
+  const Descriptor opened(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+  if (!opened.ok()) return writeError(folder, errno);
+  const int failed = ::fsync(opened.get()) == 0 ? 0 : errno;
   // Some file systems know no such call on a folder.
   if (failed != 0 && failed != EINVAL && failed != ENOTSUP) return writeError(folder, failed);
   return {};

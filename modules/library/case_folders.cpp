@@ -28,8 +28,8 @@ constexpr const char* kWholeCase = "case-";
 constexpr const char* kSomeFiles = "files-";
 constexpr const char* kPartLock = ".lock";
 
-int openLockFile(const fs::path& file) {
-  return ::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+Descriptor openLockFile(const fs::path& file) {
+  return Descriptor(::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666));
 }
 
 Result<fs::path> newPartName(const Folders& folders, const char* begin) {
@@ -61,11 +61,10 @@ void discard(const Folders& folders, const fs::path& part) {
 
 Result<FileLock> FileLock::waitFor(const fs::path& file) {
   using namespace std::chrono_literals;
-  const int fd = openLockFile(file);
-  if (fd < 0) return writeError(file, errno);
-  FileLock lock(fd);
+  Descriptor opened = openLockFile(file);
+  if (!opened.ok()) return writeError(file, errno);
   const auto until = std::chrono::steady_clock::now() + kPatience;
-  while (::flock(fd, LOCK_EX | LOCK_NB) != 0) {
+  while (::flock(opened.get(), LOCK_EX | LOCK_NB) != 0) {
     if (errno == EINTR) continue;
     if (errno != EWOULDBLOCK) return writeError(file, errno);
     if (std::chrono::steady_clock::now() > until) {
@@ -74,19 +73,13 @@ Result<FileLock> FileLock::waitFor(const fs::path& file) {
     }
     std::this_thread::sleep_for(2ms);
   }
-  return lock;
+  return FileLock(std::move(opened));
 }
 
 std::optional<FileLock> FileLock::tryFor(const fs::path& file) {
-  const int fd = openLockFile(file);
-  if (fd < 0) return std::nullopt;
-  if (::flock(fd, LOCK_EX | LOCK_NB) == 0) return FileLock(fd);
-  ::close(fd);
-  return std::nullopt;
-}
-
-FileLock::~FileLock() {
-  if (fd_ >= 0) ::close(fd_);
+  Descriptor opened = openLockFile(file);
+  if (!opened.ok() || ::flock(opened.get(), LOCK_EX | LOCK_NB) != 0) return std::nullopt;
+  return FileLock(std::move(opened));
 }
 
 Status Folders::make() const {
@@ -188,7 +181,7 @@ Status Part::replace(const char* name, const fs::path& case_folder) const {
 }
 
 Status Part::writePrivate(const std::string& key, std::string_view text) const {
-  const fs::path file = folders_.privateFile(key), here = path_ / "private.json";
+  const fs::path file = folders_.privateFile(key), here = path_ / kPrivatePart;
   const int fd = ::open(here.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0600);
   if (fd < 0) return writeError(file, errno);
   std::size_t done = 0;

@@ -16,6 +16,7 @@
 #include <string_view>
 #include <utility>
 
+#include "base/descriptor.h"
 #include "base/result.h"
 #include "base/sync_folder.h"
 
@@ -29,6 +30,8 @@ constexpr const char* kReportFile = "report.json";
 constexpr const char* kProvenanceFile = "provenance.json";
 constexpr const char* kTissuesFile = "tissues.json";
 constexpr const char* kPictureFile = "picture.png";
+// In a part, until it is its maker's own file in private/.
+constexpr const char* kPrivatePart = "private.json";
 
 // A file that is locked as long as this lives, against other processes and other threads.
 class FileLock {
@@ -39,16 +42,10 @@ class FileLock {
   static Result<FileLock> waitFor(const std::filesystem::path& file);
   // Nothing where somebody holds it, or it cannot be told.
   static std::optional<FileLock> tryFor(const std::filesystem::path& file);
-  FileLock(FileLock&& other) noexcept : fd_(std::exchange(other.fd_, -1)) {}
-  FileLock& operator=(FileLock&& other) noexcept {
-    std::swap(fd_, other.fd_);
-    return *this;
-  }
-  ~FileLock();
 
  private:
-  explicit FileLock(int fd) : fd_(fd) {}
-  int fd_ = -1;
+  explicit FileLock(Descriptor file) : file_(std::move(file)) {}
+  Descriptor file_;
 };
 
 class Folders {

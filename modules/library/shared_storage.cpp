@@ -12,9 +12,11 @@
 #include <memory>
 #include <string>
 
+#include "base/descriptor.h"
 #include "base/file.h"
 #include "base/shared_folder.h"
 #include "base/utf8.h"
+#include "library/case_folders.h"
 
 namespace trephine {
 
@@ -164,21 +166,9 @@ Status checkWay(const fs::path& storage) {
 // ---- From here on by descriptors: whatever a writer puts in the place of a name meanwhile, what
 // is given away is what was looked at.
 
-class Opened {
- public:
-  Opened(int folder, const char* name, int how)
-      : fd_(::openat(folder, name, how | O_NOFOLLOW | O_CLOEXEC, 0600)) {}
-  ~Opened() {
-    if (fd_ >= 0) ::close(fd_);
-  }
-  Opened(const Opened&) = delete;
-  Opened& operator=(const Opened&) = delete;
-  int fd() const { return fd_; }
-  bool ok() const { return fd_ >= 0; }
-
- private:
-  int fd_;
-};
+Descriptor openIn(int folder, const char* name, int how) {
+  return Descriptor(::openat(folder, name, how | O_NOFOLLOW | O_CLOEXEC, 0600));
+}
 
 Status give(int fd, gid_t group, mode_t mode, const fs::path& path) {
   if (::fchown(fd, 0, group) != 0 || ::fchmod(fd, mode) != 0) return writeError(path, errno);
@@ -192,19 +182,20 @@ Status giveInside(int folder, gid_t group, mode_t mode, const fs::path& path) {
   const std::unique_ptr<DIR, int (*)(DIR*)> closed(listed, &::closedir);
   for (const dirent* entry; (entry = ::readdir(listed));) {
     const std::string name = entry->d_name;
-    if (name == "." || name == "..") continue;
+    if (name == "." || name == ".." || name == case_folders::kPrivatePart) continue;
     const fs::path at_path = path / name;
-    const Opened one(folder, name.c_str(), O_RDONLY | O_NONBLOCK);
+    const Descriptor one = openIn(folder, name.c_str(), O_RDONLY | O_NONBLOCK);
     struct stat at {};
     if (!one.ok() && errno == ENOENT) continue;
-    if (!one.ok() || ::fstat(one.fd(), &at) != 0) {
+    if (!one.ok() && (errno == ELOOP || errno == ENXIO)) {
       return notAStorage("This is neither a file nor a folder", at_path);
     }
+    if (!one.ok() || ::fstat(one.get(), &at) != 0) return writeError(at_path, errno);
     if (Status good = checkEntry(at, at_path); !good) return good;
-    if (Status given = give(one.fd(), group, modeInGroups(at.st_mode, mode), at_path); !given)
+    if (Status given = give(one.get(), group, modeInGroups(at.st_mode, mode), at_path); !given)
       return given;
     if (!S_ISDIR(at.st_mode)) continue;
-    if (Status given = giveInside(one.fd(), group, mode, at_path); !given) return given;
+    if (Status given = giveInside(one.get(), group, mode, at_path); !given) return given;
   }
   return {};
 }
@@ -214,13 +205,14 @@ Status givePart(int storage, const StoragePart& part, gid_t group, const fs::pat
   if (!file && ::mkdirat(storage, part.name, 0700) != 0 && errno != EEXIST) {
     return writeError(path, errno);
   }
-  const Opened one(storage, part.name, file ? O_RDWR | O_CREAT | O_NONBLOCK : O_DIRECTORY);
+  const Descriptor one =
+      openIn(storage, part.name, file ? O_RDWR | O_CREAT | O_NONBLOCK : O_DIRECTORY);
   struct stat at {};
-  if (!one.ok() || ::fstat(one.fd(), &at) != 0) return writeError(path, errno);
+  if (!one.ok() || ::fstat(one.get(), &at) != 0) return writeError(path, errno);
   if (Status good = checkEntry(at, path); !good) return good;
-  if (Status given = give(one.fd(), group, part.mode, path); !given) return given;
+  if (Status given = give(one.get(), group, part.mode, path); !given) return given;
   if (file || part.holds == Holds::of_their_owners) return {};
-  return giveInside(one.fd(), group, part.mode, path);
+  return giveInside(one.get(), group, part.mode, path);
 }
 
 }  // namespace
@@ -238,16 +230,16 @@ Result<fs::path> shareStorage(const fs::path& given, const StorageGroups& groups
   if (!readers) return readers.error();
   if (!writers) return writers.error();
   if (Status made = makeFolder(storage); !made) return made.error();
-  const Opened folder(AT_FDCWD, storage.c_str(), O_DIRECTORY);
+  const Descriptor folder = openIn(AT_FDCWD, storage.c_str(), O_DIRECTORY);
   if (!folder.ok()) return writeError(storage, errno);
   std::error_code ec;
-  if (fs::read_symlink("/proc/self/fd/" + std::to_string(folder.fd()), ec) != storage) {
+  if (fs::read_symlink("/proc/self/fd/" + std::to_string(folder.get()), ec) != storage) {
     return notAStorage("There is a link on the way to this folder", storage);
   }
   constexpr mode_t kLook = 0750;
-  if (Status done = give(folder.fd(), *readers, kLook, storage); !done) return done.error();
+  if (Status done = give(folder.get(), *readers, kLook, storage); !done) return done.error();
   for (const StoragePart& part : kStorageParts) {
-    if (Status done = givePart(folder.fd(), part, *writers, storage / part.name); !done)
+    if (Status done = givePart(folder.get(), part, *writers, storage / part.name); !done)
       return done.error();
   }
   // Folders on the way that were made now are as the umask has it.

@@ -9,6 +9,7 @@
 #include <cstring>
 #include <string>
 
+#include "base/descriptor.h"
 #include "base/system.h"
 #include "scene/scene_numbers.h"
 
@@ -45,22 +46,15 @@ bool safe(const struct stat& of) {
   return !couldChange(::geteuid(), of.st_uid, of.st_mode);
 }
 
-struct Descriptor {
-  int fd;
-  ~Descriptor() {
-    if (fd >= 0) ::close(fd);
-  }
-};
-
 // What is asked of the file and what is read is one file, whatever happens to its name.
 Result<std::string> contentOf(const fs::path& file) {
   // A link is not followed: it would lead to where nobody looked who may write. A pipe would wait.
-  const Descriptor in{::open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK)};
-  if (in.fd < 0) {
+  const Descriptor in(::open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK));
+  if (!in.ok()) {
     return unreadable(file, errno == ELOOP ? "it is a link" : std::strerror(errno));
   }
   struct stat of {};
-  if (::fstat(in.fd, &of) != 0) return unreadable(file, std::strerror(errno));
+  if (::fstat(in.get(), &of) != 0) return unreadable(file, std::strerror(errno));
   if (!S_ISREG(of.st_mode))
     return unreadable(file, "it is no file but a folder, a pipe or a device");
   if (!safe(of)) return unsafe(file);
@@ -68,7 +62,7 @@ Result<std::string> contentOf(const fs::path& file) {
   std::string text(std::size_t(of.st_size), '\0');
   std::size_t done = 0;
   while (done < text.size()) {
-    const ssize_t got = ::read(in.fd, text.data() + done, text.size() - done);
+    const ssize_t got = ::read(in.get(), text.data() + done, text.size() - done);
     if (got < 0 && errno == EINTR) continue;
     if (got < 0) return unreadable(file, std::strerror(errno));
     if (got == 0) break;

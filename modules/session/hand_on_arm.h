@@ -30,7 +30,7 @@ class HandOnArm {
 
  private:
   int moved_ = 0;  // samples
-  bool seen_ = false, by_button_ = false;
+  bool seen_ = false, struck_ = false, by_button_ = false;
   Vec3 seen_at_m_{0.0}, last_m_{0.0}, speed_m_s_{0.0};
 };
 

@@ -13,6 +13,8 @@
 #include <limits>
 #include <system_error>
 
+#include "base/descriptor.h"
+
 namespace trephine::file_format {
 
 namespace fs = std::filesystem;
@@ -155,22 +157,21 @@ namespace {
 // or not copied to its end. A file system that knows no holes says that all of it is data.
 bool isMostlyHoles(const fs::path& file) {
   constexpr off_t kLarge = off_t(1) << 30;
-  const int descriptor = ::open(file.c_str(), O_RDONLY | O_CLOEXEC);
+  const Descriptor opened(::open(file.c_str(), O_RDONLY | O_CLOEXEC));
   struct stat status {};
-  bool holes = descriptor >= 0 && ::fstat(descriptor, &status) == 0 && status.st_size > kLarge;
+  bool holes = opened.ok() && ::fstat(opened.get(), &status) == 0 && status.st_size > kLarge;
   const off_t enough = status.st_size / 100;
   off_t held = 0;
   for (off_t at = 0; holes && held < enough;) {
-    const off_t data = ::lseek(descriptor, at, SEEK_DATA);
+    const off_t data = ::lseek(opened.get(), at, SEEK_DATA);
     if (data < 0) {
       holes = errno == ENXIO;  // none any more
       break;
     }
-    at = ::lseek(descriptor, data, SEEK_HOLE);
+    at = ::lseek(opened.get(), data, SEEK_HOLE);
     if (at <= data) holes = false;
     held += at - data;
   }
-  if (descriptor >= 0) ::close(descriptor);
   return holes && held < enough;
 }
 

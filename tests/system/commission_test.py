@@ -10,7 +10,7 @@ import tempfile
 import unittest
 from pathlib import Path
 
-from lab_support import LAB, main, without_display
+from lab_support import LAB, can_mount, main, without_display
 
 SECONDS = "0.3"
 
@@ -93,8 +93,8 @@ class Commission(unittest.TestCase):
         self.assertEqual(checks["locked_memory"]["verdict"], "warn")
 
     def test_a_small_disk_fails(self):
-        if os.geteuid() != 0:
-            self.skipTest("only root can mount a small disk")
+        if not can_mount():
+            self.skipTest("only root may mount a small disk")
         for size in ("1g", "2m"):
             small = self.folder / size
             small.mkdir()
@@ -110,8 +110,8 @@ class Commission(unittest.TestCase):
         self.assertIn("space", checks["disk_write"]["next"])
 
     def test_a_small_screen_little_memory_and_no_loader_are_said(self):
-        if os.geteuid() != 0:
-            self.skipTest("only root can put another /proc/meminfo in the place of this one")
+        if not can_mount():
+            self.skipTest("only root may put another /proc/meminfo in the place of this one")
         (self.folder / "lib").mkdir()
         (self.folder / "lib" / "libopenxr_loader.so.1").write_text("")
         little = self.folder / "meminfo"
@@ -125,8 +125,8 @@ class Commission(unittest.TestCase):
             self.assertEqual(checks[name]["verdict"], verdict, checks[name])
 
     def test_a_full_folder_for_the_page_is_said_before_the_minutes_that_it_takes(self):
-        if os.geteuid() != 0:
-            self.skipTest("only root can mount a small disk")
+        if not can_mount():
+            self.skipTest("only root may mount a small disk")
         full = self.folder / "full"
         full.mkdir()
         subprocess.run(["mount", "-t", "tmpfs", "-o", "size=8k", "tmpfs", str(full)], check=True)
@@ -162,6 +162,29 @@ class Commission(unittest.TestCase):
         for name in ("arms", "arm_encoders", "arm_forces"):
             self.assertEqual(checks[name]["verdict"], "fail")
             self.assertIn("TMPDIR", checks[name]["next"])
+
+    def test_a_full_folder_for_temporary_files_is_said_of_it_and_not_of_devices(self):
+        if not can_mount():
+            self.skipTest("only root may mount a small disk")
+        subprocess.run(["mount", "-t", "tmpfs", "-o", "size=40k", "tmpfs", str(self.temporary)],
+                       check=True)
+        self.addCleanup(subprocess.run, ["umount", str(self.temporary)], check=True)
+        checks = self.run_it(without_display())
+        for name in ("arms", "arm_encoders", "arm_forces"):
+            self.assertEqual(checks[name]["verdict"], "fail")
+            self.assertIn("Free some space", checks[name]["next"])
+            self.assertIn("TMPDIR", checks[name]["next"])
+
+    def test_a_slow_disk_and_late_ticks_are_said(self):
+        checks = self.run_it(dict(without_display(), LD_PRELOAD=os.environ["SLOW_MACHINE"],
+                                  SLOW_SYNC_MS="100", LATE_US="700"))
+        self.assertLess(checks["disk_write"]["value"], 40)  # 4 MB take 100 ms and more
+        self.assertIn(checks["disk_write"]["verdict"], ("warn", "fail"))
+        # Where priority is granted, what is without does not matter.
+        granted = "lateness_1000_fifo" in checks
+        late = checks["lateness_1000_fifo" if granted else "lateness_1000_normal"]
+        self.assertGreater(late["value"], 700)
+        self.assertEqual(late["verdict"], "fail" if granted else "warn")
 
     def test_loaded_cores_make_ticks_late(self):
         loads = [subprocess.Popen(["sh", "-c", "while :; do :; done"])

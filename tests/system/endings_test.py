@@ -60,9 +60,10 @@ class Signals(EndingTest):
 
     def test_a_sigterm_that_comes_twice_is_one_and_any_other_second_signal_ends_at_once(self):
         for second in (signal.SIGTERM, signal.SIGHUP):
+            out = self.folder / second.name  # where it saves when it ends, which takes a while
             process = self.start(LAB, "run", SCENES / "cranium.json", "--seconds", 3000, "--out",
-                                 self.folder / second.name, "--json")
-            self.wait_for(process, lambda: listens(process))
+                                 out, "--save-volume", out / "carved.nii.gz", "--json")
+            self.wait_for(process, (out / "session.h5").exists)
             time.sleep(0.3)
             process.send_signal(signal.SIGTERM)
             while pending(process, signal.SIGTERM):  # two that wait would be one

@@ -38,7 +38,7 @@ QPixmap cardPicture(const CaseEntry& entry) {
   painter.drawRect(empty.rect().adjusted(0, 0, -1, -1));
   painter.setPen(colours::kQuiet);
   painter.drawText(empty.rect(), Qt::AlignCenter,
-                   entry.problem ? CasesPage::tr("damaged") : CasesPage::tr("no picture"));
+                   entry.problem ? CasesPage::tr("cannot be opened") : CasesPage::tr("no picture"));
   return empty;
 }
 

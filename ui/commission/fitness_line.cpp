@@ -3,7 +3,6 @@
 #include <QGuiApplication>
 #include <QScreen>
 #include <mutex>
-#include <utility>
 
 #include "base/log.h"
 #include "base/system.h"
@@ -23,7 +22,11 @@ FitnessLine::FitnessLine(Bench& bench) : bench_(bench) {
   connect(&bench.workstation(), &Workstation::phaseChanged, this, [this] {
     using Phase = Workstation::Phase;
     const Phase phase = bench_.workstation().phase();
-    if (phase != Phase::empty && phase != Phase::ready) looking_.cancel();
+    if (phase != Phase::empty && phase != Phase::ready) {
+      looking_.cancel();
+    } else if (again_ && !looking_.busy()) {
+      look();
+    }
   });
 }
 
@@ -36,6 +39,7 @@ void FitnessLine::look() {
   using Phase = Workstation::Phase;
   const Phase phase = bench_.workstation().phase();
   if (phase != Phase::empty && phase != Phase::ready) return;
+  again_ = false;
   StartSurroundings here;
   here.storage = bench_.storage();
   here.storage_is_set = bench_.storage() == bench_.workstation().policy().storage;
@@ -59,7 +63,7 @@ void FitnessLine::look() {
         return startWords(*last, *now);
       },
       [this](const Result<StartWords>& words) {
-        if (std::exchange(again_, false)) return look();
+        if (again_) return look();
         if (words) {
           say(*words);
         } else if (words.error().code != "CANCELLED") {

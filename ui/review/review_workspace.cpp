@@ -124,7 +124,9 @@ void ReviewWorkspace::replay(const ListedRecording& of) {
         for (const std::string& line : linesOf(result->structures_cut)) words << toQt(line);
         page_->showOutcome(words.join('\n'));
       });
-  if (begun) page_->showProgress(0.0, tr("Replaying"));
+  if (!begun) return;
+  page_->showOutcome({});  // of the one before
+  page_->showProgress(0.0, tr("Replaying"));
 }
 
 }  // namespace trephine

@@ -7,6 +7,8 @@
 #include <array>
 #include <cerrno>
 
+#include "base/descriptor.h"
+
 namespace trephine {
 
 namespace {
@@ -23,14 +25,12 @@ bool meansGone(int error) {
 }  // namespace
 
 bool isGone(const std::filesystem::path& file, std::uint64_t bytes) {
-  const int descriptor = ::open(file.c_str(), O_RDONLY | O_CLOEXEC);
-  if (descriptor < 0) return meansGone(errno);
-  ::posix_fadvise(descriptor, 0, 0, POSIX_FADV_DONTNEED);
+  const Descriptor opened(::open(file.c_str(), O_RDONLY | O_CLOEXEC));
+  if (!opened.ok()) return meansGone(errno);
+  ::posix_fadvise(opened.get(), 0, 0, POSIX_FADV_DONTNEED);
   char last;
-  const auto read = ::pread(descriptor, &last, 1, off_t(std::max<std::uint64_t>(bytes, 1) - 1));
-  const bool gone = read < 0 && meansGone(errno);
-  ::close(descriptor);
-  return gone;
+  const auto read = ::pread(opened.get(), &last, 1, off_t(std::max<std::uint64_t>(bytes, 1) - 1));
+  return read < 0 && meansGone(errno);
 }
 
 void SourceWatch::end(std::size_t number, const std::filesystem::path& file, std::uint64_t bytes,

@@ -10,6 +10,7 @@
 #include <cctype>
 #include <cstring>
 
+#include "base/descriptor.h"
 #include "imaging/common/workers.h"
 #include "imaging/dicom/codecs.h"
 #include "imaging/dicom/dicom_stream.h"
@@ -27,12 +28,7 @@ constexpr std::uint32_t kItem = 0xFFFEE000U, kSequenceEnd = 0xFFFEE0DDU;
 class File {
  public:
   explicit File(const std::filesystem::path& path, const Progress* progress = nullptr)
-      : descriptor_(::open(path.c_str(), O_RDONLY | O_CLOEXEC)), progress_(progress) {}
-  ~File() {
-    if (descriptor_ >= 0) ::close(descriptor_);
-  }
-  File(const File&) = delete;
-  File& operator=(const File&) = delete;
+      : file_(::open(path.c_str(), O_RDONLY | O_CLOEXEC)), progress_(progress) {}
 
   // All of it, or false; false as well once it is cancelled.
   bool read(std::uint64_t offset, void* to, std::size_t bytes) const {
@@ -40,7 +36,7 @@ class File {
     while (bytes > 0) {
       if (progress_ && progress_->cancelled()) return false;
       const std::size_t piece = std::min(bytes, kPieceBytes);
-      const ssize_t count = ::pread(descriptor_, at, piece, off_t(offset));
+      const ssize_t count = ::pread(file_.get(), at, piece, off_t(offset));
       if (count <= 0) return false;
       at += count;
       offset += std::uint64_t(count);
@@ -50,7 +46,7 @@ class File {
   }
 
  private:
-  int descriptor_;
+  Descriptor file_;
   const Progress* progress_;
 };
 

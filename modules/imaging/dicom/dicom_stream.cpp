@@ -40,12 +40,8 @@ std::uintptr_t stackPlace() {
 FileBlocks::FileBlocks(const std::filesystem::path& file, const Progress* progress)
     : file_(::open(file.c_str(), O_RDONLY | O_CLOEXEC)), progress_(progress) {
   struct stat status {};
-  good_ = file_ >= 0 && ::fstat(file_, &status) == 0;
+  good_ = file_.ok() && ::fstat(file_.get(), &status) == 0;
   end_ = good_ ? offile_off_t(status.st_size) : 0;
-}
-
-FileBlocks::~FileBlocks() {
-  if (file_ >= 0) ::close(file_);
 }
 
 OFBool FileBlocks::good() const {
@@ -68,7 +64,8 @@ void FileBlocks::fill(offile_off_t from) {
   block_at_ = from;
   held_ = 0;
   if (progress_ && progress_->cancelled()) return;
-  held_ = std::max<offile_off_t>(::pread(file_, block_.data(), block_.size(), off_t(from)), 0);
+  held_ =
+      std::max<offile_off_t>(::pread(file_.get(), block_.data(), block_.size(), off_t(from)), 0);
 }
 
 offile_off_t FileBlocks::read(void* to, offile_off_t bytes) {

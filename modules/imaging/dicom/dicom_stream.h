@@ -10,6 +10,7 @@
 #include <filesystem>
 #include <string_view>
 
+#include "base/descriptor.h"
 #include "base/progress.h"
 #include "imaging/dicom/stream_bounds.h"
 
@@ -23,7 +24,6 @@ class FileBlocks : public DcmProducer {
  public:
   // Once `progress` is cancelled, the file ends. It may be null, or outlives this.
   explicit FileBlocks(const std::filesystem::path& file, const Progress* progress = nullptr);
-  ~FileBlocks() override;
   FileBlocks(const FileBlocks&) = delete;
   FileBlocks& operator=(const FileBlocks&) = delete;
 
@@ -41,7 +41,7 @@ class FileBlocks : public DcmProducer {
  private:
   void fill(offile_off_t from);
 
-  int file_ = -1;
+  Descriptor file_;
   const Progress* progress_;
   bool good_ = false;
   offile_off_t at_ = 0, end_ = 0;

@@ -167,6 +167,10 @@ std::vector<CommissionCheck> checkArms(double patience_s, const Progress& progre
     return failedFor({"CANNOT_WRITE", "The folder for temporary files cannot be written to", "",
                       kTemporaryNext});
   }
+  if (const Status fits = tryRoom(folder->path(), 100'000); !fits) {
+    return failedFor({"CANNOT_WRITE", "The folder for temporary files has no room", "",
+                      std::string("Free some space there. ") + kTemporaryNext});
+  }
   const Result<ChildRun> run =
       runChild({{labProgram().string(), "commission", "--arms", "--json", "--out",
                  folder->path().string(), "--wait", plainNumber(patience_s)},
@@ -176,12 +180,15 @@ std::vector<CommissionCheck> checkArms(double patience_s, const Progress& progre
                 "Hold each arm and move it a little"},
                progress);
   const Result<Json> json = readJsonFile(*folder / kArmsAnswer);
-  if (!run) return failed("The program that tries the arms could not be run");
+  if (!run) return failedFor(run.error());
   if (run->timed_out) return failed("The driver of a device does not answer");
   if (run->exit_code > 128) return failed("The driver of a device ended the program that asked it");
   const auto checks =
       json && json->contains("checks") ? checksOf(json->at("checks")) : std::nullopt;
-  return checks ? *checks : failed("The program that tries the arms did not come to its end");
+  if (checks) return *checks;
+  const auto said = errorSaid(*folder / "said");
+  return said ? failedFor(*said)
+              : failed("The program that tries the arms did not come to its end");
 }
 
 }  // namespace trephine

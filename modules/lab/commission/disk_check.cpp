@@ -7,6 +7,7 @@
 #include <cerrno>
 #include <chrono>
 
+#include "base/descriptor.h"
 #include "base/file.h"
 
 namespace trephine {
@@ -26,8 +27,8 @@ CommissionCheck written(const std::filesystem::path& into, std::size_t bytes, do
     return notMeasured("disk_write", Fitness::fail, writeError(into, error));
   };
   const std::string file = (into / (".trephine-commission-" + std::to_string(::getpid()))).string();
-  const int fd = ::open(file.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0600);
-  if (fd < 0) return failed(errno);
+  const Descriptor opened(::open(file.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0600));
+  if (!opened.ok()) return failed(errno);
   ::unlink(file.c_str());
   std::vector<char> block(4'000'000);
   for (std::size_t i = 0; i < block.size(); ++i) block[i] = char(i * 2654435761U >> 13);
@@ -35,12 +36,12 @@ CommissionCheck written(const std::filesystem::path& into, std::size_t bytes, do
   std::size_t done = 0;
   int error = 0;
   while (done < bytes && error == 0 && !progress.cancelled() && secondsSince(begun) < most_s) {
-    const ssize_t n = ::write(fd, block.data(), std::min(block.size(), bytes - done));
+    const ssize_t n = ::write(opened.get(), block.data(), std::min(block.size(), bytes - done));
     if (n < 0 && errno != EINTR) error = errno;
     done += std::size_t(std::max<ssize_t>(n, 0));
-    if (error == 0 && ::fdatasync(fd) != 0) error = errno;  // as it goes: the time is kept to
+    if (error == 0 && ::fdatasync(opened.get()) != 0)
+      error = errno;  // as it goes: the time is kept to
   }
-  ::close(fd);
   if (error != 0) return failed(error);
   return judged("disk_write", double(done) / kBytesOfMB / std::max(secondsSince(begun), 1e-6));
 }

@@ -16,6 +16,9 @@
 #include <ctime>
 #include <optional>
 
+#include "base/descriptor.h"
+#include "base/json.h"
+
 extern char** environ;
 
 namespace trephine {
@@ -31,26 +34,12 @@ std::int64_t now_ns() {
   return std::int64_t(t.tv_sec) * 1'000'000'000 + t.tv_nsec;
 }
 
-class Descriptor {
- public:
-  // Above those of stdin, stdout and stderr, also where this program has none of them.
-  explicit Descriptor(int fd) : fd_(fd) {
-    if (fd < 0 || fd > STDERR_FILENO) return;
-    fd_ = ::fcntl(fd, F_DUPFD_CLOEXEC, STDERR_FILENO + 1);
-    ::close(fd);
-  }
-  ~Descriptor() { close(); }
-  Descriptor(const Descriptor&) = delete;
-  Descriptor& operator=(const Descriptor&) = delete;
-  void close() {
-    if (fd_ >= 0) ::close(fd_);
-    fd_ = -1;
-  }
-  int get() const { return fd_; }
-
- private:
-  int fd_;
-};
+// Not in the place of stdin, stdout or stderr, also where this program has none of them.
+Descriptor aboveStandard(int fd) {
+  Descriptor opened(fd);
+  if (!opened.ok() || fd > STDERR_FILENO) return opened;
+  return Descriptor(::fcntl(fd, F_DUPFD_CLOEXEC, STDERR_FILENO + 1));
+}
 
 Error cannotRun(const ChildCommand& command, int error) {
   return {"CANNOT_RUN", std::string("A program could not be run: ") + std::strerror(error),
@@ -100,15 +89,15 @@ std::vector<std::string> environmentWith(const std::filesystem::path& home) {
 }  // namespace
 
 Result<ChildRun> runChild(const ChildCommand& command, const Progress& progress) {
-  const Descriptor output(
-      ::open(command.output.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0600));
-  const Descriptor nothing(::open("/dev/null", O_RDWR | O_CLOEXEC));
+  const Descriptor output =
+      aboveStandard(::open(command.output.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0600));
+  const Descriptor nothing = aboveStandard(::open("/dev/null", O_RDWR | O_CLOEXEC));
   int ends[2] = {-1, -1};
-  if (output.get() < 0 || nothing.get() < 0 || ::pipe2(ends, O_CLOEXEC) != 0) {
+  if (!output.ok() || !nothing.ok() || ::pipe2(ends, O_CLOEXEC) != 0) {
     return cannotRun(command, errno);
   }
-  const Descriptor reports(ends[0]);
-  Descriptor reporting(ends[1]);
+  const Descriptor reports = aboveStandard(ends[0]);
+  Descriptor reporting = aboveStandard(ends[1]);
   std::vector<std::string> words = command.words;
   std::vector<std::string> variables = environmentWith(command.home);
   const std::vector<char*> arguments = pointersTo(words);
@@ -124,7 +113,7 @@ Result<ChildRun> runChild(const ChildCommand& command, const Progress& progress)
   Report report;
   for (Report next; ::read(reports.get(), &next, sizeof next) == sizeof next;) report = next;
 
-  const Descriptor process(int(::syscall(SYS_pidfd_open, child, 0)));
+  const Descriptor process = aboveStandard(int(::syscall(SYS_pidfd_open, child, 0)));
   ChildRun run;
   // Asked first: one that has an arm takes its force away.
   std::optional<std::int64_t> asked_ns;
@@ -140,7 +129,7 @@ Result<ChildRun> runChild(const ChildCommand& command, const Progress& progress)
       const double share = 1e-9 * double(now - report.start_ns) / command.limit_s;
       progress.at(std::min(share, 1.0), command.step);
     }
-    const bool unknown = process.get() < 0;  // whether it has ended
+    const bool unknown = !process.ok();  // whether it has ended
     if (!progress.cancelled() && !run.timed_out && !unknown) continue;
     if (unknown || (asked_ns && now > *asked_ns + kPatience_ns)) {
       ::kill(child, SIGKILL);
@@ -162,6 +151,17 @@ Result<ChildRun> runChild(const ChildCommand& command, const Progress& progress)
   run.seconds = double(end_ns - report.start_ns) / 1e9;
   run.peak_rss_mb = double(usage.ru_maxrss) / 1024.0;
   return run;
+}
+
+std::optional<Error> errorSaid(const std::filesystem::path& output) {
+  const Result<Json> said = readJsonFile(output);
+  if (!said || !said->contains("error")) return {};
+  try {
+    const Json& error = said->at("error");
+    return Error{error.at("code"), error.at("what"), error.at("where"), error.at("next")};
+  } catch (const Json::exception&) {
+    return {};
+  }
 }
 
 }  // namespace trephine

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -31,5 +32,9 @@ struct ChildRun {
 // 1.5 s later a SIGKILL. Errors: CANCELLED (the child was ended), CANNOT_RUN (says what the system
 // refused).
 Result<ChildRun> runChild(const ChildCommand& command, const Progress& progress);
+
+// The error that a command of ours with --json left in its `output`; nothing where it holds
+// something else.
+std::optional<Error> errorSaid(const std::filesystem::path& output);
 
 }  // namespace trephine

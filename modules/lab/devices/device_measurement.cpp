@@ -327,10 +327,11 @@ Result<DeviceTrial> trialOf(const TrialOptions& options, const fs::path& out,
       progress);
   if (!run) return run.error();
   Result<Json> json = readJsonFile(answer);
-  const std::string said = json ? json->dump() : json.error().sentence();
+  const Error ended{"", "it ended with code " + std::to_string(run->exit_code), "", ""};
+  const Error why = errorSaid(said_file).value_or(json ? ended : json.error());
   fs::remove(said_file, ec);
   if (run->exit_code != 0 || !json || !json->contains("zero_ms")) {
-    return Error{"NOT_MEASURED", "A trial did not come to its end: " + said, "", ""};
+    return Error{"NOT_MEASURED", "A trial did not come to its end: " + why.sentence(), "", ""};
   }
   fs::remove(answer, ec);
   return DeviceTrial{json->at("zero_ms"), json->at("at_arm_ms"), json->at("stop_ms"),

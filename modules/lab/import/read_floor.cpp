@@ -10,6 +10,8 @@
 #include <optional>
 #include <vector>
 
+#include "base/descriptor.h"
+
 namespace trephine {
 
 namespace {
@@ -18,17 +20,16 @@ namespace fs = std::filesystem;
 
 // Reads a whole file to `to`, which has room for `room` bytes; its length, or nothing.
 std::optional<std::size_t> readWhole(const fs::path& file, char* to, std::size_t room) {
-  const int fd = ::open(file.c_str(), O_RDONLY | O_CLOEXEC);
-  if (fd < 0) return std::nullopt;
+  const Descriptor opened(::open(file.c_str(), O_RDONLY | O_CLOEXEC));
+  if (!opened.ok()) return std::nullopt;
   struct stat status {};
-  bool good = ::fstat(fd, &status) == 0 && std::size_t(status.st_size) <= room;
+  bool good = ::fstat(opened.get(), &status) == 0 && std::size_t(status.st_size) <= room;
   std::size_t done = 0;
   while (good && done < std::size_t(status.st_size)) {
-    const ssize_t got = ::read(fd, to + done, std::size_t(status.st_size) - done);
+    const ssize_t got = ::read(opened.get(), to + done, std::size_t(status.st_size) - done);
     good = got > 0;
     if (good) done += std::size_t(got);
   }
-  ::close(fd);
   if (!good) return std::nullopt;
   return done;
 }

@@ -289,10 +289,14 @@ class CasesControlsGuiTest : public test::WindowTest {
     QVERIFY(opened.count() == 1 || opened.wait(kLong_ms));
     window_->show(Place::cases);
     window_->show(Place::review);
-    QTRY_VERIFY_WITH_TIMEOUT(find<QPushButton>("replay")->isEnabled(), kLong_ms);
-    click("replay");
-    QTRY_VERIFY_WITH_TIMEOUT(find<QLabel>("replayOutcome")->text().contains("bit for bit"),
-                             kLong_ms);
+    QTRY_VERIFY_WITH_TIMEOUT(find<QLabel>("replayOutcome")->text().isEmpty(), kLong_ms);
+    for (int i = 0; i < 2; ++i) {
+      QVERIFY(find<QPushButton>("replay")->isEnabled());
+      click("replay");
+      QVERIFY(find<QLabel>("replayOutcome")->text().isEmpty());
+      QTRY_VERIFY_WITH_TIMEOUT(find<QLabel>("replayOutcome")->text().contains("bit for bit"),
+                               kLong_ms);
+    }
   }
 
   void helpOpensAtThePageOfWhatIsBeforeAPersonAndItsLinksLead() {

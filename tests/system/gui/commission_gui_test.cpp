@@ -125,7 +125,7 @@ class CommissionGuiTest : public test::WindowTest {
     Commissioning like = *made;
     // These depend on what else the machine does now.
     std::erase_if(like.checks, [](const auto& c) {
-      return c.name.starts_with("lateness") || c.verdict == Fitness::fail;
+      return c.name.starts_with("lateness") || c.name == "disk_write" || c.verdict == Fitness::fail;
     });
     line();  // what looked at the commissioning that was made
     // It looks already, at one that was not fit.
@@ -135,9 +135,7 @@ class CommissionGuiTest : public test::WindowTest {
     find<FitnessLine>("fitness")->look();
     QTest::qWait(200);
     keep(like);
-    QString same = line();
-    // What else the machine does may make ticks late, which is then said.
-    for (int i = 0; i < 5 && same.contains("late by"); ++i) same = line();
+    const QString same = line();
     QVERIFY2(same.startsWith("As commissioned on"), qPrintable(same));
     window_->grab().save(TREPHINE_ARTEFACTS "/fitness_green.png");
     for (CommissionCheck& check : like.checks) {
@@ -148,6 +146,28 @@ class CommissionGuiTest : public test::WindowTest {
     QVERIFY2(changed.contains("Arms that are plugged in, now 0"), qPrintable(changed));
     QVERIFY2(changed.contains("Plug them in"), qPrintable(changed));
     window_->grab().save(TREPHINE_ARTEFACTS "/fitness_changed.png");
+  }
+
+  void whatIsAskedBeforeAnExerciseIsLookedAtAfterIt() {
+    QSignalSpy opened(&workstation(), &Workstation::caseOpened);
+    workstation().openPhantom("abdomen");
+    QVERIFY(opened.count() == 1 || opened.wait(60000));
+    auto* line = find<FitnessLine>("fitness");
+    Commissioning unfit = *readCommissioning(*stateFolder() / "commission.json");
+    unfit.checks = {judged("frame_time", 1000.0)};
+    keep(unfit);
+    QSignalSpy looked(line, &FitnessLine::looked);
+    line->look();
+    line->look();
+    QSignalSpy started(&workstation(), &Workstation::sessionStarted);
+    window_->show(Place::train);
+    find<QAction>("start")->trigger();
+    QVERIFY(started.count() == 1 || started.wait(60000));
+    QVERIFY(!looked.wait(500));
+    find<QAction>("stop")->trigger();
+    QVERIFY(looked.wait(60000));
+    QVERIFY(workstation().phase() == Workstation::Phase::ready);
+    QVERIFY2(line->text().contains("not fit"), qPrintable(line->text()));
   }
 };
 

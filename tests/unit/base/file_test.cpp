@@ -43,6 +43,20 @@ TEST(WriteTextFile, ReplacesAnOldFile) {
   EXPECT_EQ(filesIn(folder.path()), 1u);
 }
 
+TEST(TryRoom, LeavesNothingAndNamesTheFolderThatHasNone) {
+  const test::TemporaryFolder folder;
+  EXPECT_TRUE(tryRoom(folder.path(), 100'000));
+  Status status;
+  {
+    test::FileSizeLimit limit(4096);
+    status = tryRoom(folder.path(), 100'000);
+  }
+  ASSERT_FALSE(status);
+  EXPECT_EQ(status.error().code, "CANNOT_WRITE");
+  EXPECT_EQ(status.error().where, folder.path().string());
+  EXPECT_EQ(filesIn(folder.path()), 0u);
+}
+
 TEST(WriteTextFile, KeepsTheOldFileWhenTheDiskIsFull) {
   const test::TemporaryFolder folder;
   const fs::path file = folder / "file";

@@ -50,6 +50,21 @@ TEST_F(Child, TellsItsExitCodeOutputAndTime) {
   EXPECT_EQ(killed->exit_code, 128 + 11);
 }
 
+TEST_F(Child, OfACommandOfOursTheErrorIsRead) {
+  const auto said = [&](const std::string& text) {
+    EXPECT_TRUE(runChild(shell("printf '%s' '" + text + "'; exit 1"), progress_));
+    return errorSaid(folder_ / "stdout");
+  };
+  const auto error =
+      said(R"({"error":{"code":"NO_DEVICE","what":"No arm","where":"left","next":"Plug it in"}})");
+  ASSERT_TRUE(error);
+  EXPECT_EQ(error->code, "NO_DEVICE");
+  EXPECT_EQ(error->sentence(), "No arm (left). Plug it in.");
+  for (const char* other :
+       {"", "{}", "a driver talks", R"({"error":"x"})", R"({"error":{}})", "[]"})
+    EXPECT_FALSE(said(other)) << other;
+}
+
 TEST_F(Child, TellsThePeakOfItsMemory) {
   const Result<ChildRun> small = runChild(shell(":"), progress_);
   const Result<ChildRun> large =

@@ -212,6 +212,19 @@ TEST_F(Accounts, WhatATraineeHasMadeBeforeIsNotItsToChangeAnyMore) {
   EXPECT_EQ(fs::status(file).permissions(), fs::perms(0664));
 }
 
+TEST_F(Accounts, WhatIsHalfWrittenOfACaseAndItsMakersAloneStaysSo) {
+  const fs::path file = storage_ / ".parts" / "new-1" / "private.json";
+  fs::create_directory(file.parent_path());
+  std::ofstream(file) << "x";
+  fs::permissions(file, fs::perms(0600));
+  ASSERT_EQ(::chown(file.c_str(), kTeacher, gid_t(-1)), 0);
+  ASSERT_TRUE(shareStorage(storage_, kGroups));
+  struct stat at {};
+  ASSERT_EQ(::stat(file.c_str(), &at), 0);
+  EXPECT_EQ(at.st_mode & 0777, 0600u);
+  EXPECT_EQ(at.st_uid, uid_t(kTeacher));
+}
+
 TEST_F(Accounts, ATraineeCannotKeepTheLock) {
   EXPECT_FALSE(as(kTrainee, [&] {
     const int fd = ::open((storage_ / ".lock").c_str(), O_RDONLY | O_CLOEXEC);
@@ -251,11 +264,13 @@ TEST_F(Accounts, WhoChangesNamesWhileItIsSharedGetsNothingElse) {
     }
   }
   fs::create_directory_symlink(secret, folder_ / "link");
+  const auto exchange = [&] {
+    return ::renameat2(AT_FDCWD, (inside / "real").c_str(), AT_FDCWD, (folder_ / "link").c_str(),
+                       RENAME_EXCHANGE) == 0;
+  };
+  if (!exchange()) GTEST_SKIP() << "this file system exchanges no names";
   std::jthread teacher([&](const std::stop_token& stop) {
-    while (!stop.stop_requested()) {
-      ::renameat2(AT_FDCWD, (inside / "real").c_str(), AT_FDCWD, (folder_ / "link").c_str(),
-                  RENAME_EXCHANGE);
-    }
+    while (!stop.stop_requested()) exchange();
   });
   for (int i = 0; i < 60; ++i) (void)shareStorage(storage_, kGroups);
   teacher = {};

@@ -72,6 +72,22 @@ TEST(HandOnArm, AnArmThatIsStruckAndThenLiesHasNone) {
   }
 }
 
+TEST(HandOnArm, AnArmThatIsStruckAndCoastsHasNoneUntilItIsMovedFromWhereItRests) {
+  for (const double from_m_s : {1.0, 1.5, 3.0}) {
+    for (const double slowed_m_s2 : {1.0, 2.0, 5.0, 9.8, 20.0}) {
+      ArmThatLay arm;
+      EXPECT_FALSE(arm.taken(0.0, 0.1));
+      for (double speed_m_s = from_m_s; speed_m_s > 0.0; speed_m_s -= slowed_m_s2 * kPeriod_s) {
+        arm.x_m += speed_m_s * kPeriod_s;
+        EXPECT_FALSE(arm.hand.takes(sampleAt(arm.x_m), kPeriod_s))
+            << from_m_s << " " << slowed_m_s2;
+      }
+      EXPECT_FALSE(arm.taken(arm.x_m, 0.1)) << from_m_s << " " << slowed_m_s2;
+      EXPECT_TRUE(arm.taken(arm.x_m + 0.006, 0.1));
+    }
+  }
+}
+
 TEST(HandOnArm, AnArmInItsHolderIsMovedFromWhereItLeavesIt) {
   ArmThatLay arm;
   EXPECT_FALSE(arm.taken(0.1, 0.1, true));
