@@ -28,6 +28,7 @@ namespace fs = std::filesystem;
 enum class Holds {
   entries,          // a folder for each
   files,            // files and folders
+  parts,            // folders of files, of which kPrivatePart stays its owner's
   of_their_owners,  // what stays theirs
   nothing           // it is a file
 };
@@ -39,7 +40,7 @@ struct StoragePart {
 constexpr StoragePart kStorageParts[] = {{"cases", Holds::entries, 02775},
                                          {"exercises", Holds::entries, 02775},
                                          {"tissues", Holds::files, 02775},
-                                         {".parts", Holds::files, 02775},
+                                         {".parts", Holds::parts, 02775},
                                          {"private", Holds::of_their_owners, 03770},
                                          {"sessions", Holds::of_their_owners, 03777},
                                          {".lock", Holds::nothing, 0660}};
@@ -176,13 +177,15 @@ Status give(int fd, gid_t group, mode_t mode, const fs::path& path) {
 }
 
 // What is in it already is root's, and the group's to change: who made it has no right of his own.
-Status giveInside(int folder, gid_t group, mode_t mode, const fs::path& path) {
+// `depth`: of the folder, below the part.
+Status giveInside(int folder, const StoragePart& part, gid_t group, const fs::path& path,
+                  int depth = 0) {
   DIR* listed = ::fdopendir(::dup(folder));
   if (!listed) return writeError(path, errno);
   const std::unique_ptr<DIR, int (*)(DIR*)> closed(listed, &::closedir);
   for (const dirent* entry; (entry = ::readdir(listed));) {
     const std::string name = entry->d_name;
-    if (name == "." || name == ".." || name == case_folders::kPrivatePart) continue;
+    if (name == "." || name == "..") continue;
     const fs::path at_path = path / name;
     const Descriptor one = openIn(folder, name.c_str(), O_RDONLY | O_NONBLOCK);
     struct stat at {};
@@ -192,10 +195,16 @@ Status giveInside(int folder, gid_t group, mode_t mode, const fs::path& path) {
     }
     if (!one.ok() || ::fstat(one.get(), &at) != 0) return writeError(at_path, errno);
     if (Status good = checkEntry(at, at_path); !good) return good;
-    if (Status given = give(one.get(), group, modeInGroups(at.st_mode, mode), at_path); !given)
+    if (part.holds == Holds::parts && depth == 1 && S_ISREG(at.st_mode) &&
+        name == case_folders::kPrivatePart) {
+      continue;
+    }
+    if (Status given = give(one.get(), group, modeInGroups(at.st_mode, part.mode), at_path);
+        !given) {
       return given;
+    }
     if (!S_ISDIR(at.st_mode)) continue;
-    if (Status given = giveInside(one.get(), group, mode, at_path); !given) return given;
+    if (Status given = giveInside(one.get(), part, group, at_path, depth + 1); !given) return given;
   }
   return {};
 }
@@ -212,7 +221,7 @@ Status givePart(int storage, const StoragePart& part, gid_t group, const fs::pat
   if (Status good = checkEntry(at, path); !good) return good;
   if (Status given = give(one.get(), group, part.mode, path); !given) return given;
   if (file || part.holds == Holds::of_their_owners) return {};
-  return giveInside(one.get(), group, part.mode, path);
+  return giveInside(one.get(), part, group, path);
 }
 
 }  // namespace

@@ -14,8 +14,9 @@ struct HandSample {
 
 // A hand is on the arm once a button is held, and then for as long as that is; or, without, once
 // the arm has been moved 5 mm from where it was first seen, for 20 samples. Where it jumps by 5 mm
-// from one sample to the next, or goes faster than a hand, an encoder has jumped or the arm was
-// struck: it is then first seen where it comes to rest.
+// from one sample to the next, an encoder has jumped: it is then first seen there. Where it goes
+// faster than a hand it was struck: it is then first seen where it has stayed within 2 mm for half
+// a second. A blow that is over within 8 ms is too short to be told from a hand.
 class HandOnArm {
  public:
   // No hand that holds an arm goes faster, over this time: it was struck, or has lost the hand.
@@ -31,7 +32,8 @@ class HandOnArm {
  private:
   int moved_ = 0;  // samples
   bool seen_ = false, struck_ = false, by_button_ = false;
-  Vec3 seen_at_m_{0.0}, last_m_{0.0}, speed_m_s_{0.0};
+  Vec3 seen_at_m_{0.0}, last_m_{0.0}, rough_m_s_{0.0}, speed_m_s_{0.0}, mean_m_{0.0}, rest_m_{0.0};
+  double rested_s_ = 0.0;  // within 2 mm of there
 };
 
 }  // namespace trephine

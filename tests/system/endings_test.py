@@ -122,7 +122,7 @@ class Signals(EndingTest):
         process = self.start(WINDOW, "--exercise", SCENES / "cranium.json", "--out", self.folder,
                              "--json")
         self.wait_for(process, lambda: any(self.folder.glob("session-*.h5")))
-        time.sleep(1)
+        time.sleep(3)  # its arms start after it
         code, answer = self.end(process, signal.SIGTERM)
         self.assertEqual(code, 128 + signal.SIGTERM)
         self.assert_error(answer, "CANCELLED")

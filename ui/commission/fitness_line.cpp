@@ -23,6 +23,7 @@ FitnessLine::FitnessLine(Bench& bench) : bench_(bench) {
     using Phase = Workstation::Phase;
     const Phase phase = bench_.workstation().phase();
     if (phase != Phase::empty && phase != Phase::ready) {
+      again_ = again_ || looking_.busy();
       looking_.cancel();
     } else if (again_ && !looking_.busy()) {
       look();
@@ -38,8 +39,8 @@ void FitnessLine::look() {
   }
   using Phase = Workstation::Phase;
   const Phase phase = bench_.workstation().phase();
-  if (phase != Phase::empty && phase != Phase::ready) return;
-  again_ = false;
+  again_ = phase != Phase::empty && phase != Phase::ready;
+  if (again_) return;
   StartSurroundings here;
   here.storage = bench_.storage();
   here.storage_is_set = bench_.storage() == bench_.workstation().policy().storage;

@@ -14,8 +14,8 @@ class FitnessLine : public ElidedLabel {
  public:
   explicit FitnessLine(Bench& bench);
 
-  // Some seconds, in the background; an exercise that begins meanwhile ends it. Nothing while one
-  // runs. Asked again meanwhile, it looks anew: there may be another commissioning.
+  // Some seconds, in the background. An exercise that begins meanwhile ends it, and it looks after
+  // that. Asked again meanwhile, it looks anew: there may be another commissioning.
   void look();
   void say(const StartWords& words);
 
@@ -25,7 +25,7 @@ class FitnessLine : public ElidedLabel {
  private:
   Bench& bench_;
   BackgroundTask looking_;
-  bool again_ = false;
+  bool again_ = false;  // once it can
 };
 
 // Where the last commissioning and what it recommends are, of this person and of the hospital.

@@ -331,7 +331,8 @@ Result<DeviceTrial> trialOf(const TrialOptions& options, const fs::path& out,
   const Error why = errorSaid(said_file).value_or(json ? ended : json.error());
   fs::remove(said_file, ec);
   if (run->exit_code != 0 || !json || !json->contains("zero_ms")) {
-    return Error{"NOT_MEASURED", "A trial did not come to its end: " + why.sentence(), "", ""};
+    return Error{"NOT_MEASURED", "A trial did not come to its end: " + why.what, why.where,
+                 why.next};
   }
   fs::remove(answer, ec);
   return DeviceTrial{json->at("zero_ms"), json->at("at_arm_ms"), json->at("stop_ms"),
@@ -356,7 +357,7 @@ Status runTrials(const fs::path& bench, int count, const fs::path& out, DeviceRo
     }
     if (!trial) {  // the others count all the same
       ++row.failed;
-      row.failure = trial.error().what;
+      row.failure = trial.error().sentence();
       continue;
     }
     (unplug ? unplug_ms : block_ms).push_back(trial->zero_ms);

@@ -158,7 +158,6 @@ class CommissionGuiTest : public test::WindowTest {
     keep(unfit);
     QSignalSpy looked(line, &FitnessLine::looked);
     line->look();
-    line->look();
     QSignalSpy started(&workstation(), &Workstation::sessionStarted);
     window_->show(Place::train);
     find<QAction>("start")->trigger();

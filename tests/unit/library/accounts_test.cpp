@@ -225,6 +225,25 @@ TEST_F(Accounts, WhatIsHalfWrittenOfACaseAndItsMakersAloneStaysSo) {
   EXPECT_EQ(at.st_uid, uid_t(kTeacher));
 }
 
+TEST_F(Accounts, ANameAloneKeepsNothingForItsOwner) {
+  const fs::path set = storage_ / "tissues" / "private.json", inside = storage_ / "cases" / "a",
+                 folder = storage_ / ".parts" / "new-1" / "private.json";
+  fs::create_directories(inside);
+  fs::create_directories(folder);
+  for (const fs::path& file : {set, inside / "private.json", folder / "private.json"}) {
+    std::ofstream(file) << "x";
+  }
+  for (const fs::path& file : {set, inside / "private.json", folder / "private.json", folder}) {
+    ASSERT_EQ(::chown(file.c_str(), kTeacher, gid_t(-1)), 0);
+  }
+  ASSERT_TRUE(shareStorage(storage_, kGroups));
+  for (const fs::path& file : {set, inside / "private.json", folder / "private.json", folder}) {
+    struct stat at {};
+    ASSERT_EQ(::stat(file.c_str(), &at), 0);
+    EXPECT_EQ(at.st_uid, 0u) << file;
+  }
+}
+
 TEST_F(Accounts, ATraineeCannotKeepTheLock) {
   EXPECT_FALSE(as(kTrainee, [&] {
     const int fd = ::open((storage_ / ".lock").c_str(), O_RDONLY | O_CLOEXEC);

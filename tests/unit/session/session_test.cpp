@@ -464,7 +464,7 @@ TEST(Session, StandsStillWhileItsVoxelsAreReadAndGoesOnAfterwards) {
   auto session = *Session::create(cranium(), test::placed(cranium(), smallHead()), scripted());
   ASSERT_TRUE(session->start(30.0).ok());
   const auto wait = [] { std::this_thread::sleep_for(std::chrono::milliseconds(5)); };
-  while (session->state().ticks < 2000) wait();
+  while (!session->state().can_undo) wait();  // something was cut
   while (!session->freeze()) wait();
   const std::string before = slabsSha256(slabsOf(session->grid()));
   EXPECT_TRUE(session->state().paused);
@@ -525,15 +525,15 @@ TEST(Session, ThatNeverCameToATickHasTheVoxelsThatItBeganWith) {
 TEST(Session, KeepsAScriptsCommandsWhileItsVoxelsAreRead) {
   SessionOptions options = scripted();
   Command back{CommandKind::reset, 0, {}};
-  options.script->commands = {{2.2, back}};
+  options.script->commands = {{4.0, back}};
   auto session = *Session::create(cranium(), test::placed(cranium(), smallHead()), options);
   ASSERT_TRUE(session->start(30.0).ok());
   const auto wait = [] { std::this_thread::sleep_for(std::chrono::milliseconds(5)); };
-  while (session->state().ticks < 2000) wait();
+  while (!session->state().can_undo) wait();  // something was cut
   while (!session->freeze()) wait();
   const std::string before = slabsSha256(slabsOf(session->grid()));
   ASSERT_NE(before, slabsSha256(slabsOf(smallHead())));
-  while (session->state().ticks < 2600) wait();
+  while (session->state().ticks < 4400) wait();
   EXPECT_EQ(slabsSha256(slabsOf(session->grid())), before);
   session->thaw();
   while (session->state().paused || session->state().busy || session->state().can_undo) wait();
