@@ -10,9 +10,9 @@ bool HandOnArm::takes(const HandSample& sample, double period_s) {
     *this = HandOnArm();
     return false;
   }
-  // In two steps: an encoder that scatters by a millimetre has little speed by that.
   const Vec3 step_m = seen_ ? sample.position_m - last_m_ : Vec3(0.0);
   last_m_ = sample.position_m;
+  // In two steps: an encoder that scatters by a millimetre has little speed by that.
   rough_m_s_ += period_s / (period_s + kBlowOver_s) * (step_m / period_s - rough_m_s_);
   speed_m_s_ += period_s / (period_s + kBlowOver_s) * (rough_m_s_ - speed_m_s_);
   if (glm::length(speed_m_s_) > kTooFast_m_s) {

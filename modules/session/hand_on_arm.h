@@ -19,7 +19,7 @@ struct HandSample {
 // a second. A blow that is over within 8 ms is too short to be told from a hand.
 class HandOnArm {
  public:
-  // No hand that holds an arm goes faster, over this time: it was struck, or has lost the hand.
+  // No hand that holds an arm goes faster: it was struck, or, over this time, has lost the hand.
   static constexpr double kTooFast_m_s = 0.5, kSpeedOver_s = 0.01;
 
   // Of each sample until it is true: the hand has taken the arm.

@@ -36,6 +36,14 @@ class Commission(unittest.TestCase):
         answer = json.loads(done.stdout)
         return {check["name"]: check for check in answer["checks"]}
 
+    def mount(self, at, size):
+        """A disk of this size there, until the test ends."""
+        if not can_mount():
+            self.skipTest("only root may mount a small disk")
+        at.mkdir(exist_ok=True)
+        subprocess.run(["mount", "-t", "tmpfs", "-o", f"size={size}", "tmpfs", str(at)], check=True)
+        self.addCleanup(subprocess.run, ["umount", str(at)], check=True)
+
     def test_each_check_has_value_limit_verdict_and_next_step(self):
         checks = self.run_it()
         for name in ("lateness_1000_normal", "priority", "locked_memory", "opengl", "volume_edge",
@@ -93,14 +101,9 @@ class Commission(unittest.TestCase):
         self.assertEqual(checks["locked_memory"]["verdict"], "warn")
 
     def test_a_small_disk_fails(self):
-        if not can_mount():
-            self.skipTest("only root may mount a small disk")
         for size in ("1g", "2m"):
             small = self.folder / size
-            small.mkdir()
-            subprocess.run(["mount", "-t", "tmpfs", "-o", f"size={size}", "tmpfs", str(small)],
-                           check=True)
-            self.addCleanup(subprocess.run, ["umount", str(small)], check=True)
+            self.mount(small, size)
             checks = self.run_it(without_display(), storage=small)
             self.assertEqual(checks["disk_room"]["verdict"], "fail")
             self.assertLess(checks["disk_room"]["value"], 1.1)
@@ -125,12 +128,8 @@ class Commission(unittest.TestCase):
             self.assertEqual(checks[name]["verdict"], verdict, checks[name])
 
     def test_a_full_folder_for_the_page_is_said_before_the_minutes_that_it_takes(self):
-        if not can_mount():
-            self.skipTest("only root may mount a small disk")
         full = self.folder / "full"
-        full.mkdir()
-        subprocess.run(["mount", "-t", "tmpfs", "-o", "size=8k", "tmpfs", str(full)], check=True)
-        self.addCleanup(subprocess.run, ["umount", str(full)], check=True)
+        self.mount(full, "8k")
         done = subprocess.run([LAB, "commission", "--json", "--out", str(full), "--storage",
                                str(self.folder)], capture_output=True, text=True, timeout=20)
         error = json.loads(done.stdout)["error"]
@@ -164,11 +163,7 @@ class Commission(unittest.TestCase):
             self.assertIn("TMPDIR", checks[name]["next"])
 
     def test_a_full_folder_for_temporary_files_is_said_of_it_and_not_of_devices(self):
-        if not can_mount():
-            self.skipTest("only root may mount a small disk")
-        subprocess.run(["mount", "-t", "tmpfs", "-o", "size=40k", "tmpfs", str(self.temporary)],
-                       check=True)
-        self.addCleanup(subprocess.run, ["umount", str(self.temporary)], check=True)
+        self.mount(self.temporary, "40k")
         checks = self.run_it(without_display())
         for name in ("arms", "arm_encoders", "arm_forces"):
             self.assertEqual(checks[name]["verdict"], "fail")

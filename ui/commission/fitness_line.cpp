@@ -20,9 +20,7 @@ FitnessLine::FitnessLine(Bench& bench) : bench_(bench) {
   setContentsMargins(6, 0, 0, 0);
   setTextFormat(Qt::PlainText);
   connect(&bench.workstation(), &Workstation::phaseChanged, this, [this] {
-    using Phase = Workstation::Phase;
-    const Phase phase = bench_.workstation().phase();
-    if (phase != Phase::empty && phase != Phase::ready) {
+    if (!mayLook()) {
       again_ = again_ || looking_.busy();
       looking_.cancel();
     } else if (again_ && !looking_.busy()) {
@@ -31,15 +29,19 @@ FitnessLine::FitnessLine(Bench& bench) : bench_(bench) {
   });
 }
 
+bool FitnessLine::mayLook() const {
+  using Phase = Workstation::Phase;
+  const Phase phase = bench_.workstation().phase();
+  return phase == Phase::empty || phase == Phase::ready;
+}
+
 void FitnessLine::look() {
   if (looking_.busy()) {  // at what was before
     again_ = true;
     looking_.cancel();
     return;
   }
-  using Phase = Workstation::Phase;
-  const Phase phase = bench_.workstation().phase();
-  again_ = phase != Phase::empty && phase != Phase::ready;
+  again_ = !mayLook();
   if (again_) return;
   StartSurroundings here;
   here.storage = bench_.storage();

@@ -23,6 +23,8 @@ class FitnessLine : public ElidedLabel {
   void looked();  // it came to its end, and says it
 
  private:
+  bool mayLook() const;  // no exercise runs
+
   Bench& bench_;
   BackgroundTask looking_;
   bool again_ = false;  // once it can
