@@ -26,7 +26,7 @@
 #include "scene/names.h"
 #include "session/case.h"
 #include "training/replay.h"
-#include "volume/phantom.h"
+#include "volume/phantom_file.h"
 
 namespace trephine {
 
@@ -68,19 +68,20 @@ Result<Json> drawnFiles(const char* what, Draw&& draw) {
 
 int phantomCommand(const std::string& name, const std::string& out, bool json,
                    const Progress& progress) {
-  Result<Volume> volume = makePhantom(name, progress);
-  if (!volume) return printError("phantom", volume.error(), json);
+  Result<Phantom> phantom = openPhantom(name, progress);
+  if (!phantom) return printError("phantom", phantom.error(), json);
+  const Volume& volume = phantom->volume;
   const CtSeriesText text{name + " phantom", name};
-  if (Status written = writeCtSeries(*volume, text, out, progress); !written) {
+  if (Status written = writeCtSeries(volume, text, out, progress); !written) {
     return printError("phantom", written.error(), json);
   }
-  const GridGeometry& g = volume->geometry;
+  const GridGeometry& g = volume.geometry;
   if (json) {
     printAnswer("phantom", {{"path", out},
                             {"files", g.size[2]},
                             {"size", {g.size[0], g.size[1], g.size[2]}},
                             {"spacing_mm", {g.spacing_mm.x, g.spacing_mm.y, g.spacing_mm.z}},
-                            {"volume_sha256", volumeSha256(*volume)}});
+                            {"volume_sha256", volumeSha256(volume)}});
   } else {
     std::printf("%d slices of the %s phantom are in %s\n", g.size[2], name.c_str(), out.c_str());
   }

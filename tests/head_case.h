@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "liver_case.h"
-#include "volume/phantom.h"
+#include "volume/phantom_file.h"
 #include "volume/two_threads.h"
 
 namespace trephine::test {
@@ -67,7 +67,7 @@ inline std::vector<std::uint8_t> headTruth(const GridGeometry& g) {
 }
 
 inline HeadCase builtInHead() {
-  HeadCase head{*makePhantom("cranium"), {}};
+  HeadCase head{openPhantom("cranium")->volume, {}};
   head.truth = headTruth(head.volume.geometry);
   return head;
 }

@@ -12,7 +12,7 @@
 #include "structures/compare.h"
 #include "structures/work_grid.h"
 #include "volume/label_map.h"
-#include "volume/phantom.h"
+#include "volume/phantom_file.h"
 #include "volume/volume_files.h"
 
 namespace trephine::test {
@@ -131,7 +131,7 @@ struct LiverCase {
 
 // Its liver, the capsule and the vessels that run inside.
 inline LiverCase builtInLiver() {
-  Phantom phantom = *makePhantomWithLabels("abdomen");
+  Phantom phantom = *openPhantom("abdomen");
   LiverCase of{std::move(phantom.volume), phantom.labels.value_or(LabelMap()), 0, 0};
   of.to = of.liver.geometry.size[2];
   WorkGrid grid;

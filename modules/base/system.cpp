@@ -52,6 +52,11 @@ std::filesystem::path pluginFolder() {
   return fromEnvironment("TREPHINE_PLUGINS", shipped);
 }
 
+std::filesystem::path builtInFolder() {
+  static const fs::path shipped = besidePrograms("lib/trephine/cases");
+  return shipped;
+}
+
 std::filesystem::path labProgram() {
   return programs() / "trephine-lab";
 }

@@ -16,6 +16,8 @@ std::filesystem::path resourceFolder();
 // Where device plugins are, ../lib/trephine/plugins; the environment's TREPHINE_PLUGINS comes
 // first.
 std::filesystem::path pluginFolder();
+// Where the build put the built-in cases, ../lib/trephine/cases.
+std::filesystem::path builtInFolder();
 // trephine-lab, beside this program.
 std::filesystem::path labProgram();
 // Of this person on this machine: what is chosen, what is made, and what happened here. By

@@ -10,7 +10,7 @@
 #include "imaging/importer.h"
 #include "imaging/structure_importer.h"
 #include "scene/scene_structures.h"
-#include "volume/phantom.h"
+#include "volume/phantom_file.h"
 #include "volume/volume_files.h"
 
 namespace trephine {
@@ -45,7 +45,7 @@ Result<Case> read(const std::string& source, const Progress& progress) {
     return importBest(source, progress);
   }
   if (phantom) {
-    Result<Phantom> made = makePhantomWithLabels(*phantom, progress);
+    Result<Phantom> made = openPhantom(*phantom, progress);
     if (!made) return made.error();
     Case built_in = caseOf(std::make_shared<const Volume>(std::move(made->volume)));
     built_in.built_in = true;

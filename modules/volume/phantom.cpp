@@ -173,49 +173,52 @@ std::uint8_t phantomLabel(PhantomTissue tissue) {
   return 0;
 }
 
-Result<Phantom> makePhantomWithLabels(const std::string& name, const Progress& progress) {
+Result<PhantomFrame> phantomFrame(const std::string& name) {
   const auto found = findPhantom(name);
   if (!found) return found.error();
-  const BuiltIn& built_in = *found.value();
-  Phantom phantom{{geometryOf(built_in), {}}, {}};
-  Volume& volume = phantom.volume;
-  const std::size_t count = volume.geometry.voxelCount();
-  const double needed_mb = voxelsMb(count) + (built_in.labelled ? 2.0 : 1.0) * labelsMb(count);
-  if (Status enough = enoughMemory(needed_mb, "Making the built-in case", name); !enough) {
+  PhantomFrame frame{geometryOf(*found.value()), found.value()->labelled, {}};
+  if (!frame.labelled) return frame;
+  for (const LabelRow& row : kLabels) {
+    const std::string tissue = phantomTissueName(row.tissue);
+    frame.structures.push_back({row.label, tissue, labelColour(row.label), tissue});
+  }
+  return frame;
+}
+
+Result<Phantom> paintNoiseFree(const std::string& name) {
+  const auto frame = phantomFrame(name);
+  if (!frame) return frame.error();
+  const PhantomTruth truth = *phantomTruth(name);
+  const std::size_t count = frame->geometry.voxelCount();
+  const double needed_mb = voxelsMb(count) + 2.0 * labelsMb(count);
+  if (Status enough = enoughMemory(needed_mb, "Painting the built-in case", name); !enough) {
     return enough.error();
   }
-  volume.hu.resize(count);
-  const auto centres = truthAtCentres(built_in.truth, volume.geometry, progress);
-  if (centres.empty() ||
-      !paintPhantom(built_in.truth, centres, kPhantomNoiseHu, progress, volume)) {
-    return Error{"CANCELLED", "Making the built-in case was cancelled", name, ""};
+  const std::vector<PhantomTissue> centres = truthAtCentres(truth, frame->geometry);
+  Phantom phantom{{frame->geometry, Voxels(count)}, {}};
+  paintPhantom(truth, centres, phantom.volume);
+  if (frame->labelled) {
+    phantom.labels = labelsOf(centres, frame->geometry);
+    phantom.labels->structures = frame->structures;
   }
-  if (built_in.labelled) {
-    phantom.labels = labelsOf(centres, volume.geometry);
-    for (const LabelRow& row : kLabels) {
-      const std::string tissue = phantomTissueName(row.tissue);
-      phantom.labels->structures.push_back({row.label, tissue, labelColour(row.label), tissue});
-    }
-  }
-  progress.at(1.0, "Making the built-in case");
   return phantom;
 }
 
-Result<Volume> makePhantom(const std::string& name, const Progress& progress) {
-  Result<Phantom> made = makePhantomWithLabels(name, progress);
-  if (!made) return made.error();
-  return std::move(made->volume);
+Result<Phantom> makePhantom(const std::string& name) {
+  Result<Phantom> made = paintNoiseFree(name);
+  if (made) addNoise(made->volume, kPhantomNoiseHu);
+  return made;
 }
 
 Volume makePhantomOn(PhantomTruth truth, const GridGeometry& geometry, double noise_hu) {
   Volume volume{geometry, Voxels(geometry.voxelCount())};
-  const Progress progress;
-  paintPhantom(truth, truthAtCentres(truth, geometry, progress), noise_hu, progress, volume);
+  paintPhantom(truth, truthAtCentres(truth, geometry), volume);
+  addNoise(volume, noise_hu);
   return volume;
 }
 
 LabelMap phantomLabelsOn(PhantomTruth truth, const GridGeometry& geometry) {
-  return labelsOf(truthAtCentres(truth, geometry, Progress()), geometry);
+  return labelsOf(truthAtCentres(truth, geometry), geometry);
 }
 
 }  // namespace trephine

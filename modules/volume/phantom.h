@@ -8,7 +8,6 @@
 #include <string>
 #include <vector>
 
-#include "base/progress.h"
 #include "base/result.h"
 #include "volume/label_map.h"
 #include "volume/volume.h"
@@ -64,6 +63,15 @@ std::string phantomSource(const std::string& name);
 // "cranium", "abdomen".
 std::vector<std::string> phantomNames();
 
+// What voxels and labels of a built-in case hang on: its grid, and the structures of its label map,
+// none where it has none. Errors: UNKNOWN_PHANTOM.
+struct PhantomFrame {
+  GridGeometry geometry;
+  bool labelled = false;
+  std::vector<Structure> structures;
+};
+Result<PhantomFrame> phantomFrame(const std::string& name);
+
 // The label of a tissue in a phantom's label map; 0: none. README.md lists them.
 std::uint8_t phantomLabel(PhantomTissue tissue);
 
@@ -72,11 +80,16 @@ struct Phantom {
   std::optional<LabelMap> labels;  // of the same geometry; none of the cranium
 };
 
-// Makes the volume, on two threads, with its label map or without. CANCELLED when `progress` says
-// so; UNKNOWN_PHANTOM; OUT_OF_MEMORY.
-Result<Phantom> makePhantomWithLabels(const std::string& name,
-                                      const Progress& progress = Progress());
-Result<Volume> makePhantom(const std::string& name, const Progress& progress = Progress());
+// A built-in case's voxels before noise: int16 eighths of HU in `hu`; and its labels.
+// Ten seconds of processor, on two threads: programs open what the build painted (phantom_file.h).
+// Errors: UNKNOWN_PHANTOM; OUT_OF_MEMORY.
+Result<Phantom> paintNoiseFree(const std::string& name);
+// The same with noise, in HU.
+Result<Phantom> makePhantom(const std::string& name);
+
+// Eighths of HU become HU: noise of that standard deviation is added to each voxel, by the hash of
+// its index, and what a scanner cannot store is clamped. On two threads; the same bits everywhere.
+void addNoise(Volume& eighths, double noise_hu);
 
 // The same truth on any other grid (coarser, finer, oblique): tests and measurements.
 Volume makePhantomOn(PhantomTruth truth, const GridGeometry& geometry, double noise_hu);

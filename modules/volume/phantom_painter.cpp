@@ -22,16 +22,16 @@ constexpr int kSoftStep = 180;
 constexpr int kOne = 1 << 14;  // the sum of a kernel's weights
 constexpr int kPerHu = 8;      // what has passed a kernel is in eighths of HU
 
-// A standard normal number for each voxel: the sum of the eight bytes of a hash of its index
-// (splitmix64's finaliser), mean 8 * 127.5, variance 8 * (256^2 - 1) / 12.
-double standardNormal(std::uint64_t index) {
+// The sum of the eight bytes of a hash of a voxel's index (splitmix64's finaliser): nearly normal,
+// with the mean 8 * 127.5 and the variance 8 * (256^2 - 1) / 12.
+constexpr int kMostOfBytes = 8 * 255;
+std::size_t sumOfBytes(std::uint64_t index) {
   std::uint64_t h = (index + 1) * 0x9e3779b97f4a7c15 + kNoiseSeed;
   h = (h ^ (h >> 30)) * 0xbf58476d1ce4e5b9;
   h = (h ^ (h >> 27)) * 0x94d049bb133111eb;
   h ^= h >> 31;
-  int sum = 0;
-  for (int byte = 0; byte < 8; ++byte) sum += int(h >> (8 * byte) & 0xff);
-  return (sum - 1020) / std::sqrt(43690.0);
+  h = (h & 0x00ff00ff00ff00ff) + (h >> 8 & 0x00ff00ff00ff00ff);  // four sums of 16 bits
+  return std::size_t(h * 0x0001000100010001 >> 48);
 }
 
 // e^-x without the library's, which differs between machines: (e^(-x / 1024))^1024.
@@ -74,13 +74,13 @@ std::int16_t rounded(int weighted) {
 }
 
 // A bin of a voxel's 27 in the middle of an edge or a face, and the corners around it.
-struct Between {
+struct BinBetween {
   std::size_t bin;
   std::array<std::size_t, 4> corners;  // an edge's two twice
   bool face;
 };
-constexpr std::array<Between, 18> betweenCorners() {
-  std::array<Between, 18> all{};
+constexpr std::array<BinBetween, 18> betweenCorners() {
+  std::array<BinBetween, 18> all{};
   std::size_t n = 0;
   for (std::size_t s = 0; s < 27; ++s) {
     std::size_t across[2] = {0, 0}, middles = 0;
@@ -93,16 +93,13 @@ constexpr std::array<Between, 18> betweenCorners() {
   }
   return all;
 }
-constexpr std::array<Between, 18> kBetween = betweenCorners();
+constexpr std::array<BinBetween, 18> kBetween = betweenCorners();
 
 class Painter {
  public:
-  Painter(PhantomTruth truth, const std::vector<PhantomTissue>& centres, double noise_hu,
-          const Progress& progress, Volume& volume)
+  Painter(PhantomTruth truth, const std::vector<PhantomTissue>& centres, Volume& volume)
       : truth_(truth),
         centres_(centres),
-        noise_hu_(noise_hu),
-        progress_(progress),
         volume_(volume),
         affine_(volume.geometry.voxelToPatient()),
         nx_(volume.geometry.size[0]),
@@ -114,25 +111,18 @@ class Painter {
         bins_(std::size_t(kChunk + 2)),
         spread_(std::size_t(kChunk + 2 * kernels_[2].reach)) {}
 
-  // False when cancelled.
-  bool paint() {
+  void paint() {
     for (auto& slice : bins_) slice.values.resize(layer_ * kBins);
     for (auto& slice : spread_) slice.resize(std::size_t(nx_) * std::size_t(ny_) * kBins);
     const int reach = kernels_[2].reach;
     // Bins lead; their neighbours' let them be refined one slice later, and a voxel needs `reach`
     // slices beyond its own.
     for (int first = 0; first < nz_ + 1 + reach; first += kChunk) {
-      progress_.at(kCentresShare + (1.0 - kCentresShare) * first / (nz_ + 1 + reach), kStep);
       over(first, [this](int k) { fillBins(k); });
       over(first - 1, [this](int k) { spreadInPlane(k); });
       over(first - 1 - reach, [this](int k) { finish(k); });
-      if (progress_.cancelled()) return false;
     }
-    return true;
   }
-
-  static constexpr double kCentresShare = 0.3;
-  static constexpr const char* kStep = "Making the built-in case";
 
  private:
   struct Slice {
@@ -145,7 +135,7 @@ class Painter {
   void over(int first, const Work& work) {
     onTwoThreads(kChunk, [&](int n) {
       const int k = first + n;
-      if (k >= 0 && k < nz_ && !progress_.cancelled()) work(k);
+      if (k >= 0 && k < nz_) work(k);
     });
   }
 
@@ -222,7 +212,7 @@ class Painter {
     if (low == high) return;  // the boundary is its neighbour's
     const bool close = high - low > kSoftStep;
     const auto mean = std::int16_t(std::floor(sum / 9.0 + 0.5));
-    for (const Between& bin : kBetween) {
+    for (const BinBetween& bin : kBetween) {
       const std::int16_t corner = hu[bin.corners[0]];
       const bool same = hu[bin.corners[1]] == corner && hu[bin.corners[2]] == corner &&
                         hu[bin.corners[3]] == corner && (!bin.face || hu[13] == corner);
@@ -386,18 +376,12 @@ class Painter {
     addUp(
         kernel, kBins * (k - kernel.reach), kBins * nz_,
         [&](int c) { return &spreadOf(c / kBins)[std::size_t(c % kBins) * area]; }, sum);
-    std::size_t index = volume_.geometry.indexOf(0, 0, k);
-    for (std::size_t n = 0; n < area; ++n, ++index) {
-      // A scanner stores 12 bits from -1024 on.
-      const double hu = double(rounded(sum[n])) / kPerHu + noise_hu_ * standardNormal(index);
-      volume_.hu[index] = std::int16_t(std::floor(std::clamp(hu, -1024.0, 3071.0) + 0.5));
-    }
+    const std::size_t first = volume_.geometry.indexOf(0, 0, k);
+    for (std::size_t n = 0; n < area; ++n) volume_.hu[first + n] = rounded(sum[n]);
   }
 
   PhantomTruth truth_;
   const std::vector<PhantomTissue>& centres_;
-  double noise_hu_;
-  const Progress& progress_;
   Volume& volume_;
   Mat4 affine_;
   int nx_, ny_, nz_;
@@ -410,31 +394,39 @@ class Painter {
 
 }  // namespace
 
-std::vector<PhantomTissue> truthAtCentres(PhantomTruth truth, const GridGeometry& geometry,
-                                          const Progress& progress) {
+std::vector<PhantomTissue> truthAtCentres(PhantomTruth truth, const GridGeometry& geometry) {
   std::vector<PhantomTissue> centres(geometry.voxelCount());
   const Mat4 affine = geometry.voxelToPatient();
-  const int slices = geometry.size[2];
-  for (int first = 0; first < slices; first += kChunk) {
-    progress.at(Painter::kCentresShare * first / slices, Painter::kStep);
-    onTwoThreads(std::min(kChunk, slices - first), [&](int n) {
-      if (progress.cancelled()) return;
-      std::size_t index = geometry.indexOf(0, 0, first + n);
-      for (int j = 0; j < geometry.size[1]; ++j) {
-        for (int i = 0; i < geometry.size[0]; ++i) {
-          centres[index++] = truth(Vec3(affine[0]) * double(i) + Vec3(affine[1]) * double(j) +
-                                   Vec3(affine[2]) * double(first + n) + Vec3(affine[3]));
-        }
+  onTwoThreads(geometry.size[2], [&](int k) {
+    std::size_t index = geometry.indexOf(0, 0, k);
+    for (int j = 0; j < geometry.size[1]; ++j) {
+      for (int i = 0; i < geometry.size[0]; ++i) {
+        centres[index++] = truth(Vec3(affine[0]) * double(i) + Vec3(affine[1]) * double(j) +
+                                 Vec3(affine[2]) * double(k) + Vec3(affine[3]));
       }
-    });
-    if (progress.cancelled()) return {};
-  }
+    }
+  });
   return centres;
 }
 
-bool paintPhantom(PhantomTruth truth, const std::vector<PhantomTissue>& centres, double noise_hu,
-                  const Progress& progress, Volume& volume) {
-  return Painter(truth, centres, noise_hu, progress, volume).paint();
+void paintPhantom(PhantomTruth truth, const std::vector<PhantomTissue>& centres, Volume& volume) {
+  Painter(truth, centres, volume).paint();
+}
+
+void addNoise(Volume& eighths, double noise_hu) {
+  std::vector<double> of_sum(kMostOfBytes + 1);
+  for (int sum = 0; sum <= kMostOfBytes; ++sum) {
+    of_sum[std::size_t(sum)] = noise_hu * ((sum - kMostOfBytes / 2) / std::sqrt(43690.0));
+  }
+  onTwoThreads(eighths.geometry.size[2], [&](int k) {
+    std::size_t index = eighths.geometry.indexOf(0, 0, k);
+    const std::size_t end = eighths.geometry.indexOf(0, 0, k + 1);
+    for (; index < end; ++index) {
+      // A scanner stores 12 bits from -1024 on.
+      const double hu = double(eighths.hu[index]) / kPerHu + of_sum[sumOfBytes(index)];
+      eighths.hu[index] = std::int16_t(std::floor(std::clamp(hu, -1024.0, 3071.0) + 0.5));
+    }
+  });
 }
 
 }  // namespace trephine

@@ -4,19 +4,16 @@
 #include <cstdint>
 #include <vector>
 
-#include "base/progress.h"
 #include "volume/phantom.h"
 
 namespace trephine {
 
-// The truth at every voxel's centre, i fastest, on two threads. Empty where it was cancelled.
-std::vector<PhantomTissue> truthAtCentres(PhantomTruth truth, const GridGeometry& geometry,
-                                          const Progress& progress);
+// The truth at every voxel's centre, i fastest, on two threads.
+std::vector<PhantomTissue> truthAtCentres(PhantomTruth truth, const GridGeometry& geometry);
 
-// Fills volume.hu with the truth seen through a scanner's point spread (phantom.h), and noise.
-// Works slice after slice in a few slices' memory, on two threads, and in whole numbers: the same
-// bits everywhere. False when cancelled.
-bool paintPhantom(PhantomTruth truth, const std::vector<PhantomTissue>& centres, double noise_hu,
-                  const Progress& progress, Volume& volume);
+// Fills volume.hu with the truth seen through a scanner's point spread (phantom.h), in eighths of
+// HU and without noise. Works slice after slice in a few slices' memory, on two threads, and in
+// whole numbers: the same bits everywhere.
+void paintPhantom(PhantomTruth truth, const std::vector<PhantomTissue>& centres, Volume& volume);
 
 }  // namespace trephine

@@ -9,6 +9,8 @@ install(TARGETS trephine trephine-lab DESTINATION bin)
 install(TARGETS trephine_openhaptics trephine_pedal trephine_simulated trephine_woodenhaptics
         LIBRARY DESTINATION lib/trephine/plugins)
 install(DIRECTORY ${TREPHINE_RESOURCE_DIR}/ DESTINATION share/trephine PATTERN "*.py" EXCLUDE)
+install(FILES ${CMAKE_BINARY_DIR}/lib/trephine/cases/cranium.case
+              ${CMAKE_BINARY_DIR}/lib/trephine/cases/abdomen.case DESTINATION lib/trephine/cases)
 install(FILES ${here}/60-trephine-devices.rules DESTINATION lib/udev/rules.d)
 
 install(FILES ${here}/desktop/trephine.desktop DESTINATION share/applications)

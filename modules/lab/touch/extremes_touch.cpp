@@ -10,7 +10,7 @@
 #include "lab/touch/placed_scene.h"
 #include "lab/touch/rest_measurement.h"
 #include "session/case.h"
-#include "volume/phantom.h"
+#include "volume/phantom_file.h"
 
 namespace trephine {
 
@@ -412,9 +412,9 @@ Result<std::vector<ExtremeRow>> measureTouchExtremes(const std::string& case_sou
   }
   std::vector<Target> targets;
   targets.push_back({"block", bonyBlock()});
-  Result<Volume> phantom = makePhantom("cranium", progress);
+  Result<Phantom> phantom = openPhantom("cranium", progress);
   if (!phantom) return phantom.error();
-  targets.push_back({"phantom", *std::move(phantom)});
+  targets.push_back({"phantom", std::move(phantom->volume)});
   if (!case_source.empty()) {
     const Result<Case> real = readCase(case_source, progress);
     if (!real) return real.error();

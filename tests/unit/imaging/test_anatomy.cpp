@@ -3,7 +3,7 @@
 #include "imaging/importer.h"
 #include "imaging/steps/anatomy.h"
 #include "support.h"
-#include "volume/phantom.h"
+#include "volume/phantom_file.h"
 #include "volume/volume_files.h"
 
 namespace trephine {
@@ -67,8 +67,8 @@ void expectNamed(const Volume& volume, BodyRegion region, const std::string& nam
 }
 
 TEST(Anatomy, OfTheBuiltInCasesIsNamedAlsoByHalvesAndTurned) {
-  expectNamed(*makePhantom("cranium"), BodyRegion::head, "phantom:cranium");
-  expectNamed(*makePhantom("abdomen"), BodyRegion::abdomen, "phantom:abdomen");
+  expectNamed(openPhantom("cranium")->volume, BodyRegion::head, "phantom:cranium");
+  expectNamed(openPhantom("abdomen")->volume, BodyRegion::abdomen, "phantom:abdomen");
 }
 
 TEST(Anatomy, OfRealCtIsNamedAlsoByHalvesAndTurned) {
@@ -87,7 +87,7 @@ TEST(Anatomy, OfRealCtIsNamedAlsoByHalvesAndTurned) {
 }
 
 TEST(Anatomy, SaysWhetherAHeadHasItsVault) {
-  const Volume head = *makePhantom("cranium");
+  const Volume head = openPhantom("cranium")->volume;
   EXPECT_TRUE(anatomyOf(head).vault);
   const Index3& n = head.geometry.size;
   const Anatomy without = anatomyOf(part(head, {0, 0, 0}, {n[0], n[1], 2 * n[2] / 3}));
@@ -108,7 +108,7 @@ TEST(Anatomy, OfNothingAndOfABallOfWaterIsNotKnown) {
   EXPECT_EQ(anatomyOf(volume).region, BodyRegion::not_sure);
   Progress cancelled;
   cancelled.cancel();
-  EXPECT_EQ(anatomyOf(*makePhantom("cranium"), cancelled).region, BodyRegion::not_sure);
+  EXPECT_EQ(anatomyOf(openPhantom("cranium")->volume, cancelled).region, BodyRegion::not_sure);
 }
 
 }  // namespace

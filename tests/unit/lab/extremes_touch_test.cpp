@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "volume/phantom.h"
+#include "volume/phantom_file.h"
 
 namespace trephine {
 namespace {
@@ -51,7 +51,7 @@ TEST(APress, IsHeldByBoneThatItCannotCut) {
 TEST(APress, IsHeldAsFirmlyWhileTheToolIsTurnedAndDragged) {
   Press press{Vec3(0.0, 0.0, -89.9), Vec3(0, 0, 1), 2.0, 50.0};
   press.moves = true;
-  const PressResult held = pressInto(burr(), boneOnly(true), *makePhantom("cranium"), press);
+  const PressResult held = pressInto(burr(), boneOnly(true), openPhantom("cranium")->volume, press);
   EXPECT_TRUE(held.held);
   EXPECT_LT(held.beyond_share, 1.5);
 }

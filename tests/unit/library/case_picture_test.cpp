@@ -14,7 +14,7 @@
 
 #include "base/file.h"
 #include "base/system.h"
-#include "volume/phantom.h"
+#include "volume/phantom_file.h"
 
 namespace trephine {
 namespace {
@@ -150,9 +150,9 @@ TEST(CasePicture, IsAPngThatSaysWhatItIsFor) {
 TEST(CasePicture, OfTheBuiltInCasesIsTheOneInTheResources) {
   for (const auto& [name, region] :
        {std::pair{"cranium", BodyRegion::head}, std::pair{"abdomen", BodyRegion::abdomen}}) {
-    const auto volume = makePhantom(name);
-    ASSERT_TRUE(volume) << name;
-    const CasePicture picture = casePicture(*volume, region);
+    const auto built_in = openPhantom(name);
+    ASSERT_TRUE(built_in) << name;
+    const CasePicture picture = casePicture(built_in->volume, region);
     const auto file = resourceFolder() / "cases" / (std::string(name) + ".png");
     if (std::getenv("TREPHINE_RENEW_PICTURES")) {
       ASSERT_TRUE(writeTextFile(file, pngOf(picture)));

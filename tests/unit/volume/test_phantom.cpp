@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "volume/phantom.h"
+#include "volume/phantom_file.h"
 
 namespace trephine {
 namespace {
@@ -17,12 +17,12 @@ PhantomTruth truthOf(const std::string& name) {
   return phantomTruth(name).value();
 }
 
-// Made once: several tests look at the same volume.
+// Opened once: several tests look at the same volume.
 const Phantom& whole(const std::string& name) {
   static std::map<std::string, Phantom> made;
   const auto found = made.find(name);
   if (found != made.end()) return found->second;
-  return made.emplace(name, makePhantomWithLabels(name).value()).first->second;
+  return made.emplace(name, openPhantom(name).value()).first->second;
 }
 const Volume& phantom(const std::string& name) {
   return whole(name).volume;
@@ -82,7 +82,7 @@ TEST(Phantom, GeometryIsAsTheCasesAreDescribed) {
 TEST(Phantom, AnUnknownNameIsRefusedByName) {
   EXPECT_EQ(phantomTruth("knee").error().code, "UNKNOWN_PHANTOM");
   EXPECT_EQ(phantomGeometry("").error().code, "UNKNOWN_PHANTOM");
-  const auto made = makePhantom("knee");
+  const auto made = openPhantom("knee");
   ASSERT_FALSE(made);
   EXPECT_NE(made.error().what.find("knee"), std::string::npos);
 }
@@ -569,24 +569,6 @@ TEST(Phantom, IsTheSameEveryTime) {
             "7cf66e7ed46592b8c6e1d38768c5363e1ed5e07ff564186429cf4dec371ad40e");
   EXPECT_EQ(volumeSha256(phantom("abdomen")),
             "7d810ff532357f6baa4183fb777344fc32c21cdcffad02b8d1a6b3512fa747f3");
-}
-
-TEST(Phantom, ReportsProgressAndCanBeCancelled) {
-  double last = -1.0;
-  int reports = 0;
-  Progress* self = nullptr;
-  Progress progress([&](double fraction, const std::string& step) {
-    EXPECT_GE(fraction, last);
-    EXPECT_LE(fraction, 1.0);
-    EXPECT_FALSE(step.empty());
-    last = fraction;
-    if (++reports == 20) self->cancel();
-  });
-  self = &progress;
-  const auto made = makePhantom("abdomen", progress);
-  ASSERT_FALSE(made);
-  EXPECT_EQ(made.error().code, "CANCELLED");
-  EXPECT_EQ(reports, 20) << "no work goes on after it";
 }
 
 TEST(Phantom, TheSameTruthOnACoarserObliqueGridAgrees) {
