@@ -220,8 +220,45 @@ std::optional<bool> Session::memoryLocked() const {
   return engine_->locked->whole();
 }
 
+Status Session::startStepped(double seconds) {
+  if (Status started = loop_->startDevices(); !started) return started;
+  last_tick_ = std::uint64_t(std::llround(seconds * scene_.rate_hz));
+  engine_->finished = last_tick_ == 0;
+  running_ = stepped_ = true;
+  return {};
+}
+
+void Session::advance(double seconds) {
+  if (!stepped_) return;
+  const auto ticks = std::uint64_t(std::llround(seconds * scene_.rate_hz));
+  const std::uint64_t until = std::min(last_tick_, loop_->ticks() + ticks);
+  while (loop_->ticks() < until) {
+    loop_->step(0);
+    const bool waits = core_->journalState() != (kJournalRoom | kJournalReady);
+    const bool full = loop_->carves().size() > loop_->carves().capacity() / 2;
+    if (waits || full || loop_->ticks() % drainTicks() == 0) drain();
+  }
+  drain();
+  if (loop_->ticks() == last_tick_) engine_->finished.store(true, std::memory_order_release);
+}
+
+// So often that no ring can fill, which hold thousands of ticks, and that a kill costs no more of a
+// slow session than of a fast one.
+std::uint64_t Session::drainTicks() const {
+  return std::clamp<std::uint64_t>(std::uint64_t(kFlushEvery_s * scene_.rate_hz), 1, 256);
+}
+
+// Devices are stopped on this thread, so nobody can leave it behind.
+Status Session::stopStepped() {
+  loop_->stopDevices();
+  drain();
+  running_ = false;
+  return finishRecording();
+}
+
 Status Session::stop() {
   if (!running_) return recordingStatus();
+  if (stepped_) return stopStepped();
   engine_->stop = true;
   const bool silenced = engine_->watchdog.silence(kSilencePatience);
   bool ended = false;
@@ -287,27 +324,15 @@ void Session::leaveBehind(std::size_t held, bool watchdog_ended) {
 }
 
 Status Session::freewheel(double seconds, const Progress& progress) {
-  if (Status started = loop_->startDevices(); !started) return started;
-  const auto ticks = std::uint64_t(std::llround(seconds * scene_.rate_hz));
-  // Drained often enough that no ring can fill, which hold thousands of ticks, and that a kill
-  // costs no more of a slow session than of a fast one.
-  const auto drain_ticks =
-      std::clamp<std::uint64_t>(std::uint64_t(kFlushEvery_s * scene_.rate_hz), 1, 256);
-  bool cancelled = false;
-  for (std::uint64_t i = 0; i < ticks && !cancelled; ++i) {
-    loop_->step(0);
-    const bool waits = core_->journalState() != (kJournalRoom | kJournalReady);
-    if (i % drain_ticks == 0 || waits || loop_->carves().size() > loop_->carves().capacity() / 2) {
-      drain();
-      progress.at(double(i) / double(ticks), "Running");
-      cancelled = progress.cancelled();
-    }
+  if (Status started = startStepped(seconds); !started) return started;
+  for (std::uint64_t ticks = 1; !finished() && !progress.cancelled(); ticks = drainTicks()) {
+    advance(double(ticks) / scene_.rate_hz);
+    progress.at(double(loop_->ticks()) / double(last_tick_), "Running");
   }
-  loop_->stopDevices();  // on this thread, so nobody can leave it behind
-  drain();
-  Status finished = finishRecording();
+  const bool cancelled = !finished();
+  Status ended = stop();
   if (cancelled) return Error{"CANCELLED", "The run was cancelled", "", ""};
-  return finished;
+  return ended;
 }
 
 bool Session::freeze() {

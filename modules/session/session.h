@@ -1,7 +1,8 @@
 // A running exercise: the one place where volume, arms, loop, recorder and operator meet.
 //
-// One owner thread (the window's, or a program's main). A session runs once: either start() ..
-// stop() in real time on its own threads, or freewheel().
+// One owner thread (the window's, or a program's main). A session runs once: in real time on its own
+// threads from start() to stop(); or on the owner's thread, as fast as its ticks are computed, from
+// startStepped() over advance() to stop(). freewheel() is the latter in one call.
 //
 // Force goes first: stop() takes it away before it waits for anything, and a watchdog takes it away
 // when the ticks stand still for 20 ms. A haptic thread that a call of a device holds is left
@@ -63,6 +64,12 @@ class Session {
 
   // Real time, until stop() or `seconds`.
   Status start(double seconds = 1e9);
+  // Without threads: time is what advance() makes of it, until stop() or `seconds`. The hands, the
+  // recording and all commands are as in real time; nothing is late.
+  Status startStepped(double seconds = 1e9);
+  // The ticks of the next `seconds`, and what they recorded; nothing once finished() or
+  // in real time. Owner thread.
+  void advance(double seconds);
   bool running() const { return running_; }
   // True once the ticks asked for are done.
   bool finished() const;
@@ -106,10 +113,12 @@ class Session {
   Vec3 handTarget_mm(std::size_t arm) const;
 
   // ---- A hand of a simulated arm that goes where a pointer is (pointer_hand.h). Owner thread.
-  // From the first sample on, and until moveHand(). Times do not fall: steady clock while the
-  // session runs by itself, 0 at its first tick while it freewheels, where samples may wait for
-  // their time. False for a real arm, a ray that is none, and while 2048 samples wait.
+  // From the first sample on, and until moveHand(). Times are now_ns()'s and do not fall; in a
+  // stepped session a sample may wait for its time. False for a real arm, a ray that is none, and
+  // while 2048 samples wait.
   bool point(std::size_t arm, const PointerSample& sample);
+  // The session's time: the steady clock while it runs in real time, else 0 at its first tick.
+  std::int64_t now_ns() const;
   // How hard it presses along the tool from then on, in newtons at the arm: 0, hovering, to
   // mostPush_N. An undo, redo, rewind or reset makes it 0.
   bool setPush(std::size_t arm, double push_N, std::int64_t time_ns = kNow);
@@ -123,7 +132,7 @@ class Session {
   void turnHand(std::size_t arm, const Vec3& axis, double by_rad);
   void straightenHand(std::size_t arm);
   static constexpr double kMostTurn_rad = 1.2;
-  static constexpr std::int64_t kNow = -1;  // the clock's; freewheeling, the last sample's
+  static constexpr std::int64_t kNow = -1;  // now_ns()
 
   // Clutches an arm: its force fades within 20 ms, its tool stays where it is and the arm moves
   // freely. Off again, the arm moves the tool from where both are, by `rotation`, device axes to
@@ -170,6 +179,8 @@ class Session {
   Session() = default;
   Status set(const Scene& scene, const Case& of, const SessionOptions& options);
   void startThreads(double seconds);
+  Status stopStepped();
+  std::uint64_t drainTicks() const;
   bool push(CommandKind kind);
   void leaveBehind(std::size_t held, bool watchdog_ended);
   void note(const Event& event);
@@ -216,6 +227,8 @@ class Session {
   std::atomic<std::uint64_t> flushed_ticks_{0};
 
   bool running_ = false;
+  bool stepped_ = false;         // by advance()
+  std::uint64_t last_tick_ = 0;  // of startStepped()
   // freeze(): first all that waits is let happen, then comes a pause of its own.
   enum class Freeze { none, settling, pausing } freeze_ = Freeze::none;
   bool paused_before_ = false;

@@ -122,12 +122,16 @@ bool Session::point(std::size_t arm, const PointerSample& sample) {
   return playPointer(arm, last->time_ns, false);
 }
 
+std::int64_t Session::now_ns() const {
+  if (running_ && !stepped_) return HostClock().now_ns();
+  return std::int64_t(double(loop_->ticks()) * 1e9 / scene_.rate_hz);
+}
+
 // The last sample once more, at this time.
 bool Session::playPointer(std::size_t arm, std::int64_t time_ns, bool put_down) {
   if (!pointer_[arm] || !hands_.hands[arm].pointed) return false;
   PointerSample& at = *pointer_[arm];
-  const std::int64_t now_ns = running_ ? HostClock().now_ns() : at.time_ns;
-  if (time_ns == kNow || (running_ && time_ns > now_ns)) time_ns = now_ns;
+  if (time_ns == kNow || (!stepped_ && time_ns > now_ns())) time_ns = now_ns();
   at.time_ns = std::max(at.time_ns, time_ns);
   return engine_->oper.path(arm).push({at, push_N_[arm], put_down});
 }

@@ -80,6 +80,8 @@ void PrepareWorkspace::connectStructures() {
     settled_.start();
   });
   connect(&editor_, &StructureEditor::failed, &bench_, &Bench::report);
+  settled_.setParent(this);
+  settled_.setObjectName("structuresSettled");
   settled_.setSingleShot(true);
   settled_.setInterval(kSettled_ms);
   connect(&settled_, &QTimer::timeout, this, [this] { (void)takeStructures(); });

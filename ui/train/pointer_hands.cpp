@@ -1,7 +1,6 @@
 #include "ui/train/pointer_hands.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 
 #include "ui/common/settings.h"
@@ -14,10 +13,6 @@ namespace {
 constexpr double kLeastPush_N = 0.01;
 constexpr double kTilt_rad = 0.087;  // 5 degrees a key
 constexpr double kElsewhere_mm = 3.0;
-
-std::int64_t now_ns() {
-  return std::chrono::steady_clock::now().time_since_epoch().count();
-}
 
 }  // namespace
 
@@ -151,7 +146,7 @@ void PointerHands::send() {
   if (!session_ || !place()) return;
   const std::optional<ViewCamera::Ray> ray = view_.rayAt(*place());
   if (!ray) return;
-  PointerSample sample{now_ns(), ray->from_mm, ray->direction, {}};
+  PointerSample sample{session_->now_ns(), ray->from_mm, ray->direction, {}};
   if (const std::optional<Picked> picked = view_.pickAt(*place())) {
     sample.depth_mm = glm::dot(picked->at_mm - ray->from_mm, glm::normalize(ray->direction));
   }

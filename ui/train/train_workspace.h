@@ -48,6 +48,8 @@ class TrainWorkspace : public Workspace {
 
   // `script` plays until the mouse takes a hand; after `seconds` the exercise stops by itself.
   void startExercise(std::optional<OperatorScript> script = {}, double seconds = kNoEnd_s);
+  // Shows the exercise as it is now; a timer does so 60 times a second while one runs.
+  void tick();
   // A scene that is about to open may not be in the list.
   void chooseNothing() { scenes_->setCurrentIndex(-1); }
   void showInUse();  // in the list of exercises
@@ -80,7 +82,6 @@ class TrainWorkspace : public Workspace {
   void unlessItDoesNotFit(Bench::Next go_on);
   void sessionStarted();
   void sessionEnded(Session& session);
-  void tick();
   void followPedal(const LoopState& state);
   void showTools(const std::vector<ToolView>& tools);
   void showState(Session& session, const LoopState& state);

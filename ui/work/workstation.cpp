@@ -123,9 +123,10 @@ void Workstation::startArms(std::unique_ptr<Session> session, double seconds) {
   ControllerKind told_of = session->scene().controller;
   if (Status told = tell(*session, told_of); !told) return notStarted(told.error());
   running_.run(
-      [session = std::move(session),
-       seconds](const Progress&) mutable -> Result<std::unique_ptr<Session>> {
-        if (Status started = session->start(seconds); !started) return started.error();
+      [session = std::move(session), seconds,
+       stepped = stepped_](const Progress&) mutable -> Result<std::unique_ptr<Session>> {
+        const Status started = stepped ? session->startStepped(seconds) : session->start(seconds);
+        if (!started) return started.error();
         return std::move(session);
       },
       [this, told_of](Result<std::unique_ptr<Session>> started) mutable {

@@ -92,6 +92,8 @@ class Workstation : public QObject {
   // From the next exercise on these devices move its arms, and the settings say nothing of them:
   // for an exercise that nobody watches.
   void setArms(std::vector<NamedDevice> arms) { arms_ = std::move(arms); }
+  // From the next exercise on its time is what its owner makes of it (Session::advance): a test's.
+  void setStepped(bool stepped) { stepped_ = stepped; }
   // Somebody else has the arms of this place: they are not asked for. Back again, what they can
   // show is asked in the background, as another may have been chosen.
   void lendArms(bool lent);
@@ -299,6 +301,7 @@ class Workstation : public QObject {
   bool placing_edit_ = false;               // and goes back where that fails
   bool ask_again_ = false;                  // once the arms have answered
   bool lent_ = false;                       // the arms are
+  bool stepped_ = false;
   // An arm is opened by one at a time.
   const std::shared_ptr<std::timed_mutex> opens_arms_ = std::make_shared<std::timed_mutex>();
   // Last, so that they are joined before what they work on goes.
