@@ -1,15 +1,19 @@
-// What several tests need: a folder that goes away, and the real CT where it is.
+// What several tests need: a folder that goes away, a wait for what nobody announces, and the real
+// CT where it is.
 #pragma once
 
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 #include <unistd.h>
 
+#include <chrono>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <optional>
 #include <string>
+#include <thread>
+#include <vector>
 
 namespace trephine::test {
 
@@ -37,6 +41,39 @@ class TemporaryFolder {
  private:
   std::filesystem::path path_;
 };
+
+// Waits for what another thread, process or device does and nobody announces; false where it does
+// not come. The one sleep of the tests in C++ but for devices' own clocks.
+template <class Condition>
+bool waitUntil(const Condition& condition,
+               std::chrono::seconds longest = std::chrono::seconds(60)) {
+  const auto end = std::chrono::steady_clock::now() + longest;
+  while (!condition()) {
+    if (std::chrono::steady_clock::now() > end) return condition();
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));  // nobody would wake us
+  }
+  return true;
+}
+
+// Of this program, as the system counts them; of any name where none is given.
+inline std::vector<pid_t> threadsNamed(const std::string& name = {}) {
+  std::vector<pid_t> threads;
+  for (const auto& task : std::filesystem::directory_iterator("/proc/self/task")) {
+    std::string its;
+    std::getline(std::ifstream(task.path() / "comm"), its);
+    if (name.empty() || its == name) threads.push_back(std::stoi(task.path().filename()));
+  }
+  return threads;
+}
+
+// Whether that thread of this program has come to a call that waits.
+inline bool isWaiting(pid_t thread) {
+  std::ifstream stat("/proc/self/task/" + std::to_string(thread) + "/stat");
+  std::string text;
+  std::getline(stat, text);
+  const std::size_t name = text.rfind(") ");  // of the thread; after it its state
+  return name != text.npos && text.compare(name + 2, 1, "S") == 0;
+}
 
 // A variable of the environment, for as long as this lives.
 class Environment {
@@ -85,9 +122,9 @@ class DataLimit {
 }  // namespace trephine::test
 
 // Declares `folder`, the test data, or skips the test with the reason.
-#define TREPHINE_TEST_DATA_OR_SKIP(folder)                                                 \
-  const char* folder##_text = std::getenv("TREPHINE_TEST_DATA");                           \
-  if (!folder##_text || !*folder##_text) {                                                 \
-    GTEST_SKIP() << "TREPHINE_TEST_DATA is not set: this test needs the real CT data";     \
-  }                                                                                        \
+#define TREPHINE_TEST_DATA_OR_SKIP(folder)                                             \
+  const char* folder##_text = std::getenv("TREPHINE_TEST_DATA");                       \
+  if (!folder##_text || !*folder##_text) {                                             \
+    GTEST_SKIP() << "TREPHINE_TEST_DATA is not set: this test needs the real CT data"; \
+  }                                                                                    \
   const std::filesystem::path folder = folder##_text

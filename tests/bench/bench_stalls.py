@@ -17,7 +17,8 @@ def main():
     artefacts = build / "artefacts"
     for old in artefacts.glob("stalls-*.txt"):
         old.unlink()
-    ran = subprocess.run(["ctest", "--test-dir", build, "-R", tests, "--no-tests=error"], check=False)
+    ran = subprocess.run(["ctest", "--test-dir", build, "-R", tests, "-LE", "slow",
+                          "--no-tests=error"], check=False)
     rows = []
     for file in artefacts.glob("stalls-*.txt"):
         program = file.stem.removeprefix("stalls-")

@@ -6,10 +6,12 @@
 #include <atomic>
 #include <chrono>
 #include <cmath>
+#include <semaphore>
 #include <set>
 #include <thread>
 #include <vector>
 
+#include "../support.h"
 #include "base/rt/alloc_guard.h"
 #include "device/arm_numbers.h"
 #include "test_device.h"
@@ -18,6 +20,7 @@ namespace trephine::conformance {
 namespace {
 
 using std::chrono::steady_clock;
+using test::waitUntil;
 constexpr double kT = 1e-3;
 constexpr double kSoon_s = 0.02;
 
@@ -73,7 +76,7 @@ class PluginConformance : public ::testing::Test {
     }
     const int answer = api->start(handle);
     EXPECT_EQ(answer, TREPHINE_OK) << api->last_error(handle);
-    next = steady_clock::now();
+    behind->beginTicks();
     return answer == TREPHINE_OK;
   }
   void close() {
@@ -93,8 +96,7 @@ class PluginConformance : public ::testing::Test {
     if (api->wait) {
       api->wait(handle, 5 * kT);
     } else {
-      next += std::chrono::microseconds(behind->inRealTime() ? 1000 : 50);
-      std::this_thread::sleep_until(next);
+      behind->awaitTick();
     }
   }
   // A tick; true while the arms answer and are not lost.
@@ -123,7 +125,6 @@ class PluginConformance : public ::testing::Test {
   TrephineDevice* handle = nullptr;
   std::vector<TrephineArmState> states;
   std::vector<TrephineArmCommand> commands;
-  steady_clock::time_point next;
 };
 
 TEST_F(PluginConformance, SpeaksThisVersionToItsHostAndNoOtherToAnOlderOrANewerOne) {
@@ -300,27 +301,38 @@ TEST_F(PluginConformance, ASafeStopComesFromAnyThreadInAnyState) {
   ASSERT_TRUE(open());
   std::atomic<bool> done{false};
   std::atomic<int> stops{0};
+  constexpr int kStoppers = 4;
+  std::counting_semaphore<> asked(0);
   std::vector<std::thread> stoppers;
-  for (int i = 0; i < 4; ++i) {
+  for (int i = 0; i < kStoppers; ++i) {
     stoppers.emplace_back([&] {
-      while (!done) {
+      for (asked.acquire(); !done; asked.acquire()) {
         api->safe_stop(handle);
         ++stops;
-        std::this_thread::sleep_for(std::chrono::milliseconds(1));
       }
     });
   }
+  // Each beside a call: of a start, of a stop, and of every other tick.
+  const auto underStops = [&] {
+    for (int i = 0; i < 100; ++i) {
+      if (i % 2) asked.release();
+      tick();
+    }
+  };
   for (int i = 0; i < 5; ++i) {
-    ASSERT_TRUE(start());
+    asked.release();
+    EXPECT_TRUE(start());
     push({0.4, 0, 0});
-    ticks(0.1);
+    underStops();
     push(Vec3(0.0));
-    ticks(0.1);
+    underStops();
+    asked.release();
     api->stop(handle);
   }
+  EXPECT_TRUE(waitUntil([&] { return stops >= 5 * (1 + 50 + 50 + 1); })) << stops;
   done = true;
+  asked.release(kStoppers);
   for (std::thread& stopper : stoppers) stopper.join();
-  EXPECT_GT(stops, 20);
 }
 
 TEST_F(PluginConformance, TicksAllocateNothing) {
@@ -446,17 +458,18 @@ TEST_F(PluginConformance, ACallThatBlocksLeavesSafeStopFreeAndTheArmWithoutForce
   });
   // Until the ticks stand still, or have gone on in spite of it.
   const auto from = steady_clock::now();
+  auto last_at = from;
   int last = -1;
-  while (secondsSince(from) < 5.0) {
-    std::this_thread::sleep_for(std::chrono::milliseconds(40));
-    if (passed == last) break;
+  waitUntil([&] {
+    if (passed != last) last_at = steady_clock::now();
     last = passed;
-    if (secondsSince(from) > 1.0) break;
-  }
+    return secondsSince(last_at) > 0.04 || secondsSince(from) > 1.0;
+  });
   const auto stopping = steady_clock::now();
   api->safe_stop(handle);
   EXPECT_LT(secondsSince(stopping), kSoon_s) << "it waited for the blocked call";
-  std::this_thread::sleep_for(std::chrono::duration<double>(kBlocked_s + 0.2));
+  const int then = passed;
+  EXPECT_TRUE(waitUntil([&] { return passed > then + 100; })) << "it goes on";
   done = true;
   loop.join();
   ticks(0.6);

@@ -49,7 +49,7 @@ void schedule() {
   auto due = std::chrono::steady_clock::now();
   while (running) {
     due += std::chrono::milliseconds(1);
-    std::this_thread::sleep_until(due);
+    std::this_thread::sleep_until(due);  // the device's own clock
     if (std::chrono::steady_clock::now() - due > std::chrono::milliseconds(20)) {
       due = std::chrono::steady_clock::now();
     }
@@ -102,7 +102,7 @@ HD_EXPORT void hdBeginFrame(std::uint32_t device) {
 HD_EXPORT void hdEndFrame(std::uint32_t device) {
   if (!known(device)) return;
   if (const double block_s = test.block_s.exchange(0.0); block_s > 0.0) {
-    std::this_thread::sleep_for(std::chrono::duration<double>(block_s));
+    std::this_thread::sleep_for(std::chrono::duration<double>(block_s));  // the device's own clock
   }
   in_frame[device] = false;
   for (std::size_t axis = 0; axis < 3; ++axis) {

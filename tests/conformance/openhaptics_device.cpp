@@ -30,7 +30,7 @@ class OpenHapticsDevice : public TestDevice {
     const std::uint64_t from = hd_->frames + std::uint64_t(after_s * 1000.0);
     troubles_ = std::thread([this, trouble, from] {
       while (!ending_ && hd_->frames < from) {
-        std::this_thread::sleep_for(std::chrono::milliseconds(1));
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));  // the device's own clock
       }
       if (!ending_) begin(trouble);
     });

@@ -43,7 +43,8 @@ class PedalDevice : public TestDevice {
     if (trouble == Trouble::blocking) return "nothing is sent to it, so that no call can block";
     return {};
   }
-  bool inRealTime() const override { return true; }
+  void beginTicks() override { ticks_.begin(); }
+  void awaitTick() override { ticks_.await(); }
   std::string config() const override {
     return R"({"format": "trephine.device", "version": 1, "model": "emulated"})";
   }
@@ -55,7 +56,9 @@ class PedalDevice : public TestDevice {
 
  private:
   void begin(Trouble trouble, double after_s) {
-    const auto pass_ms = [](int ms) { std::this_thread::sleep_for(std::chrono::milliseconds(ms)); };
+    const auto pass_ms = [](int ms) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(ms));  // the device's own clock
+    };
     while (!ending_ && !test::isOpen(fds_[1])) pass_ms(1);
     for (int ms = 0; !ending_ && ms < int(1000.0 * after_s); ++ms) pass_ms(1);
     if (ending_) return;
@@ -76,6 +79,7 @@ class PedalDevice : public TestDevice {
   }
 
   test::HidTestbed bed_;
+  test::HostTicks ticks_;
   std::array<std::unique_ptr<CapFirmware>, 2> firmware_;
   std::array<int, 2> fds_{-1, -1};
   std::atomic<bool> ending_{false};

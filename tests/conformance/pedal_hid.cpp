@@ -49,7 +49,7 @@ void CapFirmware::run() {
   inRealTime(60);
   std::minstd_rand random(1);
   while (!ending_) {
-    std::this_thread::sleep_for(std::chrono::milliseconds(8));
+    std::this_thread::sleep_for(std::chrono::milliseconds(8));  // the cap's own clock
     if (garbage_) {
       std::vector<std::uint8_t> bytes(1 + random() % 20);
       for (std::uint8_t& byte : bytes) byte = std::uint8_t(random() >> 8);
@@ -75,6 +75,11 @@ void CapFirmware::run() {
     }
     send(report);
   }
+}
+
+void HostTicks::await() {
+  next_ += std::chrono::milliseconds(1);
+  std::this_thread::sleep_until(next_);  // the host's clock, beside the devices' own
 }
 
 void inRealTime(int of) {

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <atomic>
+#include <chrono>
 #include <cstdint>
 #include <mutex>
 #include <string>
@@ -56,6 +57,17 @@ class CapFirmware {
   bool said_ = true;  // that it is at rest
   std::atomic<bool> silent_{false}, garbage_{false}, ending_{false};
   std::thread thread_;
+};
+
+// The host's ticks beside such devices, which say in their own time how they are held: one in every
+// millisecond.
+class HostTicks {
+ public:
+  void begin() { next_ = std::chrono::steady_clock::now(); }
+  void await();
+
+ private:
+  std::chrono::steady_clock::time_point next_;
 };
 
 // This thread runs with that priority, where the system allows it; 0: as any other.

@@ -137,11 +137,10 @@ class Pedal : public ::testing::Test {
     ASSERT_TRUE(device->start().ok());
     states.assign(places.size(), {});
     commands.assign(places.size(), {});
-    next = steady_clock::now();
+    ticks.begin();
   }
   void tick() {
-    next += std::chrono::microseconds(1000);
-    std::this_thread::sleep_until(next);
+    ticks.await();
     EXPECT_TRUE(device->read(kT_s, states.data()));
     device->write(commands.data());
   }
@@ -180,7 +179,7 @@ class Pedal : public ::testing::Test {
   std::unique_ptr<Device> device;
   std::vector<TrephineArmState> states;
   std::vector<TrephineArmCommand> commands;
-  steady_clock::time_point next;
+  test::HostTicks ticks;
 };
 
 TEST_F(Pedal, ItsThreeSwitchesAreSeenWithin20msPressedAndReleased) {

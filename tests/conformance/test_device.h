@@ -28,8 +28,10 @@ class TestDevice {
   // such a device cannot have it, and whyNot. Before the plugin opens them.
   virtual bool prepare(Trouble trouble, double after_s) = 0;
   virtual std::string whyNot(Trouble) const { return {}; }
-  // Of a device without a clock of its own (`wait`): whether the host's has to go as time does.
-  virtual bool inRealTime() const { return false; }
+  // Of a device without a clock of its own (`wait`), where the host's has to go as time does: it
+  // was started, and then the host waits for its next tick.
+  virtual void beginTicks() {}
+  virtual void awaitTick() {}
   // Text for `configure`, as prepared.
   virtual std::string config() const = 0;
   // Where it can be told in another way than by the states: the force that an arm has now [N].

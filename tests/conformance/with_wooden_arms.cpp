@@ -83,7 +83,7 @@ int run(int argc, char** argv) {
   auto due = WoodenFirmware::Clock::now();
   for (double time_s = 0.0; ::waitpid(child, &status, WNOHANG) == 0; time_s += 1e-3) {
     due += std::chrono::milliseconds(1);
-    std::this_thread::sleep_until(due);
+    std::this_thread::sleep_until(due);  // the hands' own clock
     left.step(time_s);
     right.step(time_s);
   }

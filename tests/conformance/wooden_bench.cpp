@@ -100,7 +100,7 @@ class WoodenBench : public DeviceBench {
     auto due = WoodenFirmware::Clock::now();
     for (double time_s = 1e-3; !ending_; time_s += 1e-3) {
       due += std::chrono::milliseconds(1);
-      std::this_thread::sleep_until(due);
+      std::this_thread::sleep_until(due);  // the hands' own clock
       std::lock_guard lock(mutex_);
       for (Arm& arm : arms_) {
         if (arm.fd < 0) continue;

@@ -59,8 +59,8 @@ void WoodenFirmware::run() {
       std::uint8_t bytes[256];
       const ssize_t got = ::read(fd_, bytes, sizeof(bytes));
       if (got > 0) out_.insert(out_.end(), bytes, bytes + got);
-      if (got <= 0)
-        std::this_thread::sleep_for(std::chrono::microseconds(200));  // nobody has it open
+      // Nobody has it open: the board's own clock goes on.
+      if (got <= 0) std::this_thread::sleep_for(std::chrono::microseconds(200));
       while (out_.size() >= kOut) {
         take(out_.data());
         out_.erase(out_.begin(), out_.begin() + kOut);

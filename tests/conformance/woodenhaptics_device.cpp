@@ -58,7 +58,7 @@ class WoodenDevice : public TestDevice {
  private:
   void begin(Trouble trouble, double after_s) {
     while (!ending_ && firmware_[0]->since_s() < after_s) {
-      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));  // the device's own clock
     }
     if (ending_) return;
     switch (trouble) {
@@ -74,7 +74,7 @@ class WoodenDevice : public TestDevice {
         break;
       case Trouble::blocking:
         for (int fd : fds_) bed_.block(fd, true);
-        std::this_thread::sleep_for(std::chrono::duration<double>(kBlocked_s));
+        std::this_thread::sleep_for(std::chrono::duration<double>(kBlocked_s));  // so too
         for (int fd : fds_) bed_.block(fd, false);
         break;
       case Trouble::none:

@@ -6,6 +6,7 @@ installed from its offline bundle, used by an ordinary user, upgraded, and remov
 Figures are printed as they are measured. WORK_FOLDER is kept between runs: its bare system is made
 once and copied.
 """
+import concurrent.futures
 import contextlib
 import hashlib
 import json
@@ -22,6 +23,11 @@ import zlib
 from pathlib import Path
 
 BUILD, SOURCE, WORK = (Path(argument).resolve() for argument in sys.argv[1:4])
+sys.path.insert(0, str(SOURCE / "tests/system"))
+for name in ("TREPHINE", "TREPHINE_LAB", "TREPHINE_SOURCE"):  # programs that are not used here
+    os.environ.setdefault(name, "")
+from lab_support import wait_until  # noqa: E402
+
 OLD_VERSION = "0.0.9"
 USER = "trainee"
 SCENE = "/usr/share/trephine/scenes/cranium.json"
@@ -130,10 +136,10 @@ class Listeners(threading.Thread):
 
     def __init__(self):
         super().__init__(daemon=True)
-        self.found, self.looks, self.done = set(), 0, False
+        self.found, self.looks, self.done = set(), 0, threading.Event()
 
     def run(self):
-        while not self.done:
+        while not self.done.wait(0.1):
             for pid in Path("/proc").glob("[0-9]*"):
                 try:
                     if Path(os.readlink(pid / "root")) != ROOT:
@@ -149,7 +155,6 @@ class Listeners(threading.Thread):
                             self.found.add((name, table, row.split()[1]))
                 except OSError:
                     continue
-            time.sleep(0.1)
 
 
 def picture_of(framebuffer):
@@ -186,7 +191,7 @@ class BareSystem(unittest.TestCase):
             self.use()
             self.upgrade(new, version)
             self.remove(with_old)
-            listeners.done = True
+            listeners.done.set()
             listeners.join()
             self.assertGreater(listeners.looks, 50)
             self.assertEqual(listeners.found, set())
@@ -223,17 +228,27 @@ class BareSystem(unittest.TestCase):
 
     def screenshot(self):
         """The window, as a person starts it: usable, and a picture of it on the screen."""
-        said = inside(
-            "mkdir -p fb; Xvfb :9 -screen 0 1280x800x24 -fbdir fb -nolisten tcp >/dev/null 2>&1 & "
-            f"X=$!; sleep 2; DISPLAY=:9 trephine {SCENE} > window.log 2>&1 & T=$!; "
-            "for i in $(seq 60); do sleep 1; grep -q usable window.log && break; done; sleep 6; "
-            "cp fb/Xvfb_screen0 shot.xwd; kill $T; wait $T; kill $X; cat window.log", USER)
-        usable = re.search(r"usable, (\d+) ms", said)
-        self.assertTrue(usable, said)
-        print(f"window usable {usable[1]} ms after its start", flush=True)
-        width, height, colours = picture_of(ROOT / f"home/{USER}/shot.xwd")
-        self.assertEqual((width, height), (1280, 800))
-        self.assertGreater(colours, 200, "a window with a case in it")
+        home = ROOT / f"home/{USER}"
+        log, shown, end = home / "window.log", home / "fb/Xvfb_screen0", home / "end"
+        with concurrent.futures.ThreadPoolExecutor() as pool:
+            used = pool.submit(
+                inside, "mkdir -p fb; mkfifo ready end; "
+                "Xvfb -displayfd 3 -screen 0 1280x800x24 -fbdir fb -nolisten tcp 3>ready >/dev/null "
+                f"2>&1 & X=$!; read display <ready; DISPLAY=:$display trephine {SCENE} "
+                ">window.log 2>&1 & T=$!; read end <end; kill $T || echo gone; wait $T; kill $X",
+                USER)
+            try:
+                usable = wait_until(lambda: log.exists() and
+                                    re.search(r"usable, (\d+) ms", log.read_text()),
+                                    "the window is usable")
+                print(f"window usable {usable[1]} ms after its start", flush=True)
+                wait_until(lambda: picture_of(shown)[2] > 200, "a window with a case in it")
+                self.assertEqual(picture_of(shown)[:2], (1280, 800))
+            finally:  # it waits for a line
+                gate = os.open(end, os.O_WRONLY | os.O_NONBLOCK)
+                os.write(gate, b"\n")
+                os.close(gate)
+            self.assertEqual(used.result(), "", "it is still there")
 
     def upgrade(self, new, version):
         installed = "dpkg-query -W -f '${Version}' trephine"

@@ -15,7 +15,7 @@ int fdatasync(int descriptor) {
   int (*real)(int) = (int (*)(int))dlsym(RTLD_NEXT, "fdatasync");
   const long ms = number("SLOW_SYNC_MS");
   const struct timespec longer = {ms / 1000, ms % 1000 * 1000000};
-  nanosleep(&longer, NULL);
+  nanosleep(&longer, NULL);  // the disk's own clock
   return real(descriptor);
 }
 

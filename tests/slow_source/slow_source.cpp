@@ -71,7 +71,7 @@ ssize_t slowly(int descriptor, Read read) {
                        std::chrono::duration_cast<Clock::duration>(takes);
     until = source().free_at;
   }
-  std::this_thread::sleep_until(until);
+  std::this_thread::sleep_until(until);  // the source's own clock
   return count;
 }
 

@@ -15,7 +15,9 @@ from lab_support import LAB, can_mount, main, without_display
 SECONDS = "0.3"
 
 
-class Commission(unittest.TestCase):
+class Commissioning:
+    """Runs it, in folders of its own, on what the test takes from the machine."""
+
     def setUp(self):
         temporary = tempfile.TemporaryDirectory()
         self.addCleanup(temporary.cleanup)
@@ -44,6 +46,25 @@ class Commission(unittest.TestCase):
         subprocess.run(["mount", "-t", "tmpfs", "-o", f"size={size}", "tmpfs", str(at)], check=True)
         self.addCleanup(subprocess.run, ["umount", str(at)], check=True)
 
+    def run_without_rights(self):
+        if os.geteuid() == 0 and not all(folder.stat().st_mode & 0o001
+                                         for folder in Path(LAB).resolve().parents):
+            self.skipTest("the programs lie where no other account comes")
+        def lacks():
+            resource.setrlimit(resource.RLIMIT_RTPRIO, (0, 0))
+            resource.setrlimit(resource.RLIMIT_MEMLOCK, (65536, 65536))
+            if os.geteuid() == 0:  # root's rights stand above limits
+                os.setgroups([])
+                os.setgid(65534)
+                os.setuid(65534)
+        for name in ("out", "storage", "state", "config", "data"):
+            (self.folder / name).mkdir()
+        for path in [self.folder, *self.folder.iterdir()]:
+            path.chmod(0o777)
+        return self.run_it(dict(without_display(), HOME=str(self.folder)), lacks)
+
+
+class Commission(Commissioning, unittest.TestCase):
     def test_each_check_has_value_limit_verdict_and_next_step(self):
         checks = self.run_it()
         for name in ("lateness_1000_normal", "priority", "locked_memory", "opengl", "volume_edge",
@@ -66,33 +87,13 @@ class Commission(unittest.TestCase):
         self.assertIn("Commissioning of this workstation", page)
         if "llvmpipe" in checks["opengl"]["remark"]:
             self.assertEqual(checks["opengl"]["verdict"], "warn")
-        # The next time only what is otherwise is said.
-        self.run_it(without_display())
-        self.assertRegex((self.folder / "out/commission.html").read_text(), r"before, .* now")
-
-    def test_without_a_display_what_is_drawn_fails_and_says_so(self):
+        # The next time only what is otherwise is said. Without a display what is drawn fails.
         checks = self.run_it(without_display())
+        self.assertRegex((self.folder / "out/commission.html").read_text(), r"before, .* now")
         for name in ("screen", "opengl", "volume_edge", "frame_time", "removal_to_pixel",
                      "hand_to_tool"):
             self.assertEqual(checks[name]["verdict"], "fail")
             self.assertTrue(checks[name]["next"])
-
-    def run_without_rights(self):
-        if os.geteuid() == 0 and not all(folder.stat().st_mode & 0o001
-                                         for folder in Path(LAB).resolve().parents):
-            self.skipTest("the programs lie where no other account comes")
-        def lacks():
-            resource.setrlimit(resource.RLIMIT_RTPRIO, (0, 0))
-            resource.setrlimit(resource.RLIMIT_MEMLOCK, (65536, 65536))
-            if os.geteuid() == 0:  # root's rights stand above limits
-                os.setgroups([])
-                os.setgid(65534)
-                os.setuid(65534)
-        for name in ("out", "storage", "state", "config", "data"):
-            (self.folder / name).mkdir()
-        for path in [self.folder, *self.folder.iterdir()]:
-            path.chmod(0o777)
-        return self.run_it(dict(without_display(), HOME=str(self.folder)), lacks)
 
     def test_without_priority_and_locked_memory_it_warns(self):
         checks = self.run_without_rights()
@@ -100,17 +101,32 @@ class Commission(unittest.TestCase):
         self.assertIn("adduser NAME trephine", checks["priority"]["next"])
         self.assertEqual(checks["locked_memory"]["verdict"], "warn")
 
-    def test_a_small_disk_fails(self):
-        for size in ("1g", "2m"):
-            small = self.folder / size
-            self.mount(small, size)
-            checks = self.run_it(without_display(), storage=small)
-            self.assertEqual(checks["disk_room"]["verdict"], "fail")
-            self.assertLess(checks["disk_room"]["value"], 1.1)
-            self.assertEqual(list(small.iterdir()), [], "nothing is left on it")
+    def test_a_small_disk_fails_and_no_folder_for_temporary_files_is_no_fault_of_devices(self):
+        small = self.folder / "small"
+        self.mount(small, "1g")
+        self.temporary = self.folder / "gone"
+        checks = self.run_it(without_display(), storage=small)
+        self.assertEqual(checks["disk_room"]["verdict"], "fail")
+        self.assertLess(checks["disk_room"]["value"], 1.1)
+        self.assertEqual(list(small.iterdir()), [], "nothing is left on it")
+        for name in ("arms", "arm_encoders", "arm_forces"):
+            self.assertEqual(checks[name]["verdict"], "fail")
+            self.assertIn("TMPDIR", checks[name]["next"])
+
+    def test_a_full_disk_has_no_speed_and_a_full_temporary_folder_is_no_fault_of_devices(self):
+        full = self.folder / "full"
+        self.mount(full, "2m")
+        self.mount(self.temporary, "40k")
+        checks = self.run_it(without_display(), storage=full)
+        self.assertEqual(list(full.iterdir()), [], "nothing is left on it")
+        self.assertEqual(checks["disk_room"]["verdict"], "fail")
         self.assertEqual(checks["disk_write"]["verdict"], "fail")
         self.assertIsNone(checks["disk_write"]["value"], "on a full one no speed can be told")
         self.assertIn("space", checks["disk_write"]["next"])
+        for name in ("arms", "arm_encoders", "arm_forces"):
+            self.assertEqual(checks[name]["verdict"], "fail")
+            self.assertIn("Free some space", checks[name]["next"])
+            self.assertIn("TMPDIR", checks[name]["next"])
 
     def test_a_small_screen_little_memory_and_no_loader_are_said(self):
         if not can_mount():
@@ -141,10 +157,6 @@ class Commission(unittest.TestCase):
         plugins = self.folder / "plugins"
         shutil.copytree(os.environ["PLUGINS"], plugins)
         shutil.copy(os.environ["ILL_PLUGIN_FILE"], plugins)
-        checks = self.run_it(dict(without_display(), TREPHINE_PLUGINS=str(plugins),
-                                  ILL_PLUGIN="talks"), more=("--wait", "0.1"))
-        self.assertEqual(checks["arms"]["verdict"], "warn", "one that talks does not")
-        self.assertEqual(checks["arms"]["value"], 0)
         for how, said in (("ends", "ended the program"), ("blocks", "does not answer")):
             checks = self.run_it(dict(without_display(), TREPHINE_PLUGINS=str(plugins),
                                       ILL_PLUGIN=how), more=("--wait", "0.1"))
@@ -155,24 +167,15 @@ class Commission(unittest.TestCase):
             self.assertEqual(checks["clock"]["verdict"], "pass")
         self.assertEqual(list(self.temporary.iterdir()), [])
 
-    def test_no_folder_for_temporary_files_is_said_of_it_and_not_of_devices(self):
-        self.temporary = self.folder / "gone"
-        checks = self.run_it(without_display())
-        for name in ("arms", "arm_encoders", "arm_forces"):
-            self.assertEqual(checks[name]["verdict"], "fail")
-            self.assertIn("TMPDIR", checks[name]["next"])
-
-    def test_a_full_folder_for_temporary_files_is_said_of_it_and_not_of_devices(self):
-        self.mount(self.temporary, "40k")
-        checks = self.run_it(without_display())
-        for name in ("arms", "arm_encoders", "arm_forces"):
-            self.assertEqual(checks[name]["verdict"], "fail")
-            self.assertIn("Free some space", checks[name]["next"])
-            self.assertIn("TMPDIR", checks[name]["next"])
-
-    def test_a_slow_disk_and_late_ticks_are_said(self):
-        checks = self.run_it(dict(without_display(), LD_PRELOAD=os.environ["SLOW_MACHINE"],
-                                  SLOW_SYNC_MS="100", LATE_US="700"))
+    def test_a_slow_disk_and_late_ticks_are_said_and_a_driver_that_talks_is_none_of_it(self):
+        plugins = self.folder / "plugins"
+        shutil.copytree(os.environ["PLUGINS"], plugins)
+        shutil.copy(os.environ["ILL_PLUGIN_FILE"], plugins)
+        checks = self.run_it(dict(without_display(), TREPHINE_PLUGINS=str(plugins),
+                                  ILL_PLUGIN="talks", LD_PRELOAD=os.environ["SLOW_MACHINE"],
+                                  SLOW_SYNC_MS="100", LATE_US="700"), more=("--wait", "0.1"))
+        self.assertEqual(checks["arms"]["verdict"], "warn")
+        self.assertEqual(checks["arms"]["value"], 0)
         self.assertLess(checks["disk_write"]["value"], 40)  # 4 MB take 100 ms and more
         self.assertIn(checks["disk_write"]["verdict"], ("warn", "fail"))
         # Where priority is granted, what is without does not matter.
@@ -180,6 +183,10 @@ class Commission(unittest.TestCase):
         late = checks["lateness_1000_fifo" if granted else "lateness_1000_normal"]
         self.assertGreater(late["value"], 700)
         self.assertEqual(late["verdict"], "fail" if granted else "warn")
+
+
+class CommissionLoaded(Commissioning, unittest.TestCase):
+    """Slow: what a loaded machine does to it."""
 
     def test_loaded_cores_make_ticks_late(self):
         loads = [subprocess.Popen(["sh", "-c", "while :; do :; done"])

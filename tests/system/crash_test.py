@@ -6,12 +6,11 @@ import re
 import signal
 import subprocess
 import tempfile
-import time
 import unittest
 from datetime import datetime, timezone
 from pathlib import Path
 
-from lab_support import SCENES, WINDOW, lab, main
+from lab_support import SCENES, WINDOW, has_grown, lab, main, wait_until
 
 
 def start(state, out):
@@ -31,20 +30,19 @@ class Crash(unittest.TestCase):
 
     def crashed(self, with_signal):
         process = start(self.state, self.out)
+        running = self.state / "trephine" / f"running-{process.pid}"
+
+        def named():
+            self.assertIsNone(process.poll(), "it ended by itself")
+            return running.exists() and running.read_text().strip()
+
         try:
-            running = self.state / "trephine" / f"running-{process.pid}"
-            for _ in range(600):
-                if running.exists():
-                    break
-                self.assertIsNone(process.poll(), "it ended by itself")
-                time.sleep(0.1)
-            self.assertTrue(running.exists())
-            time.sleep(3.0)
+            recording = Path(wait_until(named, "it names its recording"))
+            wait_until(has_grown(recording, 5), "it records")
         finally:
             process.send_signal(with_signal)
             process.wait(timeout=60)
         self.assertEqual(process.returncode, -with_signal)
-        recording = Path(running.read_text().strip())
         self.assertEqual(recording.parent, self.out)
         replayed = lab("replay", recording)
         self.assertTrue(replayed["identical"], replayed)

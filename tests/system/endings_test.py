@@ -6,11 +6,11 @@ import os
 import shutil
 import signal
 import subprocess
-import time
 import unittest
 from pathlib import Path
 
-from lab_support import LAB, PATIENCE_S, SCENES, SOURCE, WINDOW, EndingTest, lab, main, small_head
+from lab_support import (LAB, PATIENCE_S, SCENES, SOURCE, WINDOW, EndingTest, computed_s, has_grown,
+                         lab, main, small_head, wait_until)
 
 SIGNALS = (signal.SIGTERM, signal.SIGINT, signal.SIGHUP)
 
@@ -31,7 +31,20 @@ def pending(process, number):
     return has_signal(process, "ShdPnd", number)
 
 
+def has_thread(process, name):
+    return any((task / "comm").read_text().strip() == name
+               for task in Path(f"/proc/{process.pid}/task").iterdir())
+
+
 class Signals(EndingTest):
+    def wait_until_at_work(self, process, name):
+        self.wait_for(process, lambda: listens(process), "it listens")
+        if name == "measure jitter":  # which hardly computes
+            self.wait_for(process, lambda: has_thread(process, "jitter"), "its thread ticks")
+        elif name not in ("explain", "phantom"):  # which are short
+            begun_s = computed_s(process)
+            self.wait_for(process, lambda: computed_s(process) > begun_s + 0.2, "it computes")
+
     def test_every_command_ends_on_a_signal_with_an_answer_and_128_more(self):
         out = self.folder / "out"
         commands = {
@@ -50,8 +63,7 @@ class Signals(EndingTest):
             by = SIGNALS[number % len(SIGNALS)]
             with self.subTest(command=name, signal=by.name):
                 process = self.start(LAB, *command, "--json")
-                self.wait_for(process, lambda: listens(process))
-                time.sleep(0.3)
+                self.wait_until_at_work(process, name)
                 self.assertIsNone(process.poll())
                 code, answer = self.end(process, by)
                 self.assertEqual(code, 128 + by)
@@ -63,11 +75,10 @@ class Signals(EndingTest):
             out = self.folder / second.name  # where it saves when it ends, which takes a while
             process = self.start(LAB, "run", SCENES / "cranium.json", "--seconds", 3000, "--out",
                                  out, "--save-volume", out / "carved.nii.gz", "--json")
-            self.wait_for(process, (out / "session.h5").exists)
-            time.sleep(0.3)
+            self.wait_for(process, has_grown(out / "session.h5", 3), "it records")
             process.send_signal(signal.SIGTERM)
-            while pending(process, signal.SIGTERM):  # two that wait would be one
-                pass
+            wait_until(lambda: not pending(process, signal.SIGTERM),
+                       "the first was taken")  # two that wait would be one
             process.send_signal(second)
             said, _ = process.communicate(timeout=PATIENCE_S)
             self.assertEqual(process.returncode, 128 + signal.SIGTERM)
@@ -90,7 +101,7 @@ class Signals(EndingTest):
                              (signal.SIGINT, "import", self.folder / "ct")):
             with self.subTest(command=command[0]):
                 process = self.start(LAB, *command, "--json")
-                self.wait_for(process, lambda: listens(process))
+                self.wait_for(process, lambda: listens(process), "it listens")
                 code, answer = self.end(process, by)
                 self.assertEqual(code, 128 + by)
                 self.assert_error(answer, "CANCELLED")
@@ -103,8 +114,7 @@ class Signals(EndingTest):
                 process = self.start(LAB, "run", SCENES / "cranium.json", "--case", case, *pace,
                                      "--seconds", 3000, "--save-volume", out / "carved.nii.gz",
                                      "--csv", out / "ticks.csv", "--out", out, "--json")
-                self.wait_for(process, (out / "session.h5").exists)
-                time.sleep(1)
+                self.wait_for(process, has_grown(out / "session.h5", 5), "it records")
                 code, answer = self.end(process, by)
                 self.assertEqual(code, 128 + by)
                 self.assert_error(answer, "CANCELLED")
@@ -121,8 +131,9 @@ class Signals(EndingTest):
     def test_an_exercise_in_the_window_that_is_ended_keeps_its_recording(self):
         process = self.start(WINDOW, "--exercise", SCENES / "cranium.json", "--out", self.folder,
                              "--json")
-        self.wait_for(process, lambda: any(self.folder.glob("session-*.h5")))
-        time.sleep(3)  # its arms start after it
+        recording = self.wait_for(process, lambda: next(self.folder.glob("session-*.h5"), None),
+                                  "its recording is there")
+        self.wait_for(process, has_grown(recording, 5), "its arms move")
         code, answer = self.end(process, signal.SIGTERM)
         self.assertEqual(code, 128 + signal.SIGTERM)
         self.assert_error(answer, "CANCELLED")
@@ -143,7 +154,7 @@ class FullDisk(EndingTest):
                              "--seconds", 3000, "--save-volume", out / "carved.nii.gz", "--out",
                              out, "--json", shell=self.LIMIT)
         said = lambda: "can no longer be written" in (self.folder / "stderr").read_text()
-        self.wait_for(process, said)
+        self.wait_for(process, said, "it says that the disk is full")
         self.assertIsNone(process.poll(), "the exercise goes on")
         code, answer = self.end(process, signal.SIGINT)
         self.assertEqual(code, 128 + signal.SIGINT)

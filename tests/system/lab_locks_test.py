@@ -6,11 +6,11 @@ import os
 import pty
 import shutil
 import subprocess
-import time
 import unittest
 
 from lab_support import (
-    LAB, PATIENCE_S, SCENES, TRAINEE, WINDOW, LabTest, TraineeTest, main, without_display)
+    LAB, PATIENCE_S, SCENES, TRAINEE, WINDOW, LabTest, TraineeTest, main, wait_until,
+    without_display)
 
 PRODUCT = SCENES / "cranium-one-arm.json"
 
@@ -237,11 +237,12 @@ class LockedWindow(TraineeTest):
                     process = subprocess.Popen(self.as_trainee(WINDOW, scene), stderr=said,
                                                stdout=said, env=self.environment)
                 self.addCleanup(process.kill)
-                deadline = time.monotonic() + PATIENCE_S
-                while "LOCKED" not in log.read_text() and time.monotonic() < deadline:
+
+                def refused():
                     self.assertIsNone(process.poll(), log.read_text())
-                    time.sleep(0.1)
-                self.assertIn("LOCKED", log.read_text())
+                    return "LOCKED" in log.read_text()
+
+                wait_until(refused, "it is refused", PATIENCE_S)
                 self.assertNotIn(scene.name, log.read_text())
                 process.terminate()
                 process.wait(PATIENCE_S)

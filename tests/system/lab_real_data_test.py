@@ -11,7 +11,8 @@ import time
 import unittest
 from pathlib import Path
 
-from lab_support import LAB, SCENES, SHIPPED, LabTest, data_folder, first_ten_seconds, lab, main
+from lab_support import (LAB, PATIENCE_S, SCENES, SHIPPED, LabTest, data_folder, first_ten_seconds,
+                         has_grown, lab, main, wait_until)
 
 SKIPPED = 77
 
@@ -54,14 +55,11 @@ class RealCranium(LabTest):
              "--out", str(self.folder), "--json"], stdout=subprocess.DEVNULL,
             stderr=subprocess.DEVNULL)
         recording = self.folder / "session.h5"
-        deadline = time.monotonic() + 120
-        while not recording.exists() and time.monotonic() < deadline:
-            time.sleep(0.01)
+        wait_until(has_grown(recording, 8), "it has recorded for more than a second", PATIENCE_S)
         # What a reader beside the writer saw just before the kill.
-        time.sleep(6.0)
         before = lab("replay", recording, "--case", self.case)["ticks"]
         seen_at = time.monotonic()
-        time.sleep(1.0)
+        wait_until(has_grown(recording, 5), "it has recorded for another second", PATIENCE_S)
         process.send_signal(signal.SIGKILL)
         killed_at = time.monotonic()
         process.wait()

@@ -2,9 +2,12 @@
 
 import gzip
 import os
+import shutil
 import struct
 import subprocess
+import tempfile
 import unittest
+from pathlib import Path
 
 from lab_support import LAB, SCENES, LabTest, data_folder, lab, main
 
@@ -149,11 +152,20 @@ class Grow(LabTest):
 
 
 class Import(LabTest):
+    @classmethod
+    def setUpClass(cls):
+        """The liver is grown once; each test has a copy."""
+        super().setUpClass()
+        folder = tempfile.TemporaryDirectory(prefix="trephine-")
+        cls.addClassCleanup(folder.cleanup)
+        cls.grown = Path(folder.name)
+        lab("structures", "grow", "phantom:abdomen", "--seed", IN_LIVER, "--name", "Liver",
+            "--write", cls.grown / "liver.nii.gz")
+
     def setUp(self):
         super().setUp()
+        shutil.copytree(self.grown, self.folder, dirs_exist_ok=True)
         self.liver = self.folder / "liver.nii.gz"
-        lab("structures", "grow", "phantom:abdomen", "--seed", IN_LIVER, "--name", "Liver",
-            "--write", self.liver)
 
     def test_a_name_goes_with_the_label_map_and_comes_back(self):
         answer = lab("structures", "import", "phantom:abdomen", self.liver)

@@ -21,6 +21,36 @@ TRAINEE = 65534  # "nobody": owns nothing that these tests need
 PATIENCE_S = 120  # with a busy machine; alone nothing that waits for it takes more than seconds
 
 
+def wait_until(condition, what, seconds=60):
+    """Returns what the condition gives once that is true. The one sleep of the tests in Python."""
+    end = time.monotonic() + seconds
+    while not (answer := condition()):
+        if time.monotonic() > end:
+            raise AssertionError(f"{what}: it did not come within {seconds} s")
+        time.sleep(0.02)  # nobody would wake us
+    return answer
+
+
+def has_grown(file, times):
+    """A condition: a file that was not there, or was as it is now, has grown that often. What is
+    recorded in real time goes to the disk every 0.25 s."""
+    sizes = []
+
+    def look():
+        size = file.stat().st_size if file.exists() else 0
+        if not sizes or size > sizes[-1]:
+            sizes.append(size)
+        return len(sizes) > times
+
+    return look
+
+
+def computed_s(process):
+    """What it has had of the processors."""
+    fields = Path(f"/proc/{process.pid}/stat").read_text().rsplit(")", 1)[1].split()
+    return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
+
+
 def lab(*arguments, expect=0, environment=None, timeout=240):
     """Runs trephine-lab with --json and returns its one JSON object."""
     done = subprocess.run(
@@ -132,12 +162,15 @@ class EndingTest(LabTest):
         self.addCleanup(process.kill)
         return process
 
-    def wait_for(self, process, condition):
-        deadline = time.monotonic() + PATIENCE_S
-        while not condition():
-            self.assertIsNone(process.poll(), (self.folder / "stderr").read_text())
-            self.assertLess(time.monotonic(), deadline)
-            time.sleep(0.02)
+    def wait_for(self, process, condition, what):
+        """Of a program that goes on until then."""
+        def came():
+            answer = condition()
+            if not answer:
+                self.assertIsNone(process.poll(), (self.folder / "stderr").read_text())
+            return answer
+
+        return wait_until(came, what, PATIENCE_S)
 
     def end(self, process, by=None):
         """Sends the signal; the exit code and the answer."""

@@ -9,11 +9,11 @@ import resource
 import signal
 import subprocess
 import threading
-import time
 import unittest
 from pathlib import Path
 
-from lab_support import LAB, PATIENCE_S, SCENES, WINDOW, LabTest, lab, main, without_display
+from lab_support import (LAB, PATIENCE_S, SCENES, WINDOW, LabTest, lab, main, wait_until,
+                         without_display)
 
 MB = 2**20
 
@@ -91,13 +91,15 @@ class Limit:
         return self
 
     def __exit__(self, *_):
-        for _ in range(100):
-            try:
-                if self.group:
-                    self.group.rmdir()
-                return
-            except OSError:
-                time.sleep(0.1)
+        if self.group:
+            wait_until(self.removed, "the control group is empty", 10)
+
+    def removed(self):
+        try:
+            self.group.rmdir()
+            return True
+        except OSError:
+            return False
 
 
 class UnderALimit:
@@ -109,12 +111,11 @@ class UnderALimit:
             process = subprocess.Popen([str(word) for word in command], stdout=subprocess.PIPE,
                                        stderr=subprocess.PIPE, text=True, env=environment,
                                        preexec_fn=limit.enter)
-            most = [0.0]
+            most, ended = [0.0], threading.Event()
 
             def watch():
-                while process.poll() is None:
+                while not ended.wait(0.005):
                     most[0] = max(most[0], limit.taken_mb(process))
-                    time.sleep(0.005)
 
             watcher = threading.Thread(target=watch)
             watcher.start()
@@ -122,6 +123,7 @@ class UnderALimit:
                 out, err = process.communicate(timeout=2 * PATIENCE_S)
             finally:
                 process.kill()
+                ended.set()
                 watcher.join()
             self.assertNotEqual(process.returncode, -signal.SIGKILL, "killed for its memory")
             try:

@@ -11,7 +11,7 @@ import time
 import unittest
 from pathlib import Path
 
-from lab_support import SCENES, WINDOW, LabTest, lab, main
+from lab_support import SCENES, WINDOW, LabTest, lab, main, wait_until
 
 LIMIT_S = 30
 # Where a context cannot be made, where only an old one can, and where Qt would draw elsewhere.
@@ -87,6 +87,12 @@ class Desk:
         self.x.XSendEvent(self.display, ctypes.c_ulong(window), 0, ctypes.c_long(0),
                           ctypes.byref(event))
         self.x.XFlush(self.display)
+
+
+def waits(program):
+    """Whether its main thread computes no more."""
+    stat = Path(f"/proc/{program.pid}/stat").read_text()
+    return stat.rsplit(") ", 1)[1].startswith("S")
 
 
 class NothingToDrawOn(LabTest):
@@ -177,14 +183,14 @@ class NothingToDrawOn(LabTest):
                         [WINDOW], env={**display, **variant}, text=True,
                         stderr=subprocess.PIPE) as program, contextlib.ExitStack() as ending:
                     ending.callback(program.kill)
-                    until = time.monotonic() + LIMIT_S
-                    seen = []
-                    while not seen and program.poll() is None and time.monotonic() < until:
-                        time.sleep(0.1)
-                        seen = [window for window, name in desk.windows() if name == "Trephine"]
+                    def dialogs():
+                        self.assertIsNone(program.poll(), "it waits until it has been read")
+                        return [window for window, name in desk.windows() if name == "Trephine"]
+
+                    seen = wait_until(dialogs, "there is a dialog", LIMIT_S)
                     self.assertEqual(len(seen), 1)
-                    time.sleep(0.5)
-                    self.assertIsNone(program.poll(), "it waits until it has been read")
+                    wait_until(lambda: waits(program), "it waits until it has been read", LIMIT_S)
+                    self.assertIsNone(program.poll())
                     desk.close(seen[0])
                     self.assertEqual(program.wait(LIMIT_S), 1)
                     self.assertIn("OpenGL", program.stderr.read())

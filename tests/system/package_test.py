@@ -62,6 +62,8 @@ class Package(unittest.TestCase):
         plugins = {path.name for path in (self.root / "usr/lib/trephine/plugins").iterdir()}
         self.assertEqual(plugins, {f"trephine_{name}.so" for name in
                                    ("openhaptics", "pedal", "simulated", "woodenhaptics")})
+        cases = {path.name for path in (self.root / "usr/lib/trephine/cases").iterdir()}
+        self.assertEqual(cases, {"cranium.case", "abdomen.case"})
         self.assertFalse([name for name in names if "openxr_test" in name or name.endswith(".py")])
         first = {name.split("/")[0] for name in names}
         self.assertEqual(first, {"usr", "etc"})

@@ -232,7 +232,7 @@ XrResult RuntimeState::waitFrame(std::unique_lock<std::mutex>& held, XrFrameStat
     held.unlock();
     const timespec time{time_t(until.count()),
                         long(1e9 * (until.count() - std::floor(until.count())))};
-    ::nanosleep(&time, nullptr);
+    ::nanosleep(&time, nullptr);  // the runtime's own clock
     held.lock();
     return XR_ERROR_RUNTIME_FAILURE;
   }

@@ -26,7 +26,6 @@ using namespace trephine;
 
 namespace {
 
-constexpr int kLong_ms = 120000;
 constexpr Index3 kSize{64, 48, 40};
 
 // Bone in air; each voxel of it has its own HU, so that a part of it is known again.
@@ -64,9 +63,9 @@ class CasesControlsGuiTest : public test::WindowTest {
   }
   // A case that lacks what the exercise looks for is said; that is not what is tested here.
   void closeErrors() {
-    QTest::qWait(50);
+    rest();
     for (auto* error : window_->findChildren<QMessageBox*>("errorDialog")) error->close();
-    QTest::qWait(20);
+    rest();
   }
   int rowOf(const std::string& id) {
     for (int i = 0; i < cards()->count(); ++i) {
@@ -133,7 +132,7 @@ class CasesControlsGuiTest : public test::WindowTest {
     QVERIFY(QDir().mkpath(TREPHINE_ARTEFACTS));
     const Status made = writeCtSeries(block(), {"Block", "HEAD"}, toPath(ct()));
     QVERIFY2(made.ok(), made.ok() ? "" : made.error().sentence().c_str());
-    window_ = std::make_unique<MainWindow>(toPath(storage() + "/sessions"));
+    window_ = newWindow(toPath(storage() + "/sessions"));
     window_->resize(1280, 800);
     window_->show();
     QVERIFY(QTest::qWaitForWindowExposed(window_.get()));
@@ -262,7 +261,7 @@ class CasesControlsGuiTest : public test::WindowTest {
     QSignalSpy started(&workstation(), &Workstation::sessionStarted);
     find<QAction>("start")->trigger();
     QVERIFY(started.count() == 1 || started.wait(kLong_ms));
-    QTest::qWait(300);
+    pass(0.3);
     find<QAction>("stop")->trigger();
     QTRY_VERIFY_WITH_TIMEOUT(workstation().phase() == Workstation::Phase::ready, kLong_ms);
     QCOMPARE(workstation().currentCase()->sha256, sha);
@@ -347,7 +346,7 @@ class CasesControlsGuiTest : public test::WindowTest {
     for (const int width : {860, 500, 1100}) {
       page->resize(width, 600);
       QTRY_COMPARE(page->width(), width);
-      QTest::qWait(50);
+      rest();
       QVERIFY2(text->toHtml().contains("<img"), "the page has a picture");
       QCOMPARE(text->horizontalScrollBar()->maximum(), 0);
     }

@@ -30,7 +30,6 @@ using namespace trephine;
 
 namespace {
 
-constexpr int kLong_ms = 120000;
 const char* const kFolderName = "DOE^JANE";
 const char* const kId = "4711-SECRET";
 const char* const kFileWord = "JDOE1970";
@@ -44,7 +43,7 @@ class CasesGuiTest : public test::WindowTest {
  private:
   QString storage() { return temporary_.filePath("storage"); }
   void open() {
-    window_ = std::make_unique<MainWindow>(toPath(storage() + "/sessions"));
+    window_ = newWindow(toPath(storage() + "/sessions"));
     window_->resize(1280, 800);
     window_->show();
     QVERIFY(QTest::qWaitForWindowExposed(window_.get()));
@@ -77,7 +76,7 @@ class CasesGuiTest : public test::WindowTest {
     auto* dialog = find<QMessageBox>("errorDialog");
     const QString words = dialog->text() + ' ' + dialog->informativeText();
     dialog->close();
-    QTest::qWait(50);
+    rest();
     return words;
   }
   void rename(const QString& name) {
@@ -95,7 +94,7 @@ class CasesGuiTest : public test::WindowTest {
     dialog->findChild<QLineEdit*>("fileNameEdit")->setText(file);
     static_cast<QDialog*>(dialog)->accept();
     QVERIFY(saved.count() > 0 || saved.wait(kLong_ms));
-    QTest::qWait(100);
+    rest();
   }
 
  private slots:
@@ -140,7 +139,7 @@ class CasesGuiTest : public test::WindowTest {
       emit find<QFileDialog>("saveDialog")->fileSelected(exports() + '/' + name);
       find<QFileDialog>("saveDialog")->close();
       QVERIFY(saved.count() > 0 || saved.wait(kLong_ms));
-      QTest::qWait(10);
+      rest();
     }
     QTest::mouseClick(import, Qt::LeftButton);
     auto* open_case = find<QPushButton>("openCase");

@@ -47,6 +47,11 @@ class DevicesGuiTest : public test::TrainTest {
                 ->grab()
                 .save(QString(TREPHINE_ARTEFACTS "/%1.png").arg(name)));
   }
+  // So many frames of the arms, a thousand a second.
+  void framesGoBy(std::uint64_t frames) {
+    const std::uint64_t begin = hd_->frames;
+    QTRY_VERIFY_WITH_TIMEOUT(hd_->frames > begin + frames, kSoon_ms);
+  }
   void choose(const char* box, int index) {
     auto* of = find<QComboBox>(box);
     of->setCurrentIndex(index);
@@ -63,6 +68,7 @@ class DevicesGuiTest : public test::TrainTest {
   }
   void init() {
     hd_->reset();
+    real_time_ = true;  // the arms have a clock of their own
     open();
   }
   void cleanup() { closeWindow(); }
@@ -100,7 +106,7 @@ class DevicesGuiTest : public test::TrainTest {
     QTRY_VERIFY(test->isEnabled());
     test->click();
     QTRY_VERIFY(find<QLabel>("forceTest")->text().contains("Hold the arm"));
-    QTest::qWait(1500);
+    framesGoBy(1500);
     QCOMPARE(force_N(0), 0.0);
     hd_->arms[0].buttons = 1;
     QTRY_VERIFY_WITH_TIMEOUT(force_N(0) > 0.3, 5000);
@@ -108,8 +114,12 @@ class DevicesGuiTest : public test::TrainTest {
     QTRY_VERIFY(find<QLabel>("forceTest")->text().contains("It pulls up"));
     picture("devices-force");
     hd_->arms[0].buttons = 0;
-    QTest::qWait(20);
-    QCOMPARE(force_N(0), 0.0);
+    constexpr std::uint64_t kFades = 20;
+    const std::uint64_t released = hd_->frames;
+    framesGoBy(3 * kFades);
+    for (std::uint64_t frame = released + kFades; frame < released + 3 * kFades; ++frame) {
+      QCOMPARE(hd_->arms[0].sent_N[frame % test::HdArm::kFrames].load(), 0.0);
+    }
     QTRY_VERIFY(find<QPushButton>("forceFelt")->isEnabled());
     find<QPushButton>("forceFelt")->click();
     QVERIFY(find<QLabel>("forceTest")->text().contains("works"));
@@ -141,7 +151,7 @@ class DevicesGuiTest : public test::TrainTest {
     QVERIFY(find<QLabel>("hint")->text().contains("The arms move the tools"));
     QVERIFY(!find<QAction>("devices")->isEnabled());
     QTest::keyClick(&window_->view(), Qt::Key_Down);
-    QTest::qWait(300);
+    framesGoBy(300);
     QVERIFY(!find<QWidget>("handBar")->isVisible());
     stop();
     QVERIFY(find<QAction>("devices")->isEnabled());

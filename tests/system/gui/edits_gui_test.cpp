@@ -21,12 +21,6 @@
 
 using namespace trephine;
 
-namespace {
-
-constexpr int kLong_ms = 120000;
-
-}  // namespace
-
 class EditsGuiTest : public test::WindowTest {
   Q_OBJECT
 
@@ -79,7 +73,7 @@ class EditsGuiTest : public test::WindowTest {
     QApplication::setActiveWindow(window_.get());
   }
   void keepGrab(const char* name) {
-    QTest::qWait(500);
+    restRefined();
     QVERIFY(window_->grab().save(QString(TREPHINE_ARTEFACTS "/") + name));
   }
   void wheelOverEverythingChangesNothing() {
@@ -97,7 +91,7 @@ class EditsGuiTest : public test::WindowTest {
                                      find<QWidget>("scenes"),   tabs};
     for (Place place : {Place::prepare, Place::train}) {
       window_->show(place);
-      QTest::qWait(50);
+      rest();
       view().setFocus();
       for (QWidget* widget :
            place == Place::prepare ? of_prepare : QList<QWidget*>{controller, scenes}) {
@@ -120,7 +114,7 @@ class EditsGuiTest : public test::WindowTest {
  private slots:
   void initTestCase() {
     QVERIFY(QDir().mkpath(TREPHINE_ARTEFACTS));
-    window_ = std::make_unique<MainWindow>(toPath(temporary_.filePath("sessions")));
+    window_ = newWindow(toPath(temporary_.filePath("sessions")));
     window_->show();
     QVERIFY(QTest::qWaitForWindowExposed(window_.get()));
     QSignalSpy opened(&workstation(), &Workstation::caseOpened);
@@ -310,6 +304,8 @@ class EditsGuiTest : public test::WindowTest {
   void cleanupTestCase() { window_.reset(); }
 };
 
-int main(int argc, char** argv) { return test::runInWindow<EditsGuiTest>(argc, argv); }
+int main(int argc, char** argv) {
+  return test::runInWindow<EditsGuiTest>(argc, argv);
+}
 
 #include "edits_gui_test.moc"

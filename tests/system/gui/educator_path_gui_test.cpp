@@ -8,8 +8,8 @@
 #include <QPlainTextEdit>
 #include <QPushButton>
 #include <QTabBar>
-#include <QTimer>
 #include <QToolButton>
+#include <utility>
 
 #include "exercise/exercise_folder.h"
 #include "gui_support.h"
@@ -18,7 +18,6 @@
 namespace trephine {
 
 namespace {
-constexpr int kLong_ms = 30000;
 constexpr int kMostTabs = 400;
 }  // namespace
 
@@ -34,7 +33,7 @@ class EducatorPathTest : public test::WindowTest {
     for (int n = 0; n < times; ++n) {
       QWidget* to = QApplication::focusWidget();
       QTest::keyClick(to ? to : at_, Qt::Key(key), with);
-      QTest::qWait(2);
+      rest();
     }
   }
   bool hasFocus(const QString& name) {
@@ -71,14 +70,16 @@ class EducatorPathTest : public test::WindowTest {
     press(Qt::Key_Tab);
     return true;
   }
-  // The menu runs an event loop of its own until it has its key.
-  bool choose(const QString& button, Qt::Key mnemonic) {
-    const auto soon = [mnemonic] {
+  // The menu runs an event loop of its own until it has its key: in the first turn of that.
+  bool choose(const QString& name, Qt::Key mnemonic) {
+    auto* button = at_->findChild<QToolButton*>(name);
+    if (!button || !button->menu() || (way_ == Way::keys && !reach(name))) return false;
+    const auto answer = [mnemonic] {
       if (QWidget* menu = QApplication::activePopupWidget()) QTest::keyClick(menu, mnemonic);
     };
-    if (way_ == Way::keys && !reach(button)) return false;
-    QTimer::singleShot(300, this, soon);
-    return use(button);
+    connect(button->menu(), &QMenu::aboutToShow, this, answer,
+            Qt::ConnectionType(Qt::QueuedConnection | Qt::SingleShotConnection));
+    return use(name);
   }
   bool showTab(int tab) {
     auto* bar = at_->findChild<QTabWidget*>("prepareTabs")->tabBar();
@@ -103,7 +104,7 @@ class EducatorPathTest : public test::WindowTest {
     edit->selectAll();
     QTest::keyClicks(edit, path);
     QTest::keyClick(edit, Qt::Key_Return);
-    QTest::qWait(50);
+    rest();
     QApplication::setActiveWindow(at_);
     return true;
   }
@@ -119,7 +120,7 @@ class EducatorPathTest : public test::WindowTest {
     made.region = BodyRegion::head;
     made.tissues = toJson(*readTissueSet(resourceFolder() / "tissues" / "cranium.json"));
     QVERIFY(library.save(made).ok());
-    window_ = std::make_unique<MainWindow>(toPath(home.path()) / "recordings");
+    window_ = newWindow(toPath(home.path()) / "recordings");
     MainWindow& window = *window_;
     open(window);
     const Workstation& work = window.workstation();
@@ -167,17 +168,14 @@ class EducatorPathTest : public test::WindowTest {
       }
       return false;
     };
-    for (int attempt = 0; attempt < 5 && !pushed(); ++attempt) {
-      if (way == Way::mouse) {
-        pokeWithMouse();
-      } else {
-        press(Qt::Key_Right);
-        press(Qt::Key_PageDown, {}, 15);
-        QTest::qWait(2500);
-        press(Qt::Key_PageUp, {}, 15);
-        QTest::qWait(1500);
-        press(Qt::Key_F, Qt::ControlModifier);
-      }
+    if (way == Way::mouse) {
+      pokeWithMouse();
+    } else {
+      press(Qt::Key_Right);
+      press(Qt::Key_PageDown, {}, 15);
+      pass(2.5);
+      press(Qt::Key_PageUp, {}, 15);
+      pass(1.5);
     }
     QVERIFY(pushed());
     press(Qt::Key_E, Qt::ControlModifier);
@@ -200,7 +198,7 @@ class EducatorPathTest : public test::WindowTest {
         press(Qt::Key_Up, {}, 2);
         press(Qt::Key_Return);
       }
-      QTest::qWait(50);
+      rest();
     }
     QVERIFY(work.scene()->outline);
     QVERIFY(work.scene()->outline->points_mm.size() >= points + 3);
@@ -230,7 +228,8 @@ class EducatorPathTest : public test::WindowTest {
     QVERIFY(window.grab().save(
         QString(TREPHINE_ARTEFACTS "/educator-%1.png").arg(way == Way::mouse ? "mouse" : "keys")));
     QTemporaryDir there;
-    MainWindow elsewhere(toPath(there.path()) / "recordings");
+    const auto here = std::exchange(window_, newWindow(toPath(there.path()) / "recordings"));
+    MainWindow& elsewhere = *window_;
     window.hide();
     open(elsewhere);
     if (way == Way::mouse) {
@@ -265,17 +264,17 @@ class EducatorPathTest : public test::WindowTest {
     press(Qt::Key_F5);
     QTRY_VERIFY_WITH_TIMEOUT(work.phase() == Workstation::Phase::running, kLong_ms);
     QVERIFY(!work.isPoke());
-    QTest::qWait(500);
+    pass(0.6);
+    QVERIFY(work.session()->state().ticks > 500);
     press(Qt::Key_Period, Qt::ControlModifier);
     QTRY_VERIFY_WITH_TIMEOUT(work.phase() == Workstation::Phase::ready, kLong_ms);
   }
   void pokeWithMouse() {
     pointAt(window_->view().rect().center());
     pushHand(15);
-    QTest::qWait(2500);
+    pass(2.5);
     pushHand(-15);
-    QTest::qWait(1500);
-    press(Qt::Key_F, Qt::ControlModifier);
+    pass(1.5);
   }
 
   Way way_ = Way::mouse;

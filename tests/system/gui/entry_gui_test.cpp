@@ -17,7 +17,6 @@
 using namespace trephine;
 
 namespace {
-constexpr int kLong_ms = 240000;
 const Vec3 kInLiver_mm(-60, -20, 20);
 }  // namespace
 
@@ -38,7 +37,7 @@ class EntryGuiTest : public test::WindowTest {
   }
   void drag(const Vec3& from, const Vec3& to) {
     dragInWindow(inWindow(from), inWindow(to), Qt::LeftButton);
-    QTest::qWait(30);
+    rest();
   }
   void click(const Vec3& at) { QTest::mouseClick(handle(), Qt::LeftButton, {}, inWindow(at)); }
   void untilPlaced() { QTRY_VERIFY_WITH_TIMEOUT(!workstation().isOpening(), kLong_ms); }
@@ -50,7 +49,7 @@ class EntryGuiTest : public test::WindowTest {
     return at;
   }
   void keepGrab(const char* name) {
-    QTest::qWait(400);
+    restRefined();
     QVERIFY(window_->grab().save(QString(TREPHINE_ARTEFACTS "/%1").arg(name)));
   }
 
@@ -62,7 +61,7 @@ class EntryGuiTest : public test::WindowTest {
     QVERIFY(opened.wait(kLong_ms));
     views().setLayout({ViewLayout::Kind::one_large, 1});
     views().setPoint(kInLiver_mm);
-    QTest::qWait(100);
+    rest();
   }
   void cleanupTestCase() { closeWindow(); }
 
@@ -102,7 +101,8 @@ class EntryGuiTest : public test::WindowTest {
     QVERIFY(glm::length(right.map.fixed->centre_mm - place) < 30.0);
     views().setTool(SliceTool::entry);
     click(kInLiver_mm);
-    QTest::qWait(200);
+    rest();
+    untilPlaced();  // what it would have done by now
     QVERIFY(glm::length(entry().position_mm - place) < 1e-9);
     workstation().stop();
     QTRY_VERIFY_WITH_TIMEOUT(workstation().phase() == Workstation::Phase::ready, kLong_ms);
@@ -111,7 +111,7 @@ class EntryGuiTest : public test::WindowTest {
 
   void aClickOnWhatIsSeenIn3DPlacesItThere() {
     views().setLayout({ViewLayout::Kind::single, 0});
-    QTest::qWait(300);
+    restRefined();
     views().setTool(SliceTool::entry);
     const QPointF middle = QRectF(window_->view().rect()).center();
     const auto seen = window_->view().pickAt(middle);
@@ -121,7 +121,7 @@ class EntryGuiTest : public test::WindowTest {
     untilPlaced();
     QTRY_VERIFY(glm::length(entry().position_mm - seen->at_mm) < 3.0);
     views().setLayout({ViewLayout::Kind::one_large, 1});
-    QTest::qWait(100);
+    rest();
   }
 
   void delGoesBackToTheExercisesOwnPlace() {
@@ -152,8 +152,7 @@ class EntryGuiTest : public test::WindowTest {
     drag(kInLiver_mm + Vec3(0, -80, 0), kInLiver_mm + Vec3(30, -80, 0));
     auto* list = find<QTreeWidget>("structureList");
     QCOMPARE(list->findItems("wall", Qt::MatchExactly).size(), 1);
-    untilPlaced();
-    QTest::qWait(800);
+    untilStructuresAreTaken();
     untilPlaced();
     QVERIFY(!workstation().currentCase()->structures->find("wall"));
     key(Qt::Key_Escape);
@@ -175,7 +174,7 @@ class EntryGuiTest : public test::WindowTest {
       return image.pixelColor(image.width() / 2, image.height() / 2).alpha();
     };
     QTRY_VERIFY_WITH_TIMEOUT(middle() == 255, 20000);
-    QTest::qWait(100);
+    rest();
     QVERIFY(card->grab().save(TREPHINE_ARTEFACTS "/structure-card.png"));
     card->close();
   }

@@ -4,6 +4,7 @@
 #include <QMenu>
 #include <QMessageBox>
 #include <QPlainTextEdit>
+#include <QRegularExpression>
 
 #include "exercise/exercise_folder.h"
 #include "gui_support.h"
@@ -15,12 +16,10 @@
 namespace trephine {
 
 namespace {
-constexpr int kLong_ms = 30000;
-
 bool names(const std::vector<std::string>& list, const char* name) {
   return std::ranges::find(list, name) != list.end();
 }
-}
+}  // namespace
 
 class ExerciseGuiTest : public test::WindowTest {
   Q_OBJECT
@@ -34,7 +33,7 @@ class ExerciseGuiTest : public test::WindowTest {
     window_->show(Place::prepare);
     QApplication::setActiveWindow(window_.get());  // without a window manager it may not be
     find<QTabWidget>("prepareTabs")->setCurrentIndex(tab);
-    QTest::qWait(50);
+    rest();
   }
   void enter(const char* name, const QString& text) {
     auto* box = find<QAbstractSpinBox>(name);
@@ -42,7 +41,7 @@ class ExerciseGuiTest : public test::WindowTest {
     box->selectAll();
     QTest::keyClicks(box, text);
     key(box, Qt::Key_Return);
-    QTest::qWait(5);
+    rest();
   }
   void type(const char* name, const QString& text) {
     auto* line = find<QLineEdit>(name);
@@ -50,7 +49,7 @@ class ExerciseGuiTest : public test::WindowTest {
     line->selectAll();
     QTest::keyClicks(line, text);
     key(line, Qt::Key_Return);
-    QTest::qWait(5);
+    rest();
   }
   void write(const char* name, const QString& text) {
     auto* edit = find<QPlainTextEdit>(name);
@@ -71,7 +70,7 @@ class ExerciseGuiTest : public test::WindowTest {
     QVERIFY2(index >= 0, name);
     box->setCurrentIndex(index);
     QMetaObject::invokeMethod(box, "activated", Q_ARG(int, index));
-    QTest::qWait(5);
+    rest();
   }
   void tick(const char* list, const QString& text, bool on) {
     auto* items = find<QListWidget>(list);
@@ -84,17 +83,17 @@ class ExerciseGuiTest : public test::WindowTest {
   void undoAll() {
     for (int n = 0; n < 300 && workstation().edits().canUndo(); ++n) {
       workstation().undoEdit();
-      QTest::qWait(1);
+      rest();
     }
     untilPlaced();
   }
   void untilPlaced() {
     QTRY_VERIFY_WITH_TIMEOUT(!workstation().isOpening(), kLong_ms);
-    QTest::qWait(20);
+    rest();
   }
   void untilSaved() {
     QTRY_VERIFY_WITH_TIMEOUT(!workstation().isSaving(), kLong_ms);
-    QTest::qWait(20);
+    rest();
   }
   void closeDialogs() {
     for (QMessageBox* box : window_->findChildren<QMessageBox*>()) box->close();
@@ -285,7 +284,9 @@ class ExerciseGuiTest : public test::WindowTest {
     choose("armChoice", QString("left"));
     const Vec3 before = scene().arms[0].map.offset_mm;
     const auto centre = [&] {
-      return withFixedMaps(scene(), workstation().currentCase()->landmarks).arms[0].map.fixed->centre_mm;
+      return withFixedMaps(scene(), workstation().currentCase()->landmarks)
+          .arms[0]
+          .map.fixed->centre_mm;
     };
     SliceView& coronal = slice(SliceAxis::coronal);
     const Vec3 from_mm = centre();
@@ -293,8 +294,7 @@ class ExerciseGuiTest : public test::WindowTest {
     const QPoint by(25, 0);
     QTest::mousePress(&coronal, Qt::LeftButton, {}, from.toPoint());
     for (int n = 1; n <= 5; ++n) {
-      QTest::mouseMove(&coronal, from.toPoint() + by * n / 5);
-      QTest::qWait(10);
+      moveTo(coronal, from.toPoint() + by * n / 5, Qt::LeftButton);
     }
     QTest::mouseRelease(&coronal, Qt::LeftButton, {}, from.toPoint() + by);
     const Vec3 moved = centre() - from_mm;
@@ -332,7 +332,7 @@ class ExerciseGuiTest : public test::WindowTest {
     const Vec3 edge_mm = map.centre_mm - map.rotation * Vec3(0.0, 0.0, half_mm);
     const QPoint at = coronal.fromPatient(edge_mm).toPoint();
     QTest::mousePress(&coronal, Qt::LeftButton, {}, at);
-    QTest::mouseMove(&coronal, at + QPoint(12, 0));
+    moveTo(coronal, at + QPoint(12, 0), Qt::LeftButton);
     QTest::mouseRelease(&coronal, Qt::LeftButton, {}, at + QPoint(12, 0));
     QVERIFY(glm::length(scene().arms[0].map.offset_mm - before) > 2.0);
   }
@@ -432,7 +432,7 @@ class ExerciseGuiTest : public test::WindowTest {
       auto* open = find<QFileDialog>(dialog);
       const QString folder = open->directory().absolutePath();
       open->close();
-      QTest::qWait(10);
+      rest();
       return folder;
     };
     find<QToolButton>("chooseMesh")->click();
@@ -447,9 +447,12 @@ class ExerciseGuiTest : public test::WindowTest {
     showTab(PrepareWorkspace::kToolTab);
     QVERIFY(find<QLabel>("law:elastic:cost")->text().isEmpty());
     find<QToolButton>("measureCosts")->click();
-    QTRY_VERIFY_WITH_TIMEOUT(find<QLabel>("law:elastic:cost")->text().contains("\u00b5s a tick"),
-                             kLong_ms);
-    QVERIFY(find<QLabel>("controllerCost")->text().contains("a tick"));
+    // A law that costs less than the machine scatters costs "under" that.
+    const QRegularExpression figure(
+        "^(-?\\d+\\.\\d\\d \u00b5s a tick|under \\d+\\.\\d\\d \u00b5s)$");
+    QTRY_VERIFY2_WITH_TIMEOUT(figure.match(find<QLabel>("law:elastic:cost")->text()).hasMatch(),
+                              qPrintable(find<QLabel>("law:elastic:cost")->text()), kLong_ms);
+    QVERIFY(find<QLabel>("controllerCost")->text().contains("\u00b5s a tick"));
     find<QListWidget>("toolList")->setCurrentRow(0);
     for (const char* trade : {"pointsTrade", "forceTrade", "rateTrade", "raysTrade"}) {
       QVERIFY2(find<QLabel>(trade)->text().contains("recommended"), trade);
@@ -549,7 +552,7 @@ class ExerciseGuiTest : public test::WindowTest {
     find<QFileDialog>("labelsDialog")->close();
   }
 
-  // Faster than the case can be placed.
+  // Faster than the case can be placed, but for a rest now and then.
   void aStormOfEditsOfAPlaceIsNeverRefused() {
     QSignalSpy failed(window_.get(), &MainWindow::failed);
     for (int n = 1; n <= 30; ++n) {
@@ -557,11 +560,12 @@ class ExerciseGuiTest : public test::WindowTest {
       moved.landmarks[0].from.x = 0.4 + 0.005 * n;
       QVERIFY(workstation().edit(moved, "landmark").ok());
       workstation().closeEdit();
-      QTest::qWait(n % 5);
+      turns(n % 5);
+      if (n % 10 == 0) untilPlaced();
     }
     for (int n = 1; n <= 30; ++n) {
       workstation().undoEdit();
-      QTest::qWait(n % 7);
+      turns(n % 7);
     }
     untilPlaced();
     QCOMPARE(failed.count(), 0);
@@ -616,14 +620,14 @@ class ExerciseGuiTest : public test::WindowTest {
     find<QToolButton>("clearOutline")->click();
     QVERIFY(!scene().outline);
     ViewWidget& view = window_->view();
-    QTRY_VERIFY_WITH_TIMEOUT(view.isComplete(), kLong_ms);
+    restRefined();
     const QImage before = view.grabFramebuffer();
     find<QToolButton>("drawOutline")->click();
     QCOMPARE(window_->views().tool(), SliceTool::outline);
     const QPoint middle = view.rect().center();
     for (const QPoint& by : {QPoint(-30, -20), QPoint(30, -20), QPoint(30, 20), QPoint(-30, 20)}) {
       QTest::mouseClick(&view, Qt::LeftButton, {}, middle + by);
-      QTest::qWait(50);
+      rest();
     }
     QVERIFY(scene().outline);
     QCOMPARE(scene().outline->points_mm.size(), std::size_t(4));
@@ -634,7 +638,7 @@ class ExerciseGuiTest : public test::WindowTest {
     QVERIFY(scene().outline->closed);
     enter("outline:width_mm", "2.5");
     QCOMPARE(scene().outline->width_mm, 2.5);
-    QTest::qWait(300);
+    restRefined();
     keepGrab("prepare-outline.png");
     const QImage with = view.grabFramebuffer();
     QCOMPARE(with.size(), before.size());
@@ -723,9 +727,9 @@ class ExerciseGuiTest : public test::WindowTest {
     QVERIFY(QFile::exists(folder + "/exercise.json"));
     const auto check = checkExercise(toPath(folder));
     QVERIFY(check.ok() && check->verified());
-    test::WindowTest elsewhere;
     QTemporaryDir other;
-    MainWindow another(toPath(other.path()) / "recordings");
+    const auto elsewhere = newWindow(toPath(other.path()) / "recordings");
+    MainWindow& another = *elsewhere;
     another.resize(1280, 800);
     another.QMainWindow::show();
     another.show(Place::prepare);
@@ -736,11 +740,12 @@ class ExerciseGuiTest : public test::WindowTest {
     QVERIFY(dialog);
     emit dialog->fileSelected(folder);
     dialog->close();
-    QVERIFY(opened.wait(kLong_ms));
+    QVERIFY(opened.count() == 1 || opened.wait(kLong_ms));
     QVERIFY(another.workstation().scene()->name == "Mine");
     QCOMPARE(another.workstation().currentCase()->sha256, workstation().currentCase()->sha256);
     Scene here = scene(), there = *another.workstation().scene();
-    QCOMPARE(QString::fromStdString(toJson(there).dump()), QString::fromStdString(toJson(here).dump()));
+    QCOMPARE(QString::fromStdString(toJson(there).dump()),
+             QString::fromStdString(toJson(here).dump()));
   }
 
   void anExerciseThatWasChangedOnItsWayIsNamedPartByPart() {
@@ -817,7 +822,7 @@ class ExerciseGuiTest : public test::WindowTest {
     QTest::mouseClick(&axial, Qt::LeftButton, {}, axial.rect().center());
     QTRY_VERIFY(window_->findChild<PrepareWorkspace*>()->structuresEdited());
     window_->views().setTool(SliceTool::window);
-    QTest::qWait(700);  // until the exercise has it
+    untilStructuresAreTaken();
     untilPlaced();
     showTab(PrepareWorkspace::kExerciseTab);
     find<QPushButton>("exportExercise")->click();

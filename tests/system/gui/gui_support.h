@@ -21,19 +21,29 @@
 #include "ui/common/words.h"
 #include "ui/frame/main_window.h"
 #include "ui/frame/start_up.h"
-#include "volume/phantom.h"
+#include "volume/phantom_file.h"
 #include "volume/volume_files.h"
 
 namespace trephine::test {
 
-// The cranium on a grid so many times coarser: the tests are about the window.
+// Every so many voxels of the cranium, on each axis: the tests are about the window.
 inline Volume coarseCranium(int factor) {
-  GridGeometry geometry = *phantomGeometry("cranium");
+  const Volume whole = openPhantom("cranium")->volume;
+  Volume coarse{whole.geometry, {}};
   for (int axis = 0; axis < 3; ++axis) {
-    geometry.size[std::size_t(axis)] /= factor;
-    geometry.spacing_mm[axis] *= double(factor);
+    coarse.geometry.size[std::size_t(axis)] /= factor;
+    coarse.geometry.spacing_mm[axis] *= double(factor);
   }
-  return makePhantomOn(*phantomTruth("cranium"), geometry, kPhantomNoiseHu);
+  const Index3& size = coarse.geometry.size;
+  coarse.hu.reserve(coarse.geometry.voxelCount());
+  for (int k = 0; k < size[2]; ++k) {
+    for (int j = 0; j < size[1]; ++j) {
+      for (int i = 0; i < size[0]; ++i) {
+        coarse.hu.push_back(whole.at(factor * i, factor * j, factor * k));
+      }
+    }
+  }
+  return coarse;
 }
 
 // A scene of the built-in cranium's kind on that case; both are written into the folder.
@@ -55,15 +65,79 @@ inline std::filesystem::path sceneOn(const Volume& volume, const std::filesystem
   return file;
 }
 
-// A test of one window, with a folder of its own.
+// A test of one window, with a folder of its own. Exercises run on the test's clock, never late:
+// their time passes in pass(), and by a little with each turn of the event loop, so that whatever
+// waits for them goes on. Nothing here waits for a time; see rest() and Qt's QTRY macros.
 class WindowTest : public QObject {
+ public:
+  WindowTest() {
+    constexpr int kBeat_ms = 10;
+    constexpr double kBeat_s = 0.02;
+    connect(&beat_, &QTimer::timeout, this, [this] { advance(kBeat_s); });
+    beat_.start(kBeat_ms);
+  }
+
  protected:
+  static constexpr int kLong_ms = 120000;
+
   Workstation& workstation() { return window_->workstation(); }
   template <class Widget>
   Widget* find(const QString& name) {
     auto* widget = window_->findChild<Widget*>(name);
     if (!widget) qFatal("the window has no %s", qPrintable(name));
     return widget;
+  }
+
+  // All windows of a test come from here.
+  template <class... Arguments>
+  std::unique_ptr<MainWindow> newWindow(Arguments&&... arguments) {
+    auto window = std::make_unique<MainWindow>(std::forward<Arguments>(arguments)...);
+    window->workstation().setStepped(!real_time_);
+    return window;
+  }
+  // So many seconds of the exercise. The window sees ten states a second of it.
+  void pass(double seconds) {
+    constexpr double kSeen_s = 0.1;
+    for (double left_s = seconds; left_s > 1e-6; left_s -= kSeen_s) {
+      advance(std::min(kSeen_s, left_s));
+      showFrame();
+      QCoreApplication::processEvents();
+    }
+  }
+  // The same, of which the window sees nothing until showFrame().
+  void advance(double seconds) {
+    Session* session = window_ && !real_time_ ? workstation().session() : nullptr;
+    if (session) session->advance(seconds);
+  }
+  void showFrame() { window_->showExercise(); }
+  // Until the window has done what it was asked: what is queued, also by that, and its 3-D picture.
+  // What comes by a timer of its own or from another thread is to be waited for by what it does.
+  static void rest() { turns(5); }
+  // So many turns of the event loop.
+  static void turns(int count) {
+    for (int turn = 0; turn < count; ++turn) {
+      QCoreApplication::sendPostedEvents();
+      QCoreApplication::sendPostedEvents(nullptr, QEvent::DeferredDelete);
+      QCoreApplication::processEvents();
+    }
+  }
+  // What is painted counts a moment later.
+  void untilStructuresAreTaken() {
+    rest();
+    QTRY_VERIFY_WITH_TIMEOUT(!find<QTimer>("structuresSettled")->isActive(), kLong_ms);
+    rest();
+  }
+  void restRefined() {
+    rest();
+    if (!window_->view().isVisible() || !window_->view().canDraw()) return;
+    QTRY_VERIFY_WITH_TIMEOUT(window_->view().isComplete(), kLong_ms);
+  }
+  // The pointer comes to a place of the view, without the X server's detour.
+  void pointAt(QPoint place) { moveTo(window_->view(), place); }
+  static void moveTo(QWidget& widget, QPoint place, Qt::MouseButtons buttons = Qt::NoButton) {
+    QMouseEvent event(QEvent::MouseMove, place, widget.mapToGlobal(QPointF(place)), Qt::NoButton,
+                      buttons, Qt::NoModifier);
+    QCoreApplication::sendEvent(&widget, &event);
   }
 
   void showTissues() {
@@ -80,7 +154,7 @@ class WindowTest : public QObject {
     QApplication::setApplicationName(application);
     QFile::remove(windowSettings().fileName());
     QVERIFY(QDir().mkpath(TREPHINE_ARTEFACTS));
-    window_ = std::make_unique<MainWindow>(toPath(temporary_.path()) / "recordings");
+    window_ = newWindow(toPath(temporary_.path()) / "recordings");
     window_->resize(1280, 800);
     window_->show();
     QVERIFY(QTest::qWaitForWindowExposed(window_.get()));
@@ -96,7 +170,7 @@ class WindowTest : public QObject {
     QTest::mousePress(handle, button, {}, from.toPoint());
     for (int i = 1; i <= kSteps; ++i) {
       QTest::mouseMove(handle, (from + (to - from) * (double(i) / kSteps)).toPoint());
-      QTest::qWait(10);
+      rest();
     }
     QTest::mouseRelease(handle, button, {}, to.toPoint());
   }
@@ -107,17 +181,12 @@ class WindowTest : public QObject {
     auto* shown = find<QLabel>("activeHand");
     const QString wanted = hand == Hand::left ? "Left hand" : "Right hand";
     pointAt(window_->view().rect().center());
+    QTRY_VERIFY(shown->isVisible());
     for (int n = 0; n < 2 && shown->text() != wanted; ++n) {
       QTest::keyClick(&window_->view(), Qt::Key_Tab);
-      QTest::qWait(50);
     }
     QCOMPARE(shown->text(), wanted);
-  }
-  void pointAt(QPoint place) {
-    QTest::mouseMove(&window_->view(), place + QPoint(3, 0));  // it may rest there already
-    QTest::qWait(20);
-    QTest::mouseMove(&window_->view(), place);
-    QTest::qWait(50);
+    pass(0.05);
   }
   // How hard the hand presses at the middle of the exercise's view: the wheel.
   void pushHand(int notches) {
@@ -127,15 +196,17 @@ class WindowTest : public QObject {
       QWheelEvent event(at, view.mapToGlobal(at), {}, {0, notches > 0 ? 120 : -120}, Qt::NoButton,
                         Qt::NoModifier, Qt::NoScrollPhase, false);
       QCoreApplication::sendEvent(&view, &event);
-      QTest::qWait(15);
+      advance(0.015);
     }
+    pass(0.05);
   }
+  // Within 0.8 s.
   void dragHand(QPoint by) {
     const QPoint from = window_->view().rect().center();
     constexpr int kSteps = 40;
     for (int i = 1; i <= kSteps; ++i) {
-      QTest::mouseMove(&window_->view(), from + by * i / kSteps);
-      QTest::qWait(20);
+      pointAt(from + by * i / kSteps);
+      i % 4 == 0 ? pass(0.02) : advance(0.02);
     }
   }
   static std::uint64_t removedVoxels(Session& session) {
@@ -145,28 +216,14 @@ class WindowTest : public QObject {
     }
     return sum;
   }
-  // Onto the tissue, sideways, and out of it until the stroke has ended. Where the machine was so
-  // busy that a step came 20 ms late the arms are without force and cut nothing: then, as a person
-  // would, one waits for the force or asks for it, and makes the cut again.
-  void cut(QPoint across, Hand hand = Hand::right, std::uint64_t enough = 0) {
-    for (int attempt = 0; attempt < 5; ++attempt) {
-      takeHand(hand);
-      const std::uint64_t standing = removedVoxels(*workstation().session());
-      pushHand(15);
-      QTest::qWait(1000);
-      dragHand(attempt % 2 == 0 ? across : -across);
-      pushHand(-15);
-      QTest::qWait(1500);
-      // Fewer voxels: the force went in the middle of it.
-      if (removedVoxels(*workstation().session()) > standing + enough) return;
-      qInfo("little or nothing was cut: once more");
-      for (int n = 0; n < 5 && removedVoxels(*workstation().session()) != standing; ++n) {
-        find<QAction>("undo")->trigger();
-        QTest::qWait(300);
-      }
-      QTest::qWait(1500);
-      find<QAction>("forceBack")->trigger();
-    }
+  // Onto the tissue, sideways, and out of it until the stroke has ended.
+  void cut(QPoint across, Hand hand = Hand::right) {
+    takeHand(hand);
+    pushHand(15);
+    pass(1.0);
+    dragHand(across);
+    pushHand(-15);
+    pass(1.5);
   }
 
   // A built-in case, from its card.
@@ -184,13 +241,23 @@ class WindowTest : public QObject {
     QTest::mouseClick(find<QPushButton>("prepareCase"), Qt::LeftButton);
   }
 
+  // Set before the first window: exercises run on threads of their own, as a person's do.
+  bool real_time_ = false;
   QTemporaryDir temporary_;
   std::unique_ptr<MainWindow> window_;
+
+ private:
+  QTimer beat_;
 };
 
-// A test program's main(): skipped, with exit code 77, where nothing can be drawn.
+// A test program's main(): skipped, with exit code 77, where nothing can be drawn. It has settings,
+// data and state of its own, which go with it: two of these programs run at once.
 template <class Test>
 int runInWindow(int argc, char** argv) {
+  const QTemporaryDir home;
+  for (const char* folder : {"CONFIG", "DATA", "STATE"}) {
+    qputenv((std::string("XDG_") + folder + "_HOME").c_str(), home.filePath(folder).toUtf8());
+  }
   prepareMemory();
   if (Status display = prepareDisplay(); !display) {
     std::printf("SKIP: %s\n", display.error().sentence().c_str());
@@ -198,7 +265,6 @@ int runInWindow(int argc, char** argv) {
   }
   TimedApplication application(argc, argv);
   QApplication::setApplicationName("trephine-test");
-  QStandardPaths::setTestModeEnabled(true);
   QFile::remove(windowSettings().fileName());  // of a test before
   colours::applyTheme(application);
   Test test;

@@ -32,7 +32,6 @@ using namespace trephine;
 
 namespace {
 
-constexpr int kLong_ms = 120000;
 const char* const kFolderName = "Doe^Jane_1971";  // as identifying as a folder's name can be
 const char* const kDescription = "Phantom, cranium";
 
@@ -134,7 +133,7 @@ class GuiTest : public test::WindowTest {
   }
 
   void keepGrab(const char* name) {
-    QTest::qWait(3000);  // until the view has been refined
+    restRefined();
     QVERIFY(window_->grab().save(QString(TREPHINE_ARTEFACTS "/") + name));
   }
 
@@ -145,7 +144,7 @@ class GuiTest : public test::WindowTest {
     const QString folder = temporary_.filePath(kFolderName);
     const Status made = writeCtSeries(written_, {kDescription, "HEAD"}, toPath(folder));
     QVERIFY2(made.ok(), made.ok() ? "" : made.error().sentence().c_str());
-    window_ = std::make_unique<MainWindow>(toPath(temporary_.filePath("sessions")));
+    window_ = newWindow(toPath(temporary_.filePath("sessions")));
     window_->resize(1280, 800);
     window_->show();
     QVERIFY(QTest::qWaitForWindowExposed(window_.get()));
@@ -241,7 +240,7 @@ class GuiTest : public test::WindowTest {
     QVERIFY(view().shownVolume().geometry.size == written_.geometry.size);
     QVERIFY(view().shownVolume().hu == written_.hu);
 
-    QTest::qWait(500);  // the workspace is laid out
+    restRefined();
     opened_ = casePicture();
     QVERIFY(opened_.width > 0);
     Picture empty = opened_;
@@ -275,7 +274,7 @@ class GuiTest : public test::WindowTest {
   void spaceStartsNothing() {
     focusView();
     QTest::keyClick(&view(), Qt::Key_Space);
-    QTest::qWait(300);
+    rest();
     QVERIFY(workstation().phase() == Workstation::Phase::ready);
   }
 
@@ -325,7 +324,7 @@ class GuiTest : public test::WindowTest {
     sha_before_ = shownSha();
     QCOMPARE(sha_before_, volumeSha256(written_));
     const Picture before = casePicture();
-    cut({60, 0}, Hand::right, 20);
+    cut({60, 0});
     const std::uint64_t removed = removedVoxels(*workstation().session());
     QVERIFY2(removed > 20, qPrintable(QString::number(removed)));
     QVERIFY(shownSha() != sha_before_);
@@ -343,7 +342,8 @@ class GuiTest : public test::WindowTest {
       const std::uint64_t standing = removedVoxels(*workstation().session());
       QTest::keyClick(window_.get(), Qt::Key_Z, Qt::ControlModifier);
       QTRY_VERIFY_WITH_TIMEOUT(removedVoxels(*workstation().session()) < standing, 10000);
-      QTest::qWait(200);  // until the panels have been told
+      const LoopState& state = workstation().session()->state();
+      QTRY_COMPARE(undo->isEnabled(), state.can_undo && !state.busy);
     }
     QVERIFY2(strokes >= 1 && strokes < 10, qPrintable(QString::number(strokes)));
     QTRY_COMPARE_WITH_TIMEOUT(shownSha(), sha_before_, 10000);
@@ -351,7 +351,7 @@ class GuiTest : public test::WindowTest {
 
     for (int i = 0; i < strokes; ++i) {
       QTest::keyClick(window_.get(), Qt::Key_Z, Qt::ControlModifier | Qt::ShiftModifier);
-      QTest::qWait(200);
+      pass(0.2);
     }
     QTRY_COMPARE_WITH_TIMEOUT(removedVoxels(*workstation().session()), removed, 10000);
   }
@@ -362,7 +362,7 @@ class GuiTest : public test::WindowTest {
     const QImage released = pauseButton();
     takeHand(Hand::right);
     pushHand(8);  // on the bone, pressing
-    QTest::qWait(1000);
+    pass(1);
     focusView();
     const Vec3 before_mm = tip_mm();
     const std::uint64_t removed = removedVoxels(*workstation().session());
@@ -379,7 +379,7 @@ class GuiTest : public test::WindowTest {
                      std::abs(on.blue() - off.blue()) >
                  90,
              "the button looks as if it were not pressed");
-    QTest::qWait(300);
+    pass(0.3);
     const std::uint32_t second = workstation().session()->state().seconds;
     const QString clock = find<QLabel>("rewindTime")->text();
     pushHand(2);
@@ -398,7 +398,7 @@ class GuiTest : public test::WindowTest {
     pushHand(-20);
     QTRY_VERIFY(glm::distance(tip_mm(), before_mm) > 3.0);
     QTRY_VERIFY(workstation().session()->state().seconds > second);
-    QTest::qWait(500);  // the stroke ends
+    pass(0.5);  // the stroke ends
   }
 
   void resetPutsBackWhatBothHandsCut() {
@@ -411,7 +411,7 @@ class GuiTest : public test::WindowTest {
     }
     QTest::keyClick(window_.get(), Qt::Key_R, Qt::ControlModifier);
     keepAll("resetQuestion");
-    QTest::qWait(300);
+    pass(0.3);
     QVERIFY2(shownSha() != sha_before_, "put back without a yes");
     QTest::keyClick(window_.get(), Qt::Key_R, Qt::ControlModifier);
     answer("resetQuestion", "goOnAnyway");
@@ -423,11 +423,11 @@ class GuiTest : public test::WindowTest {
   void aRewindPutsBackTissueAndCountsAndCuttingGoesOn() {
     auto* slider = find<QSlider>("rewindSlider");
     QTRY_VERIFY(slider->isEnabled());
-    QTest::qWait(1500);  // a whole second after the reset
+    pass(1.5);  // a whole second after the reset
     const std::uint32_t before_cut = workstation().session()->state().seconds;
     cut({60, 10});
     QVERIFY(removedVoxels(*workstation().session()) > 20);
-    QTest::qWait(1500);
+    pass(1.5);
     QVERIFY(find<QAction>("undo")->isEnabled());
     QVERIFY(!find<QAction>("redo")->isEnabled());
     keepGrab("before-rewind-1280x800.png");
@@ -518,7 +518,7 @@ class GuiTest : public test::WindowTest {
     window_->close();
     keepAll("cutsQuestion");
     QVERIFY(window_->isVisible());
-    QTest::qWait(300);
+    rest();
     QVERIFY(workstation().phase() == Workstation::Phase::ready && !workstation().isOpening());
     QCOMPARE(shownSha(), cut_sha);
   }
@@ -555,6 +555,8 @@ class GuiTest : public test::WindowTest {
   void cleanupTestCase() { window_.reset(); }
 };
 
-int main(int argc, char** argv) { return test::runInWindow<GuiTest>(argc, argv); }
+int main(int argc, char** argv) {
+  return test::runInWindow<GuiTest>(argc, argv);
+}
 
 #include "gui_test.moc"

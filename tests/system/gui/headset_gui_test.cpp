@@ -59,9 +59,8 @@ class HeadsetGuiTest : public test::TrainTest {
   QString words() { return find<QLabel>("eyes")->text(); }
   bool isOn() { return find<QAction>("headset")->isChecked(); }
   void putOn() {
-    const int before = runtime().framesWithEyes();
     find<QAction>("headset")->trigger();
-    QTRY_VERIFY_WITH_TIMEOUT(runtime().framesWithEyes() > before + 3, 20000);
+    framesGoBy(3);
   }
   void takeOff() {
     find<QAction>("headset")->trigger();
@@ -69,6 +68,10 @@ class HeadsetGuiTest : public test::TrainTest {
     QTRY_VERIFY(!isOn());
     QVERIFY2(runtime().violations().empty(),
              runtime().violations().empty() ? "" : runtime().violations().front().c_str());
+  }
+  void framesGoBy(int frames) {
+    const int before = runtime().framesWithEyes();
+    QTRY_VERIFY_WITH_TIMEOUT(runtime().framesWithEyes() > before + frames, 20000);
   }
   std::uint64_t ticks() { return workstation().session()->state().ticks; }
   void goesOn() {
@@ -86,6 +89,7 @@ class HeadsetGuiTest : public test::TrainTest {
   void init() {
     runtime().reset();
     runtime().setSize(kSize, kSize);
+    real_time_ = true;  // the runtime has a clock of its own
     open();
   }
   void cleanup() { window_.reset(); }
@@ -142,7 +146,7 @@ class HeadsetGuiTest : public test::TrainTest {
     QTest::keyClick(below, Qt::Key_Return);
     auto* reason = dialog->findChild<QLabel*>("headsetBelowRefused");
     QTRY_VERIFY(reason->isVisible());
-    QTest::qWait(100);
+    rest();
     QVERIFY(dialog->grab().save(TREPHINE_ARTEFACTS "/headset-refused.png"));
     for (QLabel* each : dialog->findChildren<QLabel*>()) {
       if (!each->isVisible() || !each->wordWrap()) continue;
@@ -167,7 +171,7 @@ class HeadsetGuiTest : public test::TrainTest {
     key(Qt::Key_F9, Qt::ShiftModifier);
     QTRY_VERIFY(!isOn());
     QTRY_VERIFY_WITH_TIMEOUT(!runtime().alive().any(), 20000);
-    QTest::qWait(500);
+    rest();
     QVERIFY(find<QAction>("stereo")->isChecked());
     QTRY_VERIFY2(words().contains("Both eyes on"), qPrintable(words()));
     find<QAction>("stereo")->trigger();
@@ -252,7 +256,7 @@ class HeadsetGuiTest : public test::TrainTest {
     // Behind the head now; it does not come by itself.
     runtime().setHead({{0.0, 0.0, 0.0}, glm::angleAxis(glm::pi<double>(), Vec3(0, 1, 0))});
     QTRY_VERIFY(seen(0) < 20);
-    QTest::qWait(300);
+    framesGoBy(20);
     QVERIFY(seen(0) < 20);
     find<QAction>("headsetRecentre")->trigger();
     QTRY_VERIFY2(std::abs(seen(0) - ahead) < ahead / 3, qPrintable(QString::number(seen(0))));
@@ -405,7 +409,7 @@ class HeadsetGuiTest : public test::TrainTest {
     runtime().setSize(kSize, kSize);
     putOn();
     runtime().moveRoom(false);  // a person has recentred the headset: the room is the same
-    QTest::qWait(300);
+    framesGoBy(20);
     QVERIFY(armInRoom(kept));
     runtime().moveRoom(true);
     QTRY_VERIFY2(said().contains("register the arms again"), qPrintable(said()));

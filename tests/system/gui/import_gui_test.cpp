@@ -34,7 +34,7 @@ using namespace trephine;
 
 namespace {
 
-constexpr int kLong_ms = 120000, kSoon_ms = 20000;
+constexpr int kSoon_ms = 20000;
 constexpr int kManySeries = 10, kSlicesOfMany = 300;
 // With this between two turns of the event loop a window still feels alive.
 constexpr double kLongestGap_ms = 200.0;
@@ -116,7 +116,7 @@ class ImportGuiTest : public test::WindowTest {
     if (auto* error = window_->findChild<QMessageBox*>("errorDialog")) error->close();
   }
   void keepGrab(const char* name) {
-    QTest::qWait(300);  // until the parts have found their places
+    rest();  // until the parts have found their places
     QVERIFY(dialog()->grab().save(QString(TREPHINE_ARTEFACTS "/") + name));
   }
 
@@ -127,7 +127,7 @@ class ImportGuiTest : public test::WindowTest {
     write(block({64, 48, 20}, 1), "Head 6.0", temporary_.filePath("two/b"));
     QFile text(temporary_.filePath("two/read.me"));
     QVERIFY(text.open(QIODevice::WriteOnly) && text.write("no CT") > 0);
-    window_ = std::make_unique<MainWindow>(toPath(temporary_.filePath("storage/sessions")));
+    window_ = newWindow(toPath(temporary_.filePath("storage/sessions")));
     window_->show();
     QVERIFY(QTest::qWaitForWindowExposed(window_.get()));
     QApplication::setActiveWindow(window_.get());
@@ -456,7 +456,7 @@ class ImportGuiTest : public test::WindowTest {
         QVERIFY(!find<QLabel>("verdictSentence")->text().isEmpty());
       }
       list()->setCurrentRow(0);
-      QTest::qWait(300);
+      rest();
       keepGrab(qPrintable(QString("import-%1.png").arg(folder)));
     }
   }
@@ -545,6 +545,8 @@ class ImportGuiTest : public test::WindowTest {
   void cleanupTestCase() { window_.reset(); }
 };
 
-int main(int argc, char** argv) { return test::runInWindow<ImportGuiTest>(argc, argv); }
+int main(int argc, char** argv) {
+  return test::runInWindow<ImportGuiTest>(argc, argv);
+}
 
 #include "import_gui_test.moc"

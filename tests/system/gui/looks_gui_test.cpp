@@ -16,8 +16,6 @@ using namespace trephine;
 
 namespace {
 
-constexpr int kLong_ms = 120000;
-
 // Pixels whose channels stand to each other as a tissue's colour does, whatever the light.
 int pixelsLike(const Picture& picture, const Vec3& colour) {
   int count = 0;
@@ -57,7 +55,7 @@ class LooksGuiTest : public test::WindowTest {
  private slots:
   void initTestCase() {
     QVERIFY(QDir().mkpath(TREPHINE_ARTEFACTS));
-    window_ = std::make_unique<MainWindow>(toPath(temporary_.filePath("sessions")));
+    window_ = newWindow(toPath(temporary_.filePath("sessions")));
     window_->show();
     QVERIFY(QTest::qWaitForWindowExposed(window_.get()));
     QApplication::setActiveWindow(window_.get());

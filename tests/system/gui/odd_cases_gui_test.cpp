@@ -13,7 +13,6 @@ using namespace trephine;
 
 namespace {
 
-constexpr int kLong_ms = 120000;
 constexpr int kBone = 1200, kBrain = 35;
 constexpr double kRadius_mm = 80.0;
 
@@ -60,7 +59,7 @@ class OddCasesGuiTest : public test::WindowTest {
     QSignalSpy opened(&workstation(), &Workstation::caseOpened);
     workstation().openImported(caseOf(std::make_shared<const Volume>(std::move(volume))));
     [&] { QVERIFY(opened.count() == 1 || opened.wait(kLong_ms)); }();
-    QTest::qWait(200);
+    rest();
     QString said;
     if (auto* box = window_->findChild<QMessageBox*>("errorDialog")) {
       said = box->text() + "\n" + box->informativeText();
@@ -102,7 +101,7 @@ class OddCasesGuiTest : public test::WindowTest {
   void initTestCase() {
     QApplication::setApplicationName("trephine-test-odd-cases");
     QVERIFY(QDir().mkpath(TREPHINE_ARTEFACTS));
-    window_ = std::make_unique<MainWindow>(toPath(temporary_.filePath("recordings")));
+    window_ = newWindow(toPath(temporary_.filePath("recordings")));
     window_->resize(1280, 800);
     window_->show();
     QVERIFY(QTest::qWaitForWindowExposed(window_.get()));
@@ -160,7 +159,7 @@ class OddCasesGuiTest : public test::WindowTest {
       widget->setMinimumSize(0, 0);
       for (const QSize& size : {QSize(0, 0), QSize(0, 80), QSize(80, 0), QSize(1, 1)}) {
         widget->resize(size);
-        QTest::qWait(60);
+        rest();
         QTest::keyClick(widget, Qt::Key_Plus);
         QWheelEvent wheel({}, {}, {}, {0, 120}, Qt::NoButton, {}, Qt::NoScrollPhase, false);
         QCoreApplication::sendEvent(widget, &wheel);

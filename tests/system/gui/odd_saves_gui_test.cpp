@@ -27,6 +27,7 @@ const char* const kChild = "--child";
 
 std::unique_ptr<MainWindow> windowOn(const QString& storage) {
   auto window = std::make_unique<MainWindow>(toPath(storage + "/sessions"));
+  window->workstation().setStepped(true);
   window->resize(1000, 700);
   window->show();
   return window;
@@ -91,7 +92,7 @@ class OddSavesGuiTest : public test::WindowTest {
     auto* dialog = find<QMessageBox>("errorDialog");
     const QString words = dialog->text() + ' ' + dialog->informativeText();
     dialog->close();
-    QTest::qWait(50);
+    rest();
     return words;
   }
   void openVolume() {
@@ -263,6 +264,7 @@ class OddSavesGuiTest : public test::WindowTest {
         QVERIFY(waitFor("changed"));
         whole_ms = double(since.nsecsElapsed()) * 1e-6;
       } else {
+        // It is killed at any moment of what it does.
         QTest::qSleep(int(whole_ms * 1.8 * double(random() % 1000) / 1000.0));
         child.kill();
       }

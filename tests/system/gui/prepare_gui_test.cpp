@@ -13,10 +13,6 @@
 
 namespace trephine {
 
-namespace {
-constexpr int kLong_ms = 30000;
-}
-
 class PrepareGuiTest : public test::WindowTest {
   Q_OBJECT
 
@@ -34,9 +30,7 @@ class PrepareGuiTest : public test::WindowTest {
   QPoint at(double hu) {
     return {int(std::lround(histogram().xOf(hu))), int(histogram().plot().center().y())};
   }
-  QPoint seenAt(double hu, QWidget* widget) {
-    return widget->mapTo(window_.get(), at(hu));
-  }
+  QPoint seenAt(double hu, QWidget* widget) { return widget->mapTo(window_.get(), at(hu)); }
   void key(QWidget* widget, Qt::Key of, Qt::KeyboardModifiers with = {}) {
     QTest::keyClick(widget, of, with);
   }
@@ -69,7 +63,8 @@ class PrepareGuiTest : public test::WindowTest {
       for (int x = 0; x < a.width(); ++x) {
         const QColor c = a.pixelColor(x, y), d = b.pixelColor(x, y);
         count += std::abs(c.red() - d.red()) + std::abs(c.green() - d.green()) +
-                     std::abs(c.blue() - d.blue()) > 60;
+                     std::abs(c.blue() - d.blue()) >
+                 60;
       }
     }
     return double(count) / double(a.width() * a.height());
@@ -86,9 +81,7 @@ class PrepareGuiTest : public test::WindowTest {
     }
     return count;
   }
-  void untilCounted() {
-    QTRY_VERIFY_WITH_TIMEOUT(histogram().shares().all > 0, kLong_ms);
-  }
+  void untilCounted() { QTRY_VERIFY_WITH_TIMEOUT(histogram().shares().all > 0, kLong_ms); }
   // All edits go.
   void undoAll() {
     for (int n = 0; n < 300 && workstation().edits().canUndo(); ++n) workstation().undoEdit();
@@ -122,7 +115,7 @@ class PrepareGuiTest : public test::WindowTest {
       QTRY_VERIFY_WITH_TIMEOUT(workstation().phase() == Workstation::Phase::ready, kLong_ms);
     }
     undoAll();
-    QTest::qWait(50);
+    rest();
   }
 
   void sharesOfTheTissuesAreThoseOfTheVoxels() {
@@ -139,27 +132,24 @@ class PrepareGuiTest : public test::WindowTest {
   void aDraggedThresholdIsSeenInSlicesAndIn3DAtOnceAndIsOneStepBack() {
     const TissueSet before = tissues();
     const QString share = listText("bone");
-    QTRY_VERIFY_WITH_TIMEOUT(window_->view().isComplete(), kLong_ms);
-    QTest::qWait(500);
+    restRefined();
     const QImage head = window_->view().grab().toImage();
     panel().select("bone");
-    QTest::qWait(300);
+    rest();
     const double edge = tissue("bone").hu_min - 0.5;
     const int lines = yellow();  // of the other views
     QTest::mousePress(&histogram(), Qt::LeftButton, {}, at(edge));
     for (int n = 1; n <= 10; ++n) {
-      QTest::mouseMove(&histogram(), at(edge) - QPoint(4 * n, 0));
-      QTest::qWait(20);
+      moveTo(histogram(), at(edge) - QPoint(4 * n, 0), Qt::LeftButton);
+      rest();
     }
-    QTest::qWait(300);
     QVERIFY(tissue("bone").hu_min < 180);
     QCOMPARE(tissue("dura").hu_max, tissue("bone").hu_min - 1);  // it goes along
-    QVERIFY2(yellow() > lines + 100, qPrintable(QString::number(yellow())));
+    QTRY_VERIFY2(yellow() > lines + 100, qPrintable(QString::number(yellow())));
     QVERIFY(listText("bone") != share);
     keepGrab("prepare-threshold.png");
     QTest::mouseRelease(&histogram(), Qt::LeftButton, {}, at(edge) - QPoint(40, 0));
-    QTest::qWait(300);
-    QVERIFY(yellow() <= lines);
+    QTRY_VERIFY(yellow() <= lines);
     QCOMPARE(find<QSpinBox>("huLow")->value(), tissue("bone").hu_min);
     QCOMPARE(QString::fromStdString(tissue("bone").hu_source), QString(kOwnSource));
     find<QAction>("undo")->trigger();
@@ -171,15 +161,12 @@ class PrepareGuiTest : public test::WindowTest {
   }
 
   void whileAThresholdIsMovedItsTissueStandsAloneIn3D() {
-    QTRY_VERIFY_WITH_TIMEOUT(window_->view().isComplete(), kLong_ms);
-    QTest::qWait(500);
+    restRefined();
     const QImage head = window_->view().grab().toImage();
     panel().select("dura");  // which lies within the bone
     histogram().setFocus();
     QTest::keyPress(&histogram(), Qt::Key_Left);
-    QTest::qWait(500);
-    const double changed = differing(window_->view().grab().toImage(), head);
-    QVERIFY2(changed > 0.1, qPrintable(QString::number(changed)));
+    QTRY_VERIFY(differing(window_->view().grab().toImage(), head) > 0.1);
     QTest::keyRelease(&histogram(), Qt::Key_Left);
     QTRY_VERIFY(differing(window_->view().grab().toImage(), head) < 0.01);
     QVERIFY(workstation().edits().canUndo());
@@ -218,7 +205,8 @@ class PrepareGuiTest : public test::WindowTest {
     const double shown = histogram().xOf(low);
     key(&histogram(), Qt::Key_Plus);
     QVERIFY(histogram().huAt(histogram().plot().right()) -
-                histogram().huAt(histogram().plot().left()) < 2800.0);
+                histogram().huAt(histogram().plot().left()) <
+            2800.0);
     key(&histogram(), Qt::Key_0);
     QCOMPARE(histogram().xOf(low), shown);
     undoAll();
@@ -398,13 +386,12 @@ class PrepareGuiTest : public test::WindowTest {
     QVERIFY(find<QAction>("poke")->isChecked());
     auto* plot = find<PokePlot>("pokePlot");
     QVERIFY(plot->isVisible());
-    QTest::qWait(300);
     takeHand(Hand::right);
     const auto pokeOnce = [&] {
       pushHand(12);
-      QTest::qWait(700);
+      pass(0.7);
       pushHand(-12);
-      QTest::qWait(900);
+      pass(0.9);
     };
     const auto most = [&] {
       double most_N = 0.0;
@@ -412,7 +399,7 @@ class PrepareGuiTest : public test::WindowTest {
       for (const PokePoint& p : plot->pokes().back().points) most_N = std::max(most_N, p.sent_N);
       return most_N;
     };
-    for (int n = 0; n < 3 && most() < 0.8; ++n) pokeOnce();
+    pokeOnce();
     QVERIFY2(most() > 0.8, qPrintable(QString::number(most())));
     QVERIFY(plot->pokes().back().ended);
     keepGrab("prepare-poke.png");
@@ -421,7 +408,7 @@ class PrepareGuiTest : public test::WindowTest {
     panel().select("bone");
     const std::size_t bone = placeOf("bone");
     pushHand(12);
-    QTest::qWait(500);
+    pass(0.5);
     const auto depth = [&] {
       const auto& pokes = plot->pokes();
       return pokes.empty() || pokes.back().points.empty() ? 0.0
@@ -429,11 +416,11 @@ class PrepareGuiTest : public test::WindowTest {
     };
     const double firm_mm = depth();
     enter("stiffness", "250");
-    QTest::qWait(800);
+    pass(0.8);
     QVERIFY2(depth() > firm_mm + 1.0, qPrintable(QString("%1 %2").arg(firm_mm).arg(depth())));
     QCOMPARE(workstation().session()->scene().tissues.tissues[bone].stiffness_N_per_m.value, 250.0);
     pushHand(-12);
-    QTest::qWait(900);
+    pass(0.9);
     for (int n = 0; n < 5; ++n) pokeOnce();
     QVERIFY(plot->pokes().size() <= PokeCurves::kKept + 1);
     // A tissue more waits for its end.

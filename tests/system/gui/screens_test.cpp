@@ -18,12 +18,12 @@
 #include "imaging/dicom/ct_writer.h"
 #include "ui/common/placing.h"
 #include "ui/common/words.h"
-#include "volume/phantom.h"
+#include "volume/phantom_file.h"
 
 using namespace trephine;
 
 namespace {
-constexpr int kLong_ms = 240000;
+const char* const kOfHelp = "1280x800";  // its pictures are those of help, and whole
 }  // namespace
 
 class ScreensTest : public test::WindowTest {
@@ -34,7 +34,11 @@ class ScreensTest : public test::WindowTest {
   QString prefix_;
 
   void take(const QString& name) {
-    QTest::qWait(1500);  // the views refine
+    if (prefix_ == kOfHelp) {
+      restRefined();
+    } else {
+      rest();
+    }
     const QString file = QString(TREPHINE_ARTEFACTS "/screen-%1-%2.png").arg(prefix_, name);
     QVERIFY(window_->grab().save(file));
     QStringList wrong;
@@ -63,8 +67,10 @@ class ScreensTest : public test::WindowTest {
     static QTemporaryDir folder;
     const std::filesystem::path path = toPath(folder.path()) / "ct";
     if (std::filesystem::exists(path)) return path;
-    const Result<Volume> head = makePhantom("cranium");
-    if (!head || !writeCtSeries(*head, {"Head, built in", "HEAD"}, path)) qFatal("no series");
+    const Result<Phantom> head = openPhantom("cranium");
+    if (!head || !writeCtSeries(head->volume, {"Head, built in", "HEAD"}, path)) {
+      qFatal("no series");
+    }
     return path;
   }
 
@@ -100,7 +106,7 @@ class ScreensTest : public test::WindowTest {
     QFETCH(QSize, size);
     prefix_ = QTest::currentDataTag();
     QFile::remove(windowSettings().fileName());
-    window_ = std::make_unique<MainWindow>(toPath(temporary_.filePath(prefix_ + "/sessions")));
+    window_ = newWindow(toPath(temporary_.filePath(prefix_ + "/sessions")));
     window_->resize(size);
     window_->show();
     QVERIFY(QTest::qWaitForWindowExposed(window_.get()));
@@ -149,7 +155,7 @@ class ScreensTest : public test::WindowTest {
     cut({60, 0});
     takeHand(Hand::right);
     pushHand(8);
-    QTest::qWait(2000);
+    pass(2.0);
     take("train-cutting");
     find<QAction>("pause")->trigger();
     take("train-paused");

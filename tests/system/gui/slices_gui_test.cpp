@@ -23,7 +23,6 @@ using namespace trephine;
 
 namespace {
 
-constexpr int kLong_ms = 120000;
 constexpr int kSkin = -20, kBone = 1200, kBrain = 35;
 
 // A ball of bone around brain in a box of 200 mm.
@@ -51,7 +50,7 @@ class SlicesGuiTest : public test::WindowTest {
   SliceView& sagittal() { return views().slice(SliceAxis::sagittal); }
 
   void open() {
-    window_ = std::make_unique<MainWindow>(toPath(temporary_.path()) / "recordings");
+    window_ = newWindow(toPath(temporary_.path()) / "recordings");
     window_->resize(1280, 800);
     window_->show();
     QVERIFY(QTest::qWaitForWindowExposed(window_.get()));
@@ -68,38 +67,38 @@ class SlicesGuiTest : public test::WindowTest {
   QWindow* handle() { return window_->windowHandle(); }
   void hover(SliceView& view, const QPointF& at) {
     QTest::mouseMove(handle(), inWindow(view, at));
-    QTest::qWait(30);
+    rest();
   }
   void click(SliceView& view, const QPointF& at, Qt::KeyboardModifiers modifiers = {}) {
     QTest::mouseClick(handle(), Qt::LeftButton, modifiers, inWindow(view, at));
-    QTest::qWait(QApplication::doubleClickInterval() + 20);
+    rest();
   }
   void doubleClick(SliceView& view) {
     QTest::mouseDClick(handle(), Qt::LeftButton, {}, inWindow(view, QRectF(view.rect()).center()));
-    QTest::qWait(QApplication::doubleClickInterval() + 20);
+    rest();
   }
   void drag(SliceView& view, const QPointF& from, const QPointF& to,
             Qt::MouseButton button = Qt::LeftButton) {
     QTest::mousePress(handle(), button, {}, inWindow(view, from));
     for (int i = 1; i <= 8; ++i) {
       QTest::mouseMove(handle(), inWindow(view, from + (to - from) * i / 8.0));
-      QTest::qWait(10);
+      rest();
     }
     QTest::mouseRelease(handle(), button, {}, inWindow(view, to));
-    QTest::qWait(30);
+    rest();
   }
   void wheel(SliceView& view, int notches, Qt::KeyboardModifiers modifiers = {}) {
     const QPointF at = QRectF(view.rect()).center();
     QWheelEvent event(at, view.mapToGlobal(at), {}, {0, 120 * notches}, Qt::NoButton, modifiers,
                       Qt::NoScrollPhase, false);
     QCoreApplication::sendEvent(&view, &event);
-    QTest::qWait(10);
+    rest();
   }
   void key(QWidget& widget, Qt::Key key) {
     QApplication::setActiveWindow(window_.get());
     widget.setFocus();
     QTest::keyClick(handle(), key);
-    QTest::qWait(30);
+    rest();
   }
 
   QColor colourAt(SliceView& view, const QPointF& at) {
@@ -150,7 +149,7 @@ class SlicesGuiTest : public test::WindowTest {
       QVERIFY(view.isVisible());
       // The ball is round, as wide as it is high, and 160 mm of bone across.
       views().setPoint(Vec3(0.0));
-      QTest::qWait(50);
+      rest();
       const QImage image = view.grab().toImage();
       const QPointF middle = view.fromPatient(Vec3(0.0));
       const auto reach = [&](QPointF step) {
@@ -451,11 +450,11 @@ class SlicesGuiTest : public test::WindowTest {
         for (std::uint64_t voxels : arm) removed += voxels;
       }
       cut = removed > 40;
-      QTest::qWait(40);
+      pass(0.04);
       if (marked) continue;
       const Vec3 tip = state.record.arms[0].proxy_position_mm;
       if (isFinite(tip)) views().setPoint(tip);
-      QTest::qWait(40);
+      rest();
       const QImage image = coronal().grab().toImage();
       const QPoint at = coronal().fromPatient(views().point_mm()).toPoint();
       int coloured = 0;
@@ -476,7 +475,7 @@ class SlicesGuiTest : public test::WindowTest {
     QVERIFY(ended.wait(kLong_ms));
     QTRY_VERIFY(find<QWidget>("resultPage")->isVisible());
     find<QPushButton>("resultLook")->click();
-    QTest::qWait(50);
+    rest();
 
     const Volume& before = *workstation().currentCase()->volume;
     const Volume& now = views().mirror().volume();
@@ -520,7 +519,7 @@ class SlicesGuiTest : public test::WindowTest {
     const Index3 v = g.indicesOf(place);
     const Vec3 mm = g.toPatient_mm(Vec3(v[0], v[1], v[2]));
     views().setLayout({ViewLayout::Kind::four, 0});
-    QTest::qWait(100);
+    restRefined();
     views().setPoint(mm);
     for (SliceAxis axis : kSliceAxes) {
       SliceView& view = views().slice(axis);
@@ -533,7 +532,7 @@ class SlicesGuiTest : public test::WindowTest {
                           Qt::NoScrollPhase, false);
         QCoreApplication::sendEvent(&view, &event);
       }
-      QTest::qWait(60);
+      rest();
       hover(views().slice(axis == SliceAxis::axial ? SliceAxis::coronal : SliceAxis::axial),
             {5, 5});
       QVERIFY(colourOfPlace(view, mm).red() < 12);
@@ -544,7 +543,7 @@ class SlicesGuiTest : public test::WindowTest {
 
   void theLayoutIsRememberedAndNothingElse() {
     window_->show(Place::prepare);
-    QTest::qWait(200);
+    rest();
     key(coronal(), Qt::Key_F6);
     key(coronal(), Qt::Key_F7);
     QVERIFY(coronal().width() > 2 * axial().width());

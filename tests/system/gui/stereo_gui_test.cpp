@@ -42,12 +42,11 @@ class StereoGuiTest : public test::TrainTest {
   // Until its picture does not change any more.
   QImage picture() {
     QImage last;
-    for (int i = 0; i < 50; ++i) {
-      QTest::qWait(100);
+    (void)QTest::qWaitFor([&] {
+      rest();
       const QImage now = shown()->grabFramebuffer();
-      if (now == last) break;
-      last = now;
-    }
+      return now == std::exchange(last, now);
+    });
     return last;
   }
   static int difference(const QImage& a, const QImage& b) {
@@ -101,11 +100,10 @@ class StereoGuiTest : public test::TrainTest {
     QTRY_VERIFY(window_->isActiveWindow());
     // The status line follows what the pictures take, though nothing is switched.
     const QString before = find<QLabel>("eyes")->text();
-    for (int i = 0; i < 8; ++i) {
-      key(i % 2 == 0 ? Qt::Key_A : Qt::Key_S);
-      QTest::qWait(300);
-    }
-    QTRY_VERIFY2(find<QLabel>("eyes")->text() != before, qPrintable(before));
+    int keys = 0;
+    QTRY_VERIFY2(
+        (key(keys++ % 2 == 0 ? Qt::Key_A : Qt::Key_S), find<QLabel>("eyes")->text() != before),
+        qPrintable(before));
     QTest::mouseDClick(shown(), Qt::LeftButton);
     QTRY_VERIFY(!shown());
     QTRY_VERIFY(!find<QAction>("stereo")->isChecked());

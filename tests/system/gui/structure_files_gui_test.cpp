@@ -30,8 +30,6 @@ using namespace trephine;
 
 namespace {
 
-constexpr int kLong_ms = 240000;
-
 // As 3D Slicer writes one: two layers, of which the second lies in the first.
 void writeOverlapping(const GridGeometry& g, const LabelMap& liver,
                       const std::filesystem::path& file) {
@@ -120,7 +118,7 @@ class StructureFilesGuiTest : public test::WindowTest {
     auto* dialog = wait<QFileDialog>(name);
     emit dialog->fileSelected(path);
     dialog->close();
-    QTest::qWait(10);  // it goes away
+    rest();  // it goes away
   }
   bool saved(const char* dialog, const QString& path) {
     QSignalSpy done(&workstation(), &Workstation::saved);

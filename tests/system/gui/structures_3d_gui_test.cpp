@@ -18,7 +18,6 @@
 using namespace trephine;
 
 namespace {
-constexpr int kLong_ms = 60000;
 const Vec3 kInLiver_mm(-60, -20, 20);
 }  // namespace
 
@@ -55,7 +54,7 @@ class Structures3dGuiTest : public test::WindowTest {
   void settle() { QTRY_VERIFY_WITH_TIMEOUT(view().isComplete(), kLong_ms); }
   // Once the structures are placed and nothing moves any more.
   void wholePicture() {
-    QTest::qWait(700);
+    untilStructuresAreTaken();
     QTRY_VERIFY_WITH_TIMEOUT(!workstation().isOpening(), kLong_ms);
     settle();
   }
@@ -71,8 +70,8 @@ class Structures3dGuiTest : public test::WindowTest {
  private slots:
   void initTestCase() {
     const auto file = toPath(temporary_.filePath("abdomen.mha"));
-    const auto volume = makePhantom("abdomen");
-    QVERIFY(volume.ok() && writeVolume(*volume, file).ok());
+    const auto abdomen = openPhantom("abdomen");
+    QVERIFY(abdomen.ok() && writeVolume(abdomen->volume, file).ok());
     openWindow("trephine-test-structures-3d");
     QSignalSpy opened(&workstation(), &Workstation::caseOpened);
     workstation().openPath(file);
@@ -152,7 +151,9 @@ class Structures3dGuiTest : public test::WindowTest {
     drag(at, at + QPointF(25, 0));
     QElapsedTimer clock;
     clock.start();
-    while (view().grabFramebuffer() == was && clock.elapsed() < 5000) QTest::qWait(5);
+    while (view().grabFramebuffer() == was && clock.elapsed() < 5000) {
+      QCoreApplication::processEvents();
+    }
     std::printf("seen %lld ms after the stroke: %.1f mL less\n",
                 static_cast<long long>(clock.elapsed()), before - ml("liver"));
     QVERIFY(clock.elapsed() < 500);

@@ -23,9 +23,7 @@
 
 using namespace trephine;
 
-namespace {
-constexpr int kLong_ms = 240000;
-}
+namespace {}
 
 class StructuresGuiTest : public test::WindowTest {
   Q_OBJECT
@@ -48,7 +46,7 @@ class StructuresGuiTest : public test::WindowTest {
   }
   void drag(const Vec3& from, const Vec3& to) {
     dragInWindow(inWindow(from), inWindow(to), Qt::LeftButton);
-    QTest::qWait(30);
+    rest();
     ++clicks_;
   }
   void key(Qt::Key of) {
@@ -72,7 +70,7 @@ class StructuresGuiTest : public test::WindowTest {
     return -1.0;
   }
   void keepGrab(const char* name) {
-    QTest::qWait(400);
+    restRefined();
     QVERIFY(window_->grab().save(QString(TREPHINE_ARTEFACTS "/%1").arg(name)));
   }
   QString said() { return find<QLabel>("structureSaid")->text(); }
@@ -86,8 +84,8 @@ class StructuresGuiTest : public test::WindowTest {
       in_liver_mm_ = {-92, -161, 406};
     } else {
       file_ = toPath(temporary_.filePath("abdomen.mha"));
-      const auto volume = makePhantom("abdomen");
-      QVERIFY(volume.ok() && writeVolume(*volume, file_).ok());
+      const auto abdomen = openPhantom("abdomen");
+      QVERIFY(abdomen.ok() && writeVolume(abdomen->volume, file_).ok());
     }
     openWindow("trephine-test-structures");
   }
@@ -142,7 +140,7 @@ class StructuresGuiTest : public test::WindowTest {
 
   void aClickGrowsTheLiverAndShowsItBeforeItCounts() {
     views().setPoint(in_liver_mm_);
-    QTest::qWait(100);
+    rest();
     QElapsedTimer clock;
     clock.start();
     clickAt(in_liver_mm_);
@@ -200,7 +198,7 @@ class StructuresGuiTest : public test::WindowTest {
     QTest::mouseMove(handle(), QPoint(5, 5));
     find<QComboBox>("structureName")->setFocus();
     QTest::mouseMove(handle(), inWindow(in_liver_mm_));
-    QTest::qWait(50);
+    rest();
     QVERIFY(!axial().hasFocus());
   }
 
@@ -209,7 +207,7 @@ class StructuresGuiTest : public test::WindowTest {
     views().setTool(SliceTool::eraser);
     const QPoint at = axial().fromPatient(in_liver_mm_ + Vec3(5, 25, 0)).toPoint();
     QTest::mouseMove(handle(), axial().mapTo(window_.get(), at + QPoint(60, 0)));
-    QTest::qWait(100);
+    rest();
     const QColor before = axial().grab().toImage().pixelColor(at);
     QElapsedTimer clock;
     clock.start();
@@ -219,7 +217,7 @@ class StructuresGuiTest : public test::WindowTest {
     const qint64 ms = clock.elapsed();
     QTest::mouseRelease(handle(), Qt::LeftButton, {}, axial().mapTo(window_.get(), at));
     QTest::mouseMove(handle(), axial().mapTo(window_.get(), at + QPoint(60, 0)));
-    QTest::qWait(50);
+    rest();
     const QColor after = axial().grab().toImage().pixelColor(at);
     std::printf("a stroke's first voxels and the slice with them: %lld ms\n",
                 static_cast<long long>(ms));
@@ -260,13 +258,13 @@ class StructuresGuiTest : public test::WindowTest {
     const double before = ml("liver");
     showStructures();
     views().setLayout({ViewLayout::Kind::four, 0});
-    QTest::qWait(200);
+    rest();
     views().setTool(SliceTool::brush);
     drag(in_liver_mm_, in_liver_mm_ + Vec3(10, 0, 0));
     --clicks_;
     QCOMPARE(ml("liver"), before);
     QVERIFY2(said().contains("exercise runs"), qPrintable(said()));
-    QTest::qWait(500);
+    pass(0.5);
     workstation().stop();
     QTRY_VERIFY_WITH_TIMEOUT(workstation().phase() == Workstation::Phase::ready, kLong_ms);
     QTRY_VERIFY2(said().contains("liver") && said().contains("mL"), qPrintable(said()));
@@ -344,7 +342,7 @@ class StructuresGuiTest : public test::WindowTest {
     prepareBuiltIn("cranium");
     QTRY_VERIFY(window_->findChild<QMessageBox*>("structuresUnsaved"));
     window_->findChild<QMessageBox*>("structuresUnsaved")->reject();
-    QTest::qWait(100);
+    rest();
     QVERIFY(!workstation().isOpening() || workstation().isPlacing());
     QVERIFY(ml("liver") > 800.0);
     window_->close();

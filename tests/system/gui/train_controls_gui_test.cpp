@@ -63,14 +63,14 @@ class TrainControlsGuiTest : public test::TrainTest {
   void aWorkspaceGivesTheViewsTheirPlacesOnce() {
     openScene(scene_);
     window_->show(Place::prepare);
-    QTest::qWait(300);
+    restRefined();
     int sizes = 0;
     connect(&view(), &ViewWidget::resized, &view(), [&] { ++sizes; });
     for (const Place place : {Place::train, Place::prepare, Place::train}) {
       const QSize before = view().size();
       sizes = 0;
       window_->show(place);
-      QTest::qWait(300);
+      restRefined();
       QVERIFY(view().size() != before);
       QCOMPARE(sizes, 1);
     }
@@ -80,7 +80,7 @@ class TrainControlsGuiTest : public test::TrainTest {
     openScene(scene_);
     startTraining();
     takeHand(Hand::right);
-    QTest::qWait(500);
+    pass(0.5);
     const Quat before = arm(1).proxy_orientation;
     view().setFocus();
     key(Qt::Key_Left, Qt::ShiftModifier, 5);
@@ -106,7 +106,7 @@ class TrainControlsGuiTest : public test::TrainTest {
     double aside_mm = 0.0;
     const Vec3 deep = arm(1).proxy_orientation * Vec3(0, 0, 1);
     for (int n = 0; n < 100; ++n) {
-      QTest::qWait(20);
+      pass(0.02);
       const Vec3 moved = arm(1).proxy_position_mm - tip_mm;
       if (arm(1).tissue_class < 0) continue;
       aside_mm = std::max(aside_mm, glm::length(moved - glm::dot(moved, deep) * deep));
@@ -125,7 +125,7 @@ class TrainControlsGuiTest : public test::TrainTest {
     cut({30, 0});
     QVERIFY(removedVoxels(*workstation().session()) > 0);
     find<QAction>("reset")->trigger();
-    QTest::qWait(200);
+    pass(0.2);
     QVERIFY2(removedVoxels(*workstation().session()) > 0, "not before it is agreed");
     answer("resetQuestion", "goOnAnyway");
     QTRY_COMPARE_WITH_TIMEOUT(removedVoxels(*workstation().session()), 0u, 10000);
@@ -140,7 +140,7 @@ class TrainControlsGuiTest : public test::TrainTest {
     for (int n = 0; n < 5 && removedVoxels(*workstation().session()) > 0; ++n) {
       QTRY_VERIFY_WITH_TIMEOUT(find<QToolButton>("backButton")->isEnabled(), 10000);
       QTest::mouseClick(find<QToolButton>("backButton"), Qt::LeftButton);
-      QTest::qWait(1500);
+      pass(1.5);
     }
     QCOMPARE(removedVoxels(*workstation().session()), 0u);
     stop();
@@ -168,7 +168,7 @@ class TrainControlsGuiTest : public test::TrainTest {
     takeHand(Hand::right);
     pushHand(5);
     QTRY_VERIFY_WITH_TIMEOUT(arm(1).tissue_class >= 0, 10000);
-    QTest::qWait(500);
+    pass(0.5);
     find<QAction>("pause")->trigger();
     QTRY_VERIFY(workstation().session()->state().paused);
     const Vec3 tool_mm = arm(1).proxy_position_mm;
@@ -176,7 +176,7 @@ class TrainControlsGuiTest : public test::TrainTest {
     pointAt(elsewhere);  // to the button, say
     find<QAction>("pause")->trigger();
     QTRY_VERIFY(!workstation().session()->state().paused);
-    QTest::qWait(800);
+    pass(0.8);
     const Vec3 by_mm = arm(1).proxy_position_mm - tool_mm;
     const Vec3 ahead = view().camera().forward();
     const double aside_mm = glm::length(by_mm - glm::dot(by_mm, ahead) * ahead);
@@ -194,9 +194,9 @@ class TrainControlsGuiTest : public test::TrainTest {
     startTraining();
     takeHand(Hand::right);
     key(Qt::Key_Right, Qt::NoModifier, 120);
-    QTest::qWait(500);
+    pass(0.5);
     key(Qt::Key_L, Qt::ControlModifier);
-    QTest::qWait(500);
+    pass(0.5);
     QCOMPARE(workstation().session()->handPush_N(1), 0.0);
     takeHand(Hand::right);
     pushHand(5);

@@ -10,8 +10,8 @@
 #include <QMessageBox>
 #include <QPushButton>
 #include <QSignalSpy>
-#include <QStatusBar>
 #include <QStandardItemModel>
+#include <QStatusBar>
 #include <QToolBar>
 #include <QToolButton>
 #include <QtTest>
@@ -74,18 +74,13 @@ class TrainGuiTest : public test::TrainTest {
     QVERIFY(started.count() == 1 || started.wait(kLong_ms));
     QTRY_VERIFY(find<QFrame>("readyNotice")->isVisible());
     QVERIFY(view().hasFocus());
-    for (int attempt = 0; attempt < 4; ++attempt) {
-      key(Qt::Key_Right);
-      key(Qt::Key_PageDown, Qt::NoModifier, 10);
-      QTest::qWait(1500);
-      key(Qt::Key_Right, Qt::NoModifier, 6);
-      QTest::qWait(500);
-      key(Qt::Key_PageUp, Qt::NoModifier, 15);
-      QTest::qWait(1500);
-      if (removedVoxels(*workstation().session()) > 20) break;
-      QTest::qWait(1500);
-      key(Qt::Key_F, Qt::ControlModifier);
-    }
+    key(Qt::Key_Right);
+    key(Qt::Key_PageDown, Qt::NoModifier, 10);
+    pass(1.5);
+    key(Qt::Key_Right, Qt::NoModifier, 6);
+    pass(0.5);
+    key(Qt::Key_PageUp, Qt::NoModifier, 15);
+    pass(1.5);
     QVERIFY(!find<QFrame>("readyNotice")->isVisible());
     const std::uint64_t removed = removedVoxels(*workstation().session());
     QVERIFY2(removed > 20, qPrintable(QString::number(removed)));
@@ -156,23 +151,18 @@ class TrainGuiTest : public test::TrainTest {
     const auto inHand = [&] { return session.state().tools[1]; };
     // Voxels that a press of the tool in hand takes, in one place.
     const auto hole = [&] {
-      for (int attempt = 0; attempt < 5; ++attempt) {
-        pushHand(12);
-        QTest::qWait(2500);
-        pushHand(-12);
-        QTest::qWait(1500);
-        const std::uint64_t voxels = removedVoxels(session);
-        const bool whole = voxels > 0 && session.state().record.arms[1].faults == 0;
-        find<QAction>("undo")->trigger();
-        QTest::qWait(500);
-        if (whole) return voxels;
-        find<QAction>("forceBack")->trigger();
-      }
-      return std::uint64_t(0);
+      pushHand(12);
+      pass(2.5);
+      pushHand(-12);
+      pass(1.5);
+      const std::uint64_t voxels = removedVoxels(session);
+      find<QAction>("undo")->trigger();
+      pass(0.5);
+      return voxels;
     };
     const std::uint64_t by_blade = hole();
     QTRY_COMPARE(removedVoxels(session), 0u);
-    QTest::qWait(1500);  // until the view has been refined
+    restRefined();
     const QImage with_blade = view().grabFramebuffer();
     // By its key to the last of three: the picture changes where the tool is.
     key(Qt::Key_T, Qt::ControlModifier);
@@ -185,7 +175,7 @@ class TrainGuiTest : public test::TrainTest {
     QTRY_COMPARE(chosen->currentText(), "burr, 6 mm");
     QTRY_VERIFY(find<QLabel>("exerciseTools")->text().contains("Right arm: burr, 6 mm"));
     QVERIFY(find<QLabel>("exerciseTools")->text().contains("Left arm: blade, 16 mm"));
-    QTest::qWait(1500);
+    restRefined();
     const QImage with_burr = view().grabFramebuffer();
     QCOMPARE(with_burr.size(), with_blade.size());
     int other = 0;
@@ -237,14 +227,14 @@ class TrainGuiTest : public test::TrainTest {
     takeHand(Hand::right);
     pushHand(5);
     QTRY_VERIFY_WITH_TIMEOUT(arm(1).tissue_class >= 0 && force_N(1) > 0.3, 10000);
-    QTest::qWait(1000);
+    pass(1);
     QTRY_VERIFY(find<QLabel>("handTouches")->text().startsWith("touches "));
     const Vec3 other_mm = arm(0).proxy_position_mm;
     find<QAction>("otherHand")->trigger();
     QTRY_COMPARE(find<QLabel>("activeHand")->text(), "Left hand");
     QTRY_VERIFY_WITH_TIMEOUT(force_N(1) < 0.05, 10000);
     const Vec3 stays_mm = arm(1).proxy_position_mm;
-    QTest::qWait(500);
+    pass(0.5);
     // The one that is taken stays, too, until the pointer moves.
     QVERIFY(glm::distance(arm(0).proxy_position_mm, other_mm) < 0.5);
     pointAt(view().rect().center() + QPoint(40, 0));
@@ -266,7 +256,7 @@ class TrainGuiTest : public test::TrainTest {
     openScene(scene_);
     startTraining();
     takeHand(Hand::right);
-    QTest::qWait(500);
+    pass(0.5);
     const Quat before = arm(1).proxy_orientation;
     const auto turned = [&] {
       return 2.0 * std::acos(std::min(1.0, std::abs(glm::dot(before, arm(1).proxy_orientation))));
@@ -303,7 +293,7 @@ class TrainGuiTest : public test::TrainTest {
     QVERIFY(!clutch->isChecked());
     for (std::size_t i = 0; i < 2; ++i) {
       QTRY_VERIFY(!(arm(i).tool_state & kToolClutched));
-      QTest::qWait(500);
+      pass(0.5);
       const double moved_mm = glm::distance(arm(i).proxy_position_mm, before[i].proxy_position_mm);
       QVERIFY2(moved_mm < 0.3, qPrintable(QString::number(moved_mm)));
       QVERIFY(std::abs(glm::dot(arm(i).proxy_orientation, before[i].proxy_orientation)) > 0.99999);
@@ -318,7 +308,7 @@ class TrainGuiTest : public test::TrainTest {
     QTRY_VERIFY(glm::length(arm(1).sent_N) < 0.01);
     const Vec3 tool = arm(1).proxy_position_mm;
     pushHand(-5);
-    QTest::qWait(500);
+    pass(0.5);
     QVERIFY2(glm::distance(arm(1).proxy_position_mm, tool) < 0.5, "its tool stays");
     stop();
     QVERIFY(!clutch->isChecked());
@@ -329,11 +319,11 @@ class TrainGuiTest : public test::TrainTest {
     const auto place = [&] { return button->mapTo(window_.get(), QPoint()); };
     window_->show(Place::train);
     QVERIFY(find<QToolBar>("toolBar")->isVisible());
-    QTest::qWait(50);
+    rest();
     const QPoint in_train = place();
     for (Place other : {Place::cases, Place::review, Place::prepare}) {
       window_->show(other);
-      QTest::qWait(50);
+      rest();
       QCOMPARE(place(), in_train);
     }
     QVERIFY(find<QToolBar>("toolBar")->isVisible());
@@ -414,10 +404,8 @@ class TrainGuiTest : public test::TrainTest {
     takeHand(Hand::right);
     pushHand(15);
     double most = 0.0;
-    QElapsedTimer clock;
-    clock.start();
-    while (clock.elapsed() < 3000) {
-      QTest::qWait(20);
+    for (int n = 0; n < 150; ++n) {
+      pass(0.02);
       most = std::max(most, glm::length(arm(1).sent_N));
     }
     QVERIFY2(most > 0.2 && most <= 1.0001, qPrintable(QString::number(most)));
@@ -442,7 +430,7 @@ class TrainGuiTest : public test::TrainTest {
     QTRY_COMPARE(failed.count(), 1);
     QVERIFY(!workstation().currentCase());
     window_->findChild<QMessageBox*>("errorDialog")->close();
-    QTest::qWait(50);
+    rest();
     // The product's own is open to all, but not to change.
     openScene(resourceFolder() / "scenes" / "cranium.json");
     const TissueSet tissues = workstation().scene()->tissues;
@@ -458,7 +446,7 @@ class TrainGuiTest : public test::TrainTest {
     QVERIFY(sameSet(workstation().scene()->tissues, tissues));
     QVERIFY(workstation().scene()->controller == ControllerKind::bounded);
     for (QMessageBox* box : window_->findChildren<QMessageBox*>("errorDialog")) box->close();
-    QTest::qWait(50);
+    rest();
     // The PIN: a wrong one changes nothing.
     for (const char* text : {"0000", "4711"}) {
       if (!window_->findChild<QDialog*>("unlockDialog")) find<QAction>("unlockTeaching")->trigger();
@@ -511,7 +499,7 @@ class TrainGuiTest : public test::TrainTest {
     QCOMPARE(failed[0][0].value<Error>().code, std::string("LOCKED"));
     QVERIFY(workstation().phase() == Workstation::Phase::ready);
     for (auto* box : window_->findChildren<QMessageBox*>("errorDialog")) box->close();
-    QTest::qWait(50);
+    rest();
   }
 
   void anExerciseThatTheWorkstationKeepsOutCannotBeChosen() {
@@ -617,7 +605,7 @@ class TrainGuiTest : public test::TrainTest {
     find<QAction>("rightPanel")->trigger();
     window_->close();
     QTRY_VERIFY(!window_->isVisible());
-    window_ = std::make_unique<MainWindow>(toPath(temporary_.filePath("storage/sessions")));
+    window_ = newWindow(toPath(temporary_.filePath("storage/sessions")));
     window_->show();
     QVERIFY(QTest::qWaitForWindowExposed(window_.get()));
     QVERIFY(window_->place() == Place::train);

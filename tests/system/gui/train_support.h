@@ -9,12 +9,10 @@ namespace trephine::test {
 
 class TrainTest : public WindowTest {
  protected:
-  static constexpr int kLong_ms = 120000;
-
   ViewWidget& view() { return window_->view(); }
   void open(const Policy& policy = {}) {
     QFile::remove(windowSettings().fileName());
-    window_ = std::make_unique<MainWindow>(toPath(temporary_.filePath("storage/sessions")), policy);
+    window_ = newWindow(toPath(temporary_.filePath("storage/sessions")), policy);
     window_->resize(1280, 800);
     window_->show();
     QVERIFY(QTest::qWaitForWindowExposed(window_.get()));
@@ -31,7 +29,7 @@ class TrainTest : public WindowTest {
     for (int i = 0; i < times; ++i) {
       QWidget* to = QApplication::focusWidget();
       QTest::keyClick(to ? to : window_.get(), Qt::Key(which), modifiers);
-      QTest::qWait(15);
+      rest();
     }
   }
   void startTraining() {

@@ -20,8 +20,6 @@ using namespace trephine;
 
 namespace {
 
-constexpr int kLong_ms = 120000;
-
 int differentPixels(const Picture& a, const Picture& b, int x_from = 0, int x_to = 1 << 20) {
   if (a.rgb.size() != b.rgb.size()) return -1;
   int count = 0;
@@ -58,12 +56,10 @@ double brighterLeft(const Picture& picture) {
 
 }  // namespace
 
-class ViewToolsGuiTest : public QObject {
+class ViewToolsGuiTest : public test::WindowTest {
   Q_OBJECT
 
  private:
-  QTemporaryDir temporary_;
-  std::unique_ptr<MainWindow> window_;
   Picture opened_;
 
   ViewWidget& view() { return window_->view(); }
@@ -73,7 +69,7 @@ class ViewToolsGuiTest : public QObject {
   }
   // What the window shows once it is at rest, handles and all.
   Picture seen() {
-    QTest::qWait(300);
+    restRefined();
     const auto label = view().findChild<QLabel*>("viewLevel");
     (void)QTest::qWaitFor([&] { return label->text().isEmpty(); }, kLong_ms);
     const QImage image = view().grabFramebuffer().convertToFormat(QImage::Format_RGB888);
@@ -105,7 +101,7 @@ class ViewToolsGuiTest : public QObject {
  private slots:
   void initTestCase() {
     QVERIFY(temporary_.isValid());
-    window_ = std::make_unique<MainWindow>(toPath(temporary_.filePath("recordings")));
+    window_ = newWindow(toPath(temporary_.filePath("recordings")));
     window_->show();
     QVERIFY(QTest::qWaitForWindowExposed(window_.get()));
     window_->workstation().openPhantom("cranium");
@@ -274,14 +270,14 @@ class ViewToolsGuiTest : public QObject {
     const auto label = view().findChild<QLabel*>("viewLevel");
     press(Qt::Key_Left);
     QTRY_VERIFY(!label->text().isEmpty());
-    QTest::qWait(100);  // it is drawn
+    rest();  // it is drawn
     seen();
     const QRect place(view().mapTo(window_.get(), label->pos()), label->size());
     QImage own = view().grabFramebuffer().copy(label->geometry());
     own = own.convertToFormat(QImage::Format_RGB32);
     QImage screen;
     const auto alike = [&] {
-      QTest::qWait(200);
+      rest();
       screen =
           window_->screen()
               ->grabWindow(window_->winId(), place.x(), place.y(), place.width(), place.height())
@@ -320,9 +316,9 @@ class ViewToolsGuiTest : public QObject {
     const int width = shot().width;
     view().setMinimumSize(0, 0);
     view().resize(0, 0);
-    QTest::qWait(100);
+    rest();
     view().resize(1, 1);
-    QTest::qWait(100);
+    rest();
     view().setMinimumSize(least);
     view().resize(size);
     QTRY_COMPARE_WITH_TIMEOUT(shot().width, width, 20000);

@@ -26,8 +26,6 @@ using namespace trephine;
 
 namespace {
 
-constexpr int kLong_ms = 120000;
-
 // A block of bone in air, which asks no question.
 Volume block() {
   Volume volume;
@@ -92,18 +90,18 @@ class WindowSizeTest : public test::WindowTest {
 
   void verifyAllIsThere(const QSize& size) {
     window_->resize(size);
-    QTest::qWait(100);
+    rest();
     QCOMPARE(window_->size(), size);  // it is no larger than it was asked to be
     for (Place place : {Place::cases, Place::prepare, Place::train, Place::review}) {
       window_->show(place);
-      QTest::qWait(100);
+      rest();
       verifyPage(QString::number(int(place)));
     }
     window_->show(Place::prepare);
     auto* tabs = find<QTabWidget>("prepareTabs");
     for (int tab = 0; tab < tabs->count(); ++tab) {
       tabs->setCurrentIndex(tab);
-      QTest::qWait(100);
+      rest();
       // A column is read without being moved to and fro.
       const int beyond =
           qobject_cast<QScrollArea*>(tabs->widget(tab))->horizontalScrollBar()->maximum();
@@ -141,7 +139,7 @@ class WindowSizeTest : public test::WindowTest {
     const Status written = writeCtSeries(block(), {"Block", "HEAD"}, toPath(folder()));
     QVERIFY2(written.ok(), written.ok() ? "" : written.error().sentence().c_str());
   }
-  void init() { window_ = std::make_unique<MainWindow>(toPath(temporary_.filePath("sessions"))); }
+  void init() { window_ = newWindow(toPath(temporary_.filePath("sessions"))); }
   void cleanup() { window_.reset(); }
 
   void aNewWindowLeavesRoomForItsFrameOnTheScreen() {
@@ -197,7 +195,7 @@ class WindowSizeTest : public test::WindowTest {
     window_->workstation().openPath(toPath(folder()));
     QTRY_VERIFY_WITH_TIMEOUT(find<QPushButton>("import")->isEnabled(), kLong_ms);
     window_->resize(size);
-    QTest::qWait(300);
+    rest();
     QCOMPARE(window_->size(), size);
     verifyPage("import");
     find<ImportPage>("importPage")->reject();

@@ -2,8 +2,8 @@
 
 #include <gtest/gtest.h>
 
-#include <atomic>
 #include <new>
+#include <semaphore>
 #include <thread>
 #include <vector>
 
@@ -85,21 +85,21 @@ TEST(AllocationGuard, StandsUntilTheOuterOneOfTwoGoes) {
 }
 
 TEST(AllocationGuard, WatchesItsOwnThreadOnly) {
-  std::atomic<int> turn{0};
+  std::binary_semaphore ready(0), begin(0), done(0), end(0);
   std::thread other([&] {  // its own set-up allocates, so it stands ready before the guard does
-    turn.store(1);
-    while (turn.load() != 2) std::this_thread::yield();
+    ready.release();
+    begin.acquire();
     for (int i = 0; i < 100; ++i) allocateAndRelease();
-    turn.store(3);
-    while (turn.load() != 4) std::this_thread::yield();
+    done.release();
+    end.acquire();
   });
-  while (turn.load() != 1) std::this_thread::yield();
+  ready.acquire();
   EXPECT_EQ(counted([&] {
-              turn.store(2);
-              while (turn.load() != 3) std::this_thread::yield();
+              begin.release();
+              done.acquire();
             }),
             0u);
-  turn.store(4);
+  end.release();
   other.join();
 }
 

@@ -1,11 +1,13 @@
 // An opened device: starting, stopping, failing, and what a tick may not do.
-#include <chrono>
+#include <unistd.h>
+
 #include <cmath>
 #include <limits>
 #include <thread>
 
 #include "base/rt/alloc_guard.h"
 #include "device_support.h"
+#include "support.h"
 
 namespace trephine {
 namespace {
@@ -152,8 +154,8 @@ TEST(Device, WhatWasCommandedBeforeASafeStopIsNoAnswerToIt) {
   ASSERT_TRUE(bench.device && bench.start());
   bench.push({0.0, 0.0, 0.0});
   for (int i = 0; i < 10; ++i) ASSERT_TRUE(bench.tick());
-  std::thread stopper([&] {
-    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+  std::thread stopper([&, ticking = ::gettid()] {
+    EXPECT_TRUE(test::waitUntil([&] { return test::isWaiting(ticking); }));
     bench.device->safeStop();
   });
   ASSERT_TRUE(bench.tick());  // commands zero, and blocks

@@ -4,12 +4,14 @@
 #include <thread>
 
 #include "haptics_support.h"
+#include "support.h"
 #include "unit/plain_api.h"
 
 namespace trephine {
 namespace {
 
 using namespace std::chrono_literals;
+using test::waitUntil;
 
 constexpr std::int64_t kMs = 1'000'000;
 
@@ -32,24 +34,39 @@ TEST(Standstill, DoesNotBeginWhileTicksComeOrNothingIsDue) {
   EXPECT_FALSE(still.begins(1000, true, 2000 * kMs)) << "counts from here";
 }
 
-// A device of one arm whose reading waits while `held`, and its writing while `write_held`.
+// Holds whoever comes to it while it is closed.
+class Gate {
+ public:
+  void close() { closed_ = true; }
+  void open() {
+    closed_ = false;
+    closed_.notify_all();
+  }
+  bool isClosed() const { return closed_; }
+  void pass() const { closed_.wait(true); }
+
+ private:
+  std::atomic<bool> closed_{false};
+};
+
+// A device of one arm whose calls wait at their gates.
 struct Watched {
-  static inline std::atomic<bool> held{false}, write_held{false}, stops_wait{false};
+  static inline Gate reading, writing, stopping;
   static inline std::atomic<int> silences{0}, reads{0}, waiting{0};
   static inline std::atomic<double> commanded_N{0.0};
 
   static int read(TrephineDevice*, double, TrephineArmState* states) {
     ++reads;
     waiting = 1;
-    while (held) std::this_thread::sleep_for(1ms);
+    reading.pass();
     waiting = 0;
     states->sequence = std::uint64_t(reads);
     states->position_m[2] = -0.004 - 1e-5 * (reads % 2);  // in bone, moving
     return TREPHINE_OK;
   }
   static int write(TrephineDevice*, const TrephineArmCommand* commands) {
-    if (write_held) waiting = 1;
-    while (write_held) std::this_thread::sleep_for(1ms);
+    if (writing.isClosed()) waiting = 1;
+    writing.pass();
     waiting = 0;
     commanded_N = commands->force_N[2];
     return TREPHINE_OK;
@@ -61,7 +78,7 @@ struct Watched {
       a.write = write;
       a.safe_stop = [](TrephineDevice*) {
         ++silences;
-        while (stops_wait) std::this_thread::sleep_for(1ms);
+        stopping.pass();
       };
       return a;
     }();
@@ -72,7 +89,6 @@ struct Watched {
 // The loop and its watchdog, each on a thread.
 struct Running {
   Running() : grid(test::boneSlab()), core(parameters(), *grid.takeWriter()) {
-    Watched::held = Watched::write_held = false;
     Watched::silences = Watched::reads = 0;
     std::vector<LoopDevice> devices;
     devices.push_back({*Device::open(*DevicePlugin::builtIn(Watched::api()), {0}, "{}"), {0}});
@@ -84,10 +100,12 @@ struct Running {
       HostClock clock;
       here = loop->run(clock, stop);
     });
-    until([this] { return loop->ticks() > 50; });
+    EXPECT_TRUE(waitUntil([this] { return loop->ticks() > 50; }));
   }
   ~Running() {
-    Watched::held = Watched::write_held = false;
+    Watched::reading.open();
+    Watched::writing.open();
+    Watched::stopping.open();
     stop = true;
     ticking.join();
     watchdog->end();
@@ -98,14 +116,6 @@ struct Running {
     p.removal = RemovalKind::work;
     p.tissues.classes[0].cuttable = 0;
     return p;
-  }
-  template <class Condition>
-  static bool until(Condition condition) {
-    const auto deadline = std::chrono::steady_clock::now() + 20s;
-    while (!condition() && std::chrono::steady_clock::now() < deadline) {
-      std::this_thread::sleep_for(1ms);
-    }
-    return condition();
   }
 
   Grid grid;
@@ -120,12 +130,12 @@ struct Running {
 TEST(Watchdog, TakesTheForceAwayWhileADeviceBlocksAndTheNextTickKnows) {
   Running running;
   Watched::silences = 0;  // a busy machine may have stood still before
-  Watched::held = true;
-  ASSERT_TRUE(Running::until([] { return Watched::silences > 0; }));
-  EXPECT_TRUE(Running::until([&] { return running.watchdog->stillFor_s() > 0.02; }));
+  Watched::reading.close();
+  ASSERT_TRUE(waitUntil([] { return Watched::silences > 0; }));
+  EXPECT_TRUE(waitUntil([&] { return running.watchdog->stillFor_s() > 0.02; }));
   const std::uint64_t tick = running.loop->ticks();
-  Watched::held = false;
-  ASSERT_TRUE(Running::until([&] { return running.loop->ticks() > tick + 20; }));
+  Watched::reading.open();
+  ASSERT_TRUE(waitUntil([&] { return running.loop->ticks() > tick + 20; }));
   Event event;
   bool silenced = false, late = false;
   while (running.loop->events().pop(event)) {
@@ -135,13 +145,13 @@ TEST(Watchdog, TakesTheForceAwayWhileADeviceBlocksAndTheNextTickKnows) {
   EXPECT_TRUE(silenced);
   EXPECT_TRUE(late);
   EXPECT_EQ(Watched::commanded_N, 0.0) << "by the rule of lateness";
-  EXPECT_TRUE(Running::until([&] { return running.watchdog->stillFor_s() == 0.0; }));
+  EXPECT_TRUE(waitUntil([&] { return running.watchdog->stillFor_s() == 0.0; }));
 }
 
 TEST(Watchdog, SilencesAtOnceWhenAskedEvenWhileADeviceBlocks) {
   Running running;
-  Watched::held = true;
-  ASSERT_TRUE(Running::until([] { return Watched::waiting == 1; }));
+  Watched::reading.close();
+  ASSERT_TRUE(waitUntil([] { return Watched::waiting == 1; }));
   const int before = Watched::silences;
   EXPECT_TRUE(running.watchdog->silence(20s));
   EXPECT_GT(Watched::silences, before);
@@ -150,43 +160,43 @@ TEST(Watchdog, SilencesAtOnceWhenAskedEvenWhileADeviceBlocks) {
 // Its safe_stop waits until the device lets go, as one that needs the same mutex.
 TEST(Watchdog, SaysThatTicksStandStillThoughSafeStopDoesNotReturnAndCountsThemOnce) {
   Running running;
-  Watched::stops_wait = true;
-  Watched::held = true;
-  EXPECT_TRUE(Running::until([&] { return running.watchdog->stillFor_s() > 0.05; }));
+  Watched::stopping.close();
+  Watched::reading.close();
+  EXPECT_TRUE(waitUntil([&] { return running.watchdog->stillFor_s() > 0.05; }));
   EXPECT_TRUE(running.loop->silenceIsPending());
-  Watched::held = false;
-  Watched::stops_wait = false;
-  EXPECT_TRUE(Running::until([&] { return running.watchdog->stillFor_s() == 0.0; }));
+  Watched::reading.open();
+  Watched::stopping.open();
+  EXPECT_TRUE(waitUntil([&] { return running.watchdog->stillFor_s() == 0.0; }));
 }
 
 TEST(HapticLoop, AThreadThatADeviceHoldsIsLeftBehindAndTouchesNoVoxelsLater) {
   Running running;
-  Watched::held = true;
-  ASSERT_TRUE(Running::until([] { return Watched::waiting == 1; }));
+  Watched::reading.close();
+  ASSERT_TRUE(waitUntil([] { return Watched::waiting == 1; }));
   const std::uint64_t ticks = running.loop->ticks();
   ASSERT_EQ(running.loop->leaveBehind(), std::size_t(0));
-  Watched::held = false;
-  EXPECT_TRUE(Running::until([&] { return !running.loop->running(); })) << "it ends by itself";
+  Watched::reading.open();
+  EXPECT_TRUE(waitUntil([&] { return !running.loop->running(); })) << "it ends by itself";
   EXPECT_EQ(running.loop->ticks(), ticks) << "without the tick that it was in";
-  EXPECT_TRUE(Running::until([&] { return !running.here; }));
+  EXPECT_TRUE(waitUntil([&] { return !running.here; }));
 }
 
 TEST(Watchdog, TakesTheForceAwayWhileADeviceDoesNotTakeItsForce) {
   Running running;
   Watched::silences = 0;
-  Watched::write_held = true;
-  EXPECT_TRUE(Running::until([] { return Watched::silences > 0; }));
-  EXPECT_TRUE(Running::until([&] { return running.watchdog->stillFor_s() > 0.02; }));
+  Watched::writing.close();
+  EXPECT_TRUE(waitUntil([] { return Watched::silences > 0; }));
+  EXPECT_TRUE(waitUntil([&] { return running.watchdog->stillFor_s() > 0.02; }));
 }
 
 TEST(HapticLoop, AThreadThatADeviceHoldsInWritingIsLeftBehindWithAWholeRecord) {
   Running running;
-  Watched::write_held = true;
-  ASSERT_TRUE(Running::until([] { return Watched::waiting == 1; }));
+  Watched::writing.close();
+  ASSERT_TRUE(waitUntil([] { return Watched::waiting == 1; }));
   const std::uint64_t ticks = running.loop->ticks();
   ASSERT_EQ(running.loop->leaveBehind(), std::size_t(0));
-  Watched::write_held = false;
-  EXPECT_TRUE(Running::until([&] { return !running.loop->running(); })) << "it ends by itself";
+  Watched::writing.open();
+  EXPECT_TRUE(waitUntil([&] { return !running.loop->running(); })) << "it ends by itself";
   EXPECT_EQ(running.loop->ticks(), ticks);
   std::uint64_t recorded = 0;
   for (TickRecord record; running.loop->records().pop(record);) ++recorded;
@@ -194,7 +204,6 @@ TEST(HapticLoop, AThreadThatADeviceHoldsInWritingIsLeftBehindWithAWholeRecord) {
 }
 
 TEST(HapticLoop, SendsTheForceOfATickInThatTick) {
-  Watched::held = Watched::write_held = false;
   Watched::reads = 0;
   Grid grid(test::boneSlab());
   HapticCore core(Running::parameters(), *grid.takeWriter());

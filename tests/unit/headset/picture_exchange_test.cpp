@@ -2,9 +2,12 @@
 #include "headset/picture_exchange.h"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <set>
 #include <thread>
+
+#include "support.h"
 
 namespace trephine {
 namespace {
@@ -54,17 +57,20 @@ TEST(PictureExchange, WhileOneIsShownOthersCanBeDrawnAndNeitherKindTakesTheOther
 
 TEST(PictureExchange, WaitingForAPictureEndsWithItWithTimeOrWhenItIsCancelled) {
   PictureExchange exchange;
+  const auto untilThisWaits = [waiting = ::gettid()] {
+    EXPECT_TRUE(test::waitUntil([&] { return test::isWaiting(waiting); }));
+  };
   std::thread window([&] {
-    std::this_thread::sleep_for(20ms);
+    untilThisWaits();
     exchange.finish(*exchange.begin(Of::eyes), request(7), nullptr);
   });
-  SharedPicture* shown = exchange.take(Of::eyes, 7, 5s);
+  SharedPicture* shown = exchange.take(Of::eyes, 7, 30s);
   window.join();
   ASSERT_TRUE(shown);
   EXPECT_EQ(shown->request.number, 7u);
   EXPECT_FALSE(exchange.take(Of::eyes, 8, 1ms));
   std::thread stop([&] {
-    std::this_thread::sleep_for(20ms);
+    untilThisWaits();
     exchange.cancelWaiting();
   });
   const auto from = std::chrono::steady_clock::now();

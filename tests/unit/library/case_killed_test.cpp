@@ -1,50 +1,122 @@
-// kill -9 in the middle.
+// kill -9 in the middle: before each step that changes the disk, and halfway through what is
+// written.
+#include <dlfcn.h>
 #include <gtest/gtest.h>
+#include <sys/mman.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
+#include <unistd.h>
 
-#include <chrono>
+#include <atomic>
 #include <csignal>
 #include <cstdio>
-#include <random>
-#include <thread>
+#include <new>
 
 #include "cases.h"
 
 namespace trephine {
 namespace {
 
-namespace fs = std::filesystem;
-using Clock = std::chrono::steady_clock;
+// Of a child, in memory that it shares: the steps that it has taken, and the one at which it dies.
+struct DiskSteps {
+  std::atomic<int> taken{0}, last{-1};
+};
+DiskSteps* disk_steps = nullptr;  // null: this is no child
 
-// Runs `work` in a child that is killed after that time, or ends. Whether it ended by itself.
-template <class Work>
-bool endedBefore(Clock::duration time, const Work& work) {
-  const pid_t child = ::fork();
-  if (child == 0) {
-    work();
-    ::_exit(0);
-  }
-  std::this_thread::sleep_for(time);
-  ::kill(child, SIGKILL);
-  int status = 0;
-  ::waitpid(child, &status, 0);
-  return WIFEXITED(status);
+bool isLastStep() {
+  return disk_steps && disk_steps->taken++ == disk_steps->last;
 }
 
-template <class Work>
-Clock::duration timeOf(const Work& work) {
-  const auto begin = Clock::now();
-  const pid_t child = ::fork();
-  if (child == 0) {
-    work();
-    ::_exit(0);
-  }
-  ::waitpid(child, nullptr, 0);
-  return Clock::now() - begin;
+[[noreturn]] void dieHere() {
+  for (;;) ::kill(::getpid(), SIGKILL);
 }
+
+template <class Function>
+Function* theSystems(const char* name) {
+  return reinterpret_cast<Function*>(::dlsym(RTLD_NEXT, name));
+}
+
+}  // namespace
+}  // namespace trephine
+
+// In the way of the C library's, for all of the program.
+extern "C" {
+
+ssize_t write(int descriptor, const void* from, size_t bytes) {
+  static auto* const real = trephine::theSystems<ssize_t(int, const void*, size_t)>("write");
+  if (!trephine::isLastStep()) return real(descriptor, from, bytes);
+  static_cast<void>(!real(descriptor, from, bytes / 2));
+  trephine::dieHere();
+}
+
+int fsync(int descriptor) {
+  static auto* const real = trephine::theSystems<int(int)>("fsync");
+  if (trephine::isLastStep()) trephine::dieHere();
+  return real(descriptor);
+}
+
+int rename(const char* from, const char* to) noexcept {
+  static auto* const real = trephine::theSystems<int(const char*, const char*)>("rename");
+  if (trephine::isLastStep()) trephine::dieHere();
+  return real(from, to);
+}
+
+int remove(const char* path) noexcept {
+  static auto* const real = trephine::theSystems<int(const char*)>("remove");
+  if (trephine::isLastStep()) trephine::dieHere();
+  return real(path);
+}
+
+int unlinkat(int folder, const char* path, int flags) noexcept {
+  static auto* const real = trephine::theSystems<int(int, const char*, int)>("unlinkat");
+  if (trephine::isLastStep()) trephine::dieHere();
+  return real(folder, path, flags);
+}
+
+int mkdir(const char* path, mode_t mode) noexcept {
+  static auto* const real = trephine::theSystems<int(const char*, mode_t)>("mkdir");
+  if (trephine::isLastStep()) trephine::dieHere();
+  return real(path, mode);
+}
+
+}  // extern "C"
+
+namespace trephine {
+namespace {
+
+// Runs `work` in a child that dies at that step, or ends where it has fewer; how many it took.
+class Child {
+ public:
+  Child()
+      : steps_(new (::mmap(nullptr, sizeof(DiskSteps), PROT_READ | PROT_WRITE,
+                           MAP_SHARED | MAP_ANONYMOUS, -1, 0)) DiskSteps) {}
+  ~Child() { ::munmap(steps_, sizeof(DiskSteps)); }
+  template <class Work>
+  bool isKilledAt(int step, const Work& work) {
+    steps_->taken = 0;
+    steps_->last = step;
+    const pid_t child = ::fork();
+    if (child == 0) {
+      disk_steps = steps_;
+      work();
+      ::_exit(0);
+    }
+    int status = 0;
+    ::waitpid(child, &status, 0);
+    return WIFSIGNALED(status) && WTERMSIG(status) == SIGKILL;
+  }
+  template <class Work>
+  int stepsOf(const Work& work) {
+    EXPECT_FALSE(isKilledAt(-1, work));
+    return steps_->taken;
+  }
+
+ private:
+  DiskSteps* steps_;
+};
 
 NewCase someCase() {
-  NewCase of = test::smallCase({96, 96, 80});
+  NewCase of = test::smallCase({40, 40, 32});
   of.source.add(IdentityKind::patient_name, "DOE^JANE");
   return of;
 }
@@ -53,11 +125,13 @@ TEST(CaseKilled, WhileItIsSavedIsThereWholeOrNotAtAll) {
   const test::TemporaryFolder temporary;
   const NewCase of = someCase();
   const auto save = [&] { (void)CaseLibrary(temporary.path()).save(of); };
-  const auto whole = timeOf(save);
-  std::mt19937 random(19);
-  int ended = 0, there = 1;
-  for (int n = 0; n < 20; ++n) {
-    ended += endedBefore(whole * int(random() % 1000) / 900, save);
+  save();
+  Child child;
+  const int steps = child.stepsOf(save);
+  std::size_t there = 2;
+  int first = steps;  // at which it is there already
+  for (int step = 0; step < steps; ++step) {
+    ASSERT_TRUE(child.isKilledAt(step, save)) << step;
     CaseLibrary library(temporary.path());
     EXPECT_EQ(test::entriesIn(temporary / ".parts"), 0u);
     const auto cases = library.list();
@@ -71,13 +145,13 @@ TEST(CaseKilled, WhileItIsSavedIsThereWholeOrNotAtAll) {
       EXPECT_EQ(loaded->tissues, of.tissues);
       EXPECT_EQ(library.rename(one.id, "Jane").error().code, "NAME_IS_IDENTITY");
     }
-    EXPECT_GE(cases.size(), std::size_t(there));
-    there = int(cases.size());
+    if (cases.size() > there && first == steps) first = step;
+    there += step >= first;
+    EXPECT_EQ(cases.size(), there) << step;
   }
-  std::printf("[ figures  ] a save takes %.0f ms; of 20, %d ended before they were killed\n",
-              std::chrono::duration<double, std::milli>(whole).count(), ended);
-  EXPECT_GE(there, ended + 1);  // some were killed when it was there already
-  EXPECT_LT(ended, 20);
+  std::printf("[ figures  ] of %d steps on the disk it is there after %d\n", steps, first);
+  EXPECT_GT(first, steps / 2);
+  EXPECT_LT(first, steps) << "some kill comes when it is there";
 }
 
 TEST(CaseKilled, WhileItsStructuresAreSavedHasTheOldOrTheNewOnes) {
@@ -87,39 +161,51 @@ TEST(CaseKilled, WhileItsStructuresAreSavedHasTheOldOrTheNewOnes) {
   std::vector<LabelMap> maps{*of.structures, *of.structures};
   for (auto& label : maps[1].labels) label = label == 5 ? 1 : label == 1 ? 5 : 0;
   std::swap(maps[1].structures[0], maps[1].structures[1]);
-  const auto change = [&](std::size_t to) {
-    (void)CaseLibrary(temporary.path()).saveStructures(id, maps[to]);
+  std::size_t has = 0;
+  const auto change = [&] {
+    (void)CaseLibrary(temporary.path()).saveStructures(id, maps[1 - has]);
   };
-  const auto whole = timeOf([&] { change(1); });
-  std::mt19937 random(20);
+  Child child;
+  const int steps = child.stepsOf(change);
+  has = 1;
   int old = 0;
-  for (int n = 0; n < 20; ++n) {
-    endedBefore(whole * int(random() % 1000) / 900, [&] { change(std::size_t(n % 2)); });
+  for (int step = 0; step < steps; ++step) {
+    ASSERT_TRUE(child.isKilledAt(step, change)) << step;
     CaseLibrary library(temporary.path());
     EXPECT_EQ(test::entriesIn(temporary / ".parts"), 0u);
     const auto loaded = library.load(id);
     ASSERT_TRUE(loaded) << loaded.error().sentence();
-    const bool first = loaded->structures->labels == maps[0].labels;
-    EXPECT_TRUE(first || loaded->structures->labels == maps[1].labels);
-    old += first != (n % 2 == 0);
+    const bool kept = loaded->structures->labels == maps[has].labels;
+    if (!kept) has = 1 - has;
+    EXPECT_EQ(loaded->structures->labels, maps[has].labels);
+    EXPECT_TRUE(!kept || old == step) << "first the old ones, then the new ones";
+    old += kept;
     ASSERT_EQ(library.list().size(), 1u);
     EXPECT_EQ(library.list()[0].record.structures[0].name, loaded->structures->structures[0].name);
     EXPECT_EQ(library.rename(id, "Jane").error().code, "NAME_IS_IDENTITY");
   }
-  std::printf("[ figures  ] of 20 that were killed, %d kept the old ones\n", old);
+  std::printf("[ figures  ] of %d steps on the disk the old ones are there until %d\n", steps, old);
+  EXPECT_GT(old, 1);
+  EXPECT_LT(old, steps);
 }
 
 TEST(CaseKilled, WhileItIsRemovedIsThereWholeOrNotAtAll) {
   const test::TemporaryFolder temporary;
   const NewCase of = someCase();
-  std::mt19937 random(21);
-  for (int n = 0; n < 10; ++n) {
-    const std::string id = CaseLibrary(temporary.path()).save(of)->record.id;
-    endedBefore(std::chrono::microseconds(random() % 20000),
-                [&] { (void)CaseLibrary(temporary.path()).remove(id); });
+  std::string id = CaseLibrary(temporary.path()).save(of)->record.id;
+  const auto remove = [&] { (void)CaseLibrary(temporary.path()).remove(id); };
+  Child child;
+  const int steps = child.stepsOf(remove);
+  EXPECT_GT(steps, 5);
+  bool there = false;
+  for (int step = 0; step < steps; ++step) {
+    if (!there) id = CaseLibrary(temporary.path()).save(of)->record.id;
+    ASSERT_TRUE(child.isKilledAt(step, remove)) << step;
     CaseLibrary library(temporary.path());
     EXPECT_EQ(test::entriesIn(temporary / ".parts"), 0u);
     const auto cases = library.list();
+    there = !cases.empty();
+    EXPECT_EQ(there, step == 0) << "its first step takes it away";
     EXPECT_EQ(test::entriesIn(temporary / "private"), cases.size());
     for (const ListedCase& one : cases) EXPECT_TRUE(library.load(one.id));
   }

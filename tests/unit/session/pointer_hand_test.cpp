@@ -469,17 +469,17 @@ TEST(PointerHand, OfARunningSessionTakesTheHostsTimes) {
   Session& session = **made;
   PointerUser user(session, kArm, {{0, 12, 0, 0}, {9.0, 12, 0, 0}}, 125.0);
   ASSERT_TRUE(session.start().ok());
+  ASSERT_TRUE(test::waitUntil([&] { return session.state().ticks > 0; }));
   HostClock clock;
-  for (int n = 0; n < 100; ++n) {
+  const LandmarkFrame& frame = session.landmarks()[0].frame;
+  EXPECT_TRUE(test::waitUntil([&] {
     PointerSample sample = user.at(0.0);
     sample.time_ns = clock.now_ns();
     EXPECT_TRUE(session.point(kArm, sample));
-    std::this_thread::sleep_for(std::chrono::milliseconds(8));
-  }
-  const Vec3 tool_mm = session.state().record.arms[kArm].proxy_position_mm;
+    const Vec3 tool_mm = session.state().record.arms[kArm].proxy_position_mm - frame.position_mm;
+    return std::abs((glm::conjugate(frame.rotation) * tool_mm).x - 12.0) < 1.0;
+  }));
   ASSERT_TRUE(session.stop().ok());
-  const LandmarkFrame& frame = session.landmarks()[0].frame;
-  EXPECT_NEAR((glm::conjugate(frame.rotation) * (tool_mm - frame.position_mm)).x, 12.0, 1.0);
   PointerSample none = user.at(0.0);
   none.direction = Vec3(0.0);
   EXPECT_FALSE(session.point(kArm, none));

@@ -2,11 +2,8 @@
 #include <sys/syscall.h>
 #include <unistd.h>
 
-#include <chrono>
+#include <cerrno>
 #include <csignal>
-#include <ctime>
-#include <fstream>
-#include <thread>
 
 #include "cases.h"
 #include "session_support.h"
@@ -44,47 +41,39 @@ TEST(Recorder, ThatComesLateWritesWhatWaitsBeforeItReturns) {
   EXPECT_LT((*session)->report().recorder_behind_ms, 1000.0);
 }
 
-std::vector<pid_t> threadsNamed(const std::string& name) {
-  std::vector<pid_t> threads;
-  for (const auto& task : std::filesystem::directory_iterator("/proc/self/task")) {
-    std::string comm;
-    std::getline(std::ifstream(task.path() / "comm"), comm);
-    if (comm == name) threads.push_back(std::stoi(task.path().filename()));
-  }
-  return threads;
-}
+// The two ends of a pipe: who reads it waits until the other is written to.
+int held_up[2];
 
 TEST(Recorder, ThatWasHeldUpCountsItAndLosesNothing) {
   test::TemporaryFolder folder;
   auto session =
       Session::create(cranium(), test::placed(cranium(), ball()), scripted(folder / "s.h5"));
   ASSERT_TRUE(session.ok()) << session.error().sentence();
-  ASSERT_TRUE((*session)->start(4.0).ok());
-  std::this_thread::sleep_for(std::chrono::milliseconds(500));
-  // As a machine that gives it no time: the recorder sleeps in the handler of a signal.
+  ASSERT_EQ(::pipe(held_up), 0);
+  ASSERT_TRUE((*session)->start(3.0).ok());
+  ASSERT_TRUE(test::waitUntil([&] { return (*session)->state().ticks > 500; }));
+  // As a machine that gives it no time: the recorder waits in the handler of a signal.
   std::signal(SIGUSR1, [](int) {
-    timespec left{2, 0};
-    while (::nanosleep(&left, &left) != 0) {
+    char go_on = 0;
+    while (::read(held_up[0], &go_on, 1) < 0 && errno == EINTR) {
     }
   });
-  const std::vector<pid_t> recorder = threadsNamed("recorder");
+  const std::vector<pid_t> recorder = test::threadsNamed("recorder");
   ASSERT_EQ(recorder.size(), 1u);
   ASSERT_EQ(::syscall(SYS_tgkill, ::getpid(), recorder.front(), SIGUSR1), 0);
-  double most_s = 0.0;
-  while (!(*session)->finished()) {
-    most_s = std::max(most_s, (*session)->recorderBehind_s());
-    std::this_thread::sleep_for(std::chrono::milliseconds(20));
-  }
+  EXPECT_TRUE(test::waitUntil([&] { return (*session)->recorderBehind_s() >= 1.6; }));
+  ASSERT_EQ(::write(held_up[1], "g", 1), 1);
+  EXPECT_TRUE(test::waitUntil([&] { return (*session)->finished(); }));
   ASSERT_TRUE((*session)->stop().ok());
   std::signal(SIGUSR1, SIG_DFL);
+  for (const int end : held_up) ::close(end);
   const RunReport report = (*session)->report();
-  EXPECT_GE(most_s, 1.5);
   EXPECT_GE(report.recorder_behind_ms, 1500.0);
   EXPECT_EQ(report.events_dropped, 0u);
   const auto result = replay(**SessionReader::open(folder / "s.h5"), ball());
   ASSERT_TRUE(result.ok()) << result.error().sentence();
   EXPECT_TRUE(result->identical) << result->first_difference->field;
-  EXPECT_EQ(result->ticks, 4000u);
+  EXPECT_EQ(result->ticks, 3000u);
 }
 
 }  // namespace

@@ -1,7 +1,6 @@
 #include "session/session.h"
 
 #include <algorithm>
-#include <chrono>
 #include <fstream>
 #include <functional>
 
@@ -18,6 +17,7 @@ namespace {
 using test::cranium;
 using test::scripted;
 using test::smallHead;
+using test::waitUntil;
 
 TEST(Session, BothArmsCutBoneWithinTheForceLimitAndItReplaysIdentically) {
   test::TemporaryFolder folder;
@@ -74,20 +74,18 @@ TEST(Session, RunsInRealTimeTakesLiveInputAndReplaysIdentically) {
       ASSERT_TRUE(session.setTissues(softer).ok());
     }
     if (i == 50) session.setController(ControllerKind::off);
-    std::this_thread::sleep_for(std::chrono::milliseconds(15));
+    const std::uint64_t next = session.state().ticks + 15;
+    ASSERT_TRUE(waitUntil([&] { return session.state().ticks >= next; }));
   }
-  const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(20);
-  while (!session.state().can_undo && std::chrono::steady_clock::now() < deadline) {
-    session.moveHand(1, 0.1 * down_mm);
-    std::this_thread::sleep_for(std::chrono::milliseconds(5));
-  }
-  EXPECT_TRUE(session.state().can_undo);
+  ASSERT_TRUE(waitUntil([&] {
+    session.moveHand(1, 0.02 * down_mm);
+    return session.state().can_undo;
+  }));
   session.send(CommandKind::reset);
-  while ((session.state().can_undo || session.state().busy) &&
-         std::chrono::steady_clock::now() < deadline) {
-    session.moveHand(1, -5.0 * down_mm);
-    std::this_thread::sleep_for(std::chrono::milliseconds(5));
-  }
+  EXPECT_TRUE(waitUntil([&] {
+    session.moveHand(1, -1.0 * down_mm);
+    return !session.state().can_undo && !session.state().busy;
+  }));
   ASSERT_TRUE(session.stop().ok());
   const RunReport report = session.report();
   EXPECT_GT(report.arms[1].statistics.contact_ticks, 0u);
@@ -175,24 +173,34 @@ TEST(Session, UndoRewindAndParametersWhileItCutsLeaveARecordingThatReplaysIdenti
       Session::create(cranium(), test::placed(cranium(), smallHead()), scripted(folder / "s.h5"));
   ASSERT_TRUE(made.ok()) << made.error().sentence();
   Session& session = **made;
-  ASSERT_TRUE(session.start(6.0).ok());
+  ASSERT_TRUE(session.start(4.0).ok());
   TissueSet tissues = session.scene().tissues;
   double most_N = 0.0, last_N = 0.0;
   for (int i = 0; !session.finished(); ++i) {
-    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    const std::uint64_t next = session.state().ticks + 13;
+    ASSERT_TRUE(waitUntil([&] { return session.state().ticks >= next || session.finished(); }));
     const double sent_N = glm::length(session.state().record.arms[0].sent_N);
     most_N = std::max(most_N, sent_N);
     last_N = sent_N;
     switch (i % 25) {
-      case 3: session.send(CommandKind::undo); break;
-      case 8: session.send(CommandKind::redo); break;
+      case 3:
+        session.send(CommandKind::undo);
+        break;
+      case 8:
+        session.send(CommandKind::redo);
+        break;
       case 13:
         tissues.tissues[3].friction_N.value = 1.0 + 0.1 * double(i % 7);
         ASSERT_TRUE(session.setTissues(tissues).ok());
         break;
-      case 18: session.setController(i % 2 ? ControllerKind::off : ControllerKind::bounded); break;
-      case 23: session.rewind(session.state().seconds / 2); break;
-      default: break;
+      case 18:
+        session.setController(i % 2 ? ControllerKind::off : ControllerKind::bounded);
+        break;
+      case 23:
+        session.rewind(session.state().seconds / 2);
+        break;
+      default:
+        break;
     }
   }
   ASSERT_TRUE(session.stop().ok());
@@ -202,7 +210,7 @@ TEST(Session, UndoRewindAndParametersWhileItCutsLeaveARecordingThatReplaysIdenti
   const auto result = replay(**reader, smallHead());
   ASSERT_TRUE(result.ok()) << result.error().sentence();
   EXPECT_TRUE(result->identical) << result->first_difference->field;
-  EXPECT_EQ(result->ticks, 6000u);
+  EXPECT_EQ(result->ticks, 4000u);
 }
 
 // The right hand takes a burr in air, wishes its blade back in the bone, and has it once it is out.
@@ -311,8 +319,8 @@ TEST(Session, APokeIsFeltAsTheExerciseIsUntilThatCuts) {
 // arm has them two ticks later, and its force goes there no faster than 0.05 N/ms.
 TEST(Session, AnEditIsFeltWithinTwoTicksAndTheForceNeverJumps) {
   test::TemporaryFolder folder;
-  auto session = *Session::create(cranium(), test::placed(cranium(), smallHead()),
-                                  scripted(folder / "s.h5"));
+  auto session =
+      *Session::create(cranium(), test::placed(cranium(), smallHead()), scripted(folder / "s.h5"));
   const TissueSet own = session->scene().tissues;
   TissueSet soft = own, hard = own;
   for (Tissue& tissue : soft.tissues) {
@@ -357,9 +365,10 @@ TEST(Session, AnEditIsFeltWithinTwoTicksAndTheForceNeverJumps) {
       most_N = std::max(most_N, now_N);
     }
   }
-  std::printf("%zu edits: in the hand after at most %d ticks, the force rises by at most %.4f N a "
-              "ms, to %.2f N\n",
-              felt.size(), int(longest), fastest_N, most_N);
+  std::printf(
+      "%zu edits: in the hand after at most %d ticks, the force rises by at most %.4f N a "
+      "ms, to %.2f N\n",
+      felt.size(), int(longest), fastest_N, most_N);
   EXPECT_GT(most_N, 0.5);
   EXPECT_LE(fastest_N, 0.05 + 1e-9);
 }
@@ -463,31 +472,32 @@ TEST(Session, OneArmsDeviceIsLostTheOtherGoesOnAndTheRecordingReplays) {
 TEST(Session, StandsStillWhileItsVoxelsAreReadAndGoesOnAfterwards) {
   auto session = *Session::create(cranium(), test::placed(cranium(), smallHead()), scripted());
   ASSERT_TRUE(session->start(30.0).ok());
-  const auto wait = [] { std::this_thread::sleep_for(std::chrono::milliseconds(5)); };
-  while (!session->state().can_undo) wait();  // something was cut
-  while (!session->freeze()) wait();
+  ASSERT_TRUE(waitUntil([&] { return session->state().can_undo; })) << "something was cut";
+  ASSERT_TRUE(waitUntil([&] { return session->freeze(); }));
   const std::string before = slabsSha256(slabsOf(session->grid()));
   EXPECT_TRUE(session->state().paused);
   for (CommandKind kind : {CommandKind::undo, CommandKind::reset, CommandKind::resume}) {
     EXPECT_FALSE(session->send(kind));
   }
   EXPECT_FALSE(session->rewind(0));
-  const std::uint64_t ticks = session->state().ticks;
-  while (session->state().ticks < ticks + 200) wait();
+  const auto pass = [&](std::uint64_t ticks) {
+    const std::uint64_t until = session->state().ticks + ticks;
+    ASSERT_TRUE(waitUntil([&] { return session->state().ticks >= until; }));
+  };
+  pass(200);
   EXPECT_EQ(slabsSha256(slabsOf(session->grid())), before);
   session->thaw();
-  while (session->state().paused) wait();
+  ASSERT_TRUE(waitUntil([&] { return !session->state().paused; }));
   EXPECT_TRUE(session->send(CommandKind::reset));
   ASSERT_TRUE(session->send(CommandKind::pause));
-  while (!session->freeze()) wait();  // with all that still waits
+  ASSERT_TRUE(waitUntil([&] { return session->freeze(); })) << "with all that still waits";
   const std::string whole = slabsSha256(slabsOf(session->grid()));
   EXPECT_NE(whole, before) << "put back before";
-  std::this_thread::sleep_for(std::chrono::milliseconds(100));
+  pass(100);
   EXPECT_EQ(slabsSha256(slabsOf(session->grid())), whole);
   EXPECT_TRUE(session->send(CommandKind::pause)) << "one that is asked for meanwhile stays";
   session->thaw();
-  const std::uint64_t later = session->state().ticks;
-  while (session->state().ticks < later + 50) wait();
+  pass(50);
   EXPECT_TRUE(session->state().paused) << "a pause that was there before stays";
   ASSERT_TRUE(session->stop().ok());
 }
@@ -527,16 +537,23 @@ TEST(Session, KeepsAScriptsCommandsWhileItsVoxelsAreRead) {
   Command back{CommandKind::reset, 0, {}};
   options.script->commands = {{4.0, back}};
   auto session = *Session::create(cranium(), test::placed(cranium(), smallHead()), options);
-  ASSERT_TRUE(session->start(30.0).ok());
-  const auto wait = [] { std::this_thread::sleep_for(std::chrono::milliseconds(5)); };
-  while (!session->state().can_undo) wait();  // something was cut
-  while (!session->freeze()) wait();
+  ASSERT_TRUE(session->startStepped(30.0).ok());
+  const auto advanceUntil = [&](const std::function<bool()>& condition) {
+    while (!condition() && !session->finished()) session->advance(0.005);
+    return condition();
+  };
+  ASSERT_TRUE(advanceUntil([&] { return session->state().can_undo; })) << "something was cut";
+  ASSERT_TRUE(advanceUntil([&] { return session->freeze(); }));
+  ASSERT_LT(session->state().ticks, 4000u);
   const std::string before = slabsSha256(slabsOf(session->grid()));
   ASSERT_NE(before, slabsSha256(slabsOf(smallHead())));
-  while (session->state().ticks < 4400) wait();
+  ASSERT_TRUE(advanceUntil([&] { return session->state().ticks >= 4400; }));
   EXPECT_EQ(slabsSha256(slabsOf(session->grid())), before);
   session->thaw();
-  while (session->state().paused || session->state().busy || session->state().can_undo) wait();
+  EXPECT_TRUE(advanceUntil([&] {
+    const LoopState& state = session->state();
+    return !state.paused && !state.busy && !state.can_undo;
+  }));
   ASSERT_TRUE(session->stop().ok());
 }
 
@@ -550,7 +567,7 @@ TEST(Session, AStallIsAFaultInTheReportAndReplaysIdentically) {
   auto session =
       *Session::create(scene, test::placed(scene, smallHead()), scripted(folder / "s.h5"));
   ASSERT_TRUE(session->start(0.6).ok());
-  while (!session->finished()) std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  ASSERT_TRUE(waitUntil([&] { return session->finished(); }));
   ASSERT_TRUE(session->stop().ok());
   EXPECT_FALSE(session->leftBehind());
   const RunReport report = session->report();
@@ -581,7 +598,7 @@ TEST(Session, HoldsItsMemoryWhileItRunsInRealTimeOrSaysHowThatIsAllowed) {
   auto session = *Session::create(cranium(), test::placed(cranium(), smallHead()), scripted());
   EXPECT_FALSE(session->memoryLocked()) << "not known yet";
   ASSERT_TRUE(session->start(60.0).ok());
-  while (session->state().ticks == 0) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  ASSERT_TRUE(waitUntil([&] { return session->state().ticks > 0; }));
   ASSERT_TRUE(session->memoryLocked());
   const bool locked = *session->memoryLocked();
   EXPECT_EQ(lockedKiB() > before, locked);

@@ -6,6 +6,7 @@
 
 #include "liver_case.h"
 #include "support.h"
+#include "thorough.h"
 
 namespace trephine {
 namespace {
@@ -51,7 +52,7 @@ TEST_F(GrowInAbdomen, StillFindsLiverWhereTheClickMetAVessel) {
 
 // Half of what lies about such a click is fat, or two other organs.
 TEST_F(GrowInAbdomen, FindsTheLiverOrNothingFromAClickInItsCapsule) {
-  std::vector<Vec3> seeds = of().some(of().in_capsule_mm, 12, 1);
+  std::vector<Vec3> seeds = of().some(of().in_capsule_mm, test::thoroughly(12, 3), 1);
   seeds.push_back({-34.30, -52.50, -8.25});
   for (const Vec3& seed : seeds) {
     const auto growth = grow(of().volume, seed);
@@ -64,10 +65,10 @@ TEST_F(GrowInAbdomen, FindsTheLiverOrNothingFromAClickInItsCapsule) {
 }
 
 TEST_F(GrowInAbdomen, FindsTheLiverFromAClickNearItsEdgeOrInItsVessels) {
-  for (const Vec3& seed : of().clicks(4, 5.0, 15.0)) {
+  for (const Vec3& seed : of().clicks(test::thoroughly(4, 2), 5.0, 15.0)) {
     EXPECT_GE(diceOf(grow(of().volume, seed)), 0.97);
   }
-  for (const Vec3& seed : of().vesselClicks(4)) {
+  for (const Vec3& seed : of().vesselClicks(test::thoroughly(4, 2))) {
     EXPECT_GE(diceOf(grow(of().volume, seed)), 0.97);
   }
 }
@@ -291,9 +292,9 @@ TEST(GrowInRealAbdomen, FindsTheLiverInTheSlicesInWhichItIsKnown) {
 TEST(GrowInRealAbdomen, FindsTheLiverFromItsPortalVeinAndFromNearItsEdge) {
   TREPHINE_TEST_DATA_OR_SKIP(data);
   const test::LiverCase of = test::realLiver(data);
-  std::vector<Vec3> seeds = of.vesselClicks(6);
+  std::vector<Vec3> seeds = of.vesselClicks(test::thoroughly(6, 2));
   seeds.push_back({-47.04, -179.32, 397.30});
-  for (const Vec3& seed : of.clicks(6, 5.0, 15.0)) seeds.push_back(seed);
+  for (const Vec3& seed : of.clicks(test::thoroughly(6, 2), 5.0, 15.0)) seeds.push_back(seed);
   seeds.push_back({-68.04, -185.32, 376.30});
   for (const Vec3& seed : seeds) {
     const auto growth = grow(of.volume, seed);

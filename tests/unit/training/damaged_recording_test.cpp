@@ -11,6 +11,7 @@
 
 #include "recording_support.h"
 #include "support.h"
+#include "thorough.h"
 #include "training/recording_layout.h"
 #include "training/replay.h"
 #include "training/session_reader.h"
@@ -108,7 +109,8 @@ TEST(Recording, AnyByteThatChangedIsFoundWithinSecondsOrDoesNotMatter) {
   const std::string whole = bytesOf(folder / "a.h5");
   std::mt19937 random(17);
   int damaged = 0;
-  for (int i = 0; i < 100; ++i) {
+  const int bytes = test::thoroughly(100, 30);
+  for (int i = 0; i < bytes; ++i) {
     std::string changed = whole;
     const std::size_t at = random() % whole.size();
     changed[at] = char(changed[at] ^ char(1 + random() % 255));
@@ -118,7 +120,7 @@ TEST(Recording, AnyByteThatChangedIsFoundWithinSecondsOrDoesNotMatter) {
         << "byte " << at << ": " << end;
     damaged += end != "identical";
   }
-  EXPECT_GT(damaged, 20);
+  EXPECT_GT(damaged, bytes / 5);
 }
 
 TEST(Recording, AHeadOfWhichALetterChangedIsDamagedAndNotAnotherScene) {

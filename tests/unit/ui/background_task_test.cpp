@@ -3,14 +3,19 @@
 #include <gtest/gtest.h>
 
 #include <QThread>
+#include <latch>
+#include <map>
+#include <mutex>
 #include <stdexcept>
 
 #include "qt_support.h"
+#include "support.h"
 
 namespace trephine {
 namespace {
 
 using test::waitFor;
+using test::waitUntil;
 
 class BackgroundTaskTest : public ::testing::Test {
  protected:
@@ -40,11 +45,11 @@ TEST_F(BackgroundTaskTest, WorksElsewhereAndDeliversHere) {
 
 TEST_F(BackgroundTaskTest, DoesOneThingAtATimeAndTheNextAfterIt) {
   BackgroundTask task;
-  std::atomic<bool> go{false};
+  std::latch go(1);
   int done = 0;
   ASSERT_TRUE(task.run(
       [&](const Progress&) -> Status {
-        while (!go) QThread::msleep(1);
+        go.wait();
         return {};
       },
       [&](Status) {
@@ -54,7 +59,7 @@ TEST_F(BackgroundTaskTest, DoesOneThingAtATimeAndTheNextAfterIt) {
             task.run([](const Progress&) -> Status { return {}; }, [&](Status) { ++done; }));
       }));
   EXPECT_FALSE(task.run([](const Progress&) -> Status { return {}; }, [&](Status) { done = 100; }));
-  go = true;
+  go.count_down();
   ASSERT_TRUE(waitFor([&] { return done == 2; }));
 }
 
@@ -63,7 +68,7 @@ TEST_F(BackgroundTaskTest, CancelReachesTheWork) {
   std::string code;
   ASSERT_TRUE(task.run(
       [](const Progress& progress) -> Status {
-        while (!progress.cancelled()) QThread::msleep(1);
+        waitUntil([&] { return progress.cancelled(); });
         return Error{"CANCELLED", "Cancelled", "", ""};
       },
       [&](Status status) { code = status.error().code; }));
@@ -88,7 +93,7 @@ TEST_F(BackgroundTaskTest, AnExceptionBecomesAnError) {
 
 TEST_F(BackgroundTaskTest, ReportsProgressOnThisThreadAndNotTooOften) {
   BackgroundTask task;
-  int reports = 0;
+  std::atomic<int> reports{0};
   bool done = false;
   QObject::connect(&task, &BackgroundTask::progressed, &task,
                    [&](double fraction, const QString& s) {
@@ -98,39 +103,48 @@ TEST_F(BackgroundTaskTest, ReportsProgressOnThisThreadAndNotTooOften) {
                      EXPECT_EQ(QThread::currentThread(), task.thread());
                    });
   ASSERT_TRUE(task.run(
-      [](const Progress& progress) -> Status {
+      [&](const Progress& progress) -> Status {
         for (int i = 0; i < 100000; ++i) progress.at(i / 1e5, "Reading");
-        QThread::msleep(60);
-        progress.at(1.0, "Reading");
-        QThread::msleep(60);
+        EXPECT_TRUE(waitUntil([&] {
+          progress.at(1.0, "Reading");
+          return reports >= 2;
+        }));
         return {};
       },
       [&](Status) { done = true; }));
   ASSERT_TRUE(waitFor([&] { return done; }));
-  EXPECT_GE(reports, 2);
   EXPECT_LT(reports, 1000);
 }
 
 TEST_F(BackgroundTaskTest, AStepThatCountsAnewDoesNotTakeTheBarBack) {
   BackgroundTask task;
   for (int run = 0; run < 2; ++run) {  // the next one begins at nothing again
-    std::vector<double> said;
+    std::mutex mutex;
+    std::map<std::string, double> said;  // by step
     bool done = false;
-    const auto listening =
-        QObject::connect(&task, &BackgroundTask::progressed, &task,
-                         [&](double fraction, const QString&) { said.push_back(fraction); });
+    const auto listening = QObject::connect(
+        &task, &BackgroundTask::progressed, &task, [&](double fraction, const QString& step) {
+          std::lock_guard lock(mutex);
+          said[step.section(',', 0, 0).toStdString()] = fraction;
+        });
     ASSERT_TRUE(task.run(
-        [](const Progress& progress) -> Status {
+        [&](const Progress& progress) -> Status {
+          std::string step = "a";
           for (const double at : {0.1, 0.8, 0.0, 0.5}) {
-            progress.at(at, "Step");
-            QThread::msleep(60);
+            EXPECT_TRUE(waitUntil([&] {  // what comes too soon after the one before is not said
+              progress.at(at, step);
+              std::lock_guard lock(mutex);
+              return said.contains(step);
+            }));
+            ++step[0];
           }
           return {};
         },
         [&](Status) { done = true; }));
     ASSERT_TRUE(waitFor([&] { return done; }));
     QObject::disconnect(listening);
-    EXPECT_EQ(said, (std::vector<double>{0.1, 0.8, 0.8, 0.8}));
+    EXPECT_EQ(said,
+              (std::map<std::string, double>{{"a", 0.1}, {"b", 0.8}, {"c", 0.8}, {"d", 0.8}}));
   }
 }
 
@@ -141,8 +155,7 @@ TEST_F(BackgroundTaskTest, GoingAwayCancelsWaitsAndDeliversNothing) {
     BackgroundTask task;
     ASSERT_TRUE(task.run(
         [&](const Progress& progress) -> Status {
-          while (!progress.cancelled()) QThread::msleep(1);
-          ended = true;
+          ended = waitUntil([&] { return progress.cancelled(); });
           return {};
         },
         [&](Status) { delivered = true; }));

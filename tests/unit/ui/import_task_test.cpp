@@ -7,7 +7,6 @@
 #include <QPushButton>
 #include <QRadioButton>
 #include <QTemporaryDir>
-#include <QThread>
 
 #include "imaging/dicom/ct_writer.h"
 #include "qt_support.h"
@@ -172,8 +171,10 @@ TEST_F(ImportTaskTest, WhatIsCancelledStopsWithoutAnError) {
 }
 
 TEST_F(ImportTaskTest, WhatIsCancelledAsItEndsCountsAsCancelled) {
+  const std::size_t threads = test::threadsNamed().size();
   task_.scan(path());
-  QThread::msleep(500);  // it is done by now, and nothing of it has been delivered
+  // It is done, and nothing of it has been delivered.
+  ASSERT_TRUE(test::waitUntil([&] { return test::threadsNamed().size() == threads; }));
   task_.cancel();
   ASSERT_TRUE(waitFor([&] { return stopped_ + scanned_ == 1; }));
   EXPECT_EQ(stopped_, 1);
@@ -184,9 +185,8 @@ TEST_F(ImportTaskTest, AnotherFolderTakesThePlaceOfTheOneBeingScanned) {
   task_.scan(path());
   task_.scan(path() / "ten");
   ASSERT_TRUE(waitFor([&] { return scanned_ == 1; }));
-  QElapsedTimer clock;
-  clock.start();
-  waitFor([&] { return clock.elapsed() > 200; });  // nothing comes after it
+  EXPECT_FALSE(task_.isWorking()) << "nothing comes after it";
+  QCoreApplication::processEvents();
   EXPECT_EQ(scanned_, 1);
   EXPECT_EQ(task_.report().series.size(), 1u);
   EXPECT_EQ(stopped_, 0);

@@ -19,7 +19,7 @@ inline TimedApplication& application() {
   return *instance;
 }
 
-// Runs the event loop until `done`, ten seconds at most.
+// Runs the event loop until `done`, a minute at most.
 inline bool waitFor(const std::function<bool()>& done) {
   QElapsedTimer timer;
   timer.start();

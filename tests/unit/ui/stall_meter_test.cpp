@@ -23,6 +23,10 @@ class StallMeter : public ::testing::Test {
     });
   }
   void TearDown() override { application_.setWatcher({}); }
+  // So long, by the clock that the meter goes by, without computing.
+  static void take(milliseconds time) {
+    std::this_thread::sleep_for(time);  // the true clock is what the meter is held against
+  }
   static void after(int ms, QObject& context, std::function<void()> work) {
     QTimer::singleShot(ms, &context, std::move(work));
   }
@@ -38,7 +42,7 @@ TEST_F(StallMeter, SaysHowLongAnEventTookAndWhoHadIt) {
   QMetaObject::invokeMethod(
       &slow,
       [&] {
-        std::this_thread::sleep_for(milliseconds(60));
+        take(milliseconds(60));
         done = true;
       },
       Qt::QueuedConnection);
@@ -55,7 +59,7 @@ TEST_F(StallMeter, EventsBetweenWhichNothingElseIsHandledAreOneStall) {
     QMetaObject::invokeMethod(
         &slow,
         [&] {
-          std::this_thread::sleep_for(milliseconds(20));
+          take(milliseconds(20));
           ++done;
         },
         Qt::QueuedConnection);
@@ -68,7 +72,7 @@ TEST_F(StallMeter, WhatRunsBetweenTwoEventsIsNone) {
   QObject quick;
   int done = 0;
   for (int i = 0; i < 2; ++i) {
-    std::this_thread::sleep_for(milliseconds(60));
+    take(milliseconds(60));
     after(0, quick, [&] { ++done; });
     ASSERT_TRUE(test::waitFor([&] { return done == i + 1; }));
   }
@@ -79,7 +83,7 @@ TEST_F(StallMeter, EventsThatTheLoopComesRoundBetweenAreNotAddedUp) {
   QObject quick;
   int done = 0;
   std::function<void()> again = [&] {
-    std::this_thread::sleep_for(milliseconds(10));
+    take(milliseconds(10));
     if (++done < 20) after(0, quick, again);
   };
   after(0, quick, again);
@@ -93,13 +97,13 @@ TEST_F(StallMeter, ADialogsOwnLoopWaitsWithoutAStallAndItsEventsAreTimed) {
   double before = 0.0;
   after(100, dialog, [&] {
     before = longest_.ms;
-    std::this_thread::sleep_for(milliseconds(70));
+    take(milliseconds(70));
     loop.quit();
   });
   bool done = false;
   after(0, dialog, [&] {
     loop.exec();
-    std::this_thread::sleep_for(milliseconds(40));
+    take(milliseconds(40));
     done = true;
   });
   ASSERT_TRUE(test::waitFor([&] { return done; }));

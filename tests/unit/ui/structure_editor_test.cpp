@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <QCoreApplication>
-#include <QElapsedTimer>
 #include <QSignalSpy>
 
 #include "qt_support.h"
@@ -37,9 +36,7 @@ class Editor : public testing::Test {
                      [this](const Error& e) { failed_ = e.code; });
   }
   void wait() {
-    QElapsedTimer clock;
-    clock.start();
-    while (editor_.busy() && clock.elapsed() < 60000) QCoreApplication::processEvents();
+    EXPECT_TRUE(test::waitFor([this] { return !editor_.busy(); }));
   }
   double ml(const char* name) {
     const Structure* of = editor_.map()->find(name);
