@@ -43,7 +43,7 @@ class TemporaryFolder {
 };
 
 // Waits for what another thread, process or device does and nobody announces; false where it does
-// not come. The one sleep of the tests in C++ but for devices' own clocks.
+// not come.
 template <class Condition>
 bool waitUntil(const Condition& condition,
                std::chrono::seconds longest = std::chrono::seconds(60)) {

@@ -229,9 +229,9 @@ Status Session::startStepped(double seconds) {
 }
 
 void Session::advance(double seconds) {
-  if (!stepped_) return;
-  const auto ticks = std::uint64_t(std::llround(seconds * scene_.rate_hz));
-  const std::uint64_t until = std::min(last_tick_, loop_->ticks() + ticks);
+  if (!running_ || !stepped_ || !(seconds > 0.0)) return;
+  const double ticks = std::min(std::round(seconds * scene_.rate_hz), double(last_tick_));
+  const std::uint64_t until = std::min(last_tick_, loop_->ticks() + std::uint64_t(ticks));
   while (loop_->ticks() < until) {
     loop_->step(0);
     const bool waits = core_->journalState() != (kJournalRoom | kJournalReady);

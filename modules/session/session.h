@@ -67,8 +67,8 @@ class Session {
   // Without threads: time is what advance() makes of it, until stop() or `seconds`. The hands, the
   // recording and all commands are as in real time; nothing is late.
   Status startStepped(double seconds = 1e9);
-  // The ticks of the next `seconds`, and what they recorded; nothing once finished() or
-  // in real time. Owner thread.
+  // The ticks of the next `seconds`, and what they recorded; nothing once finished() or stopped, in
+  // real time, or where `seconds` is not above 0. Owner thread.
   void advance(double seconds);
   bool running() const { return running_; }
   // True once the ticks asked for are done.

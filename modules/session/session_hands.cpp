@@ -131,7 +131,7 @@ std::int64_t Session::now_ns() const {
 bool Session::playPointer(std::size_t arm, std::int64_t time_ns, bool put_down) {
   if (!pointer_[arm] || !hands_.hands[arm].pointed) return false;
   PointerSample& at = *pointer_[arm];
-  if (time_ns == kNow || (!stepped_ && time_ns > now_ns())) time_ns = now_ns();
+  if (time_ns == kNow || (running_ && !stepped_ && time_ns > now_ns())) time_ns = now_ns();
   at.time_ns = std::max(at.time_ns, time_ns);
   return engine_->oper.path(arm).push({at, push_N_[arm], put_down});
 }

@@ -42,6 +42,16 @@ std::vector<ToolView> toolViews(const Scene& scene, const LoopState& state) {
 
 }  // namespace
 
+void TrainWorkspace::showAll() {
+  all_is_due_ = true;
+  tick();
+  all_is_due_ = false;
+}
+
+bool TrainWorkspace::isDue(const QElapsedTimer& since, int every_ms) const {
+  return all_is_due_ || since.elapsed() >= every_ms;
+}
+
 void TrainWorkspace::tick() {
   Session* session = workstation_.session();
   if (!session) return;
@@ -51,7 +61,7 @@ void TrainWorkspace::tick() {
   followPedal(state);
   hands_->follow();
   arms_->follow(state);
-  if (panel_clock_.elapsed() >= kPanelEvery_ms) {
+  if (isDue(panel_clock_, kPanelEvery_ms)) {
     panel_clock_.restart();
     showState(*session, state);
   }
@@ -97,10 +107,10 @@ void TrainWorkspace::showState(Session& session, const LoopState& state) {
     }
     touched_ = touched_ || hands_->taken();
     notice_->showState(state, session.scene(), session.standsStillFor_s(), !touched_);
-    if (cards_wanted_ && cards_clock_.elapsed() >= kCardsEvery_ms) tellCards(session, shown);
+    if (cards_wanted_ && isDue(cards_clock_, kCardsEvery_ms)) tellCards(session, shown);
     if (!session.isPoke()) exercise_->showTime(double(state.seconds));
     exercise_->showTools(session.scene(), state.tools);
-    if (removed_clock_.elapsed() >= kRemovedEvery_ms) showRemoved(session, state);
+    if (isDue(removed_clock_, kRemovedEvery_ms)) showRemoved(session, state);
     showHand();
     if (!session.isPoke()) {
       bench_.undoAction()->setEnabled(state.can_undo);

@@ -50,6 +50,9 @@ class TrainWorkspace : public Workspace {
   void startExercise(std::optional<OperatorScript> script = {}, double seconds = kNoEnd_s);
   // Shows the exercise as it is now; a timer does so 60 times a second while one runs.
   void tick();
+  // A tick of which also those parts are shown that change more slowly than pictures, but for the
+  // rates, which are of the true clock.
+  void showAll();
   // A scene that is about to open may not be in the list.
   void chooseNothing() { scenes_->setCurrentIndex(-1); }
   void showInUse();  // in the list of exercises
@@ -86,6 +89,7 @@ class TrainWorkspace : public Workspace {
   void showTools(const std::vector<ToolView>& tools);
   void showState(Session& session, const LoopState& state);
   void showRates();
+  bool isDue(const QElapsedTimer& since, int every_ms) const;
   void tellCards(const Session& session, const LoopState& state);
   bool pointerHasAHand() const;
   void command(CommandKind kind);
@@ -131,6 +135,7 @@ class TrainWorkspace : public Workspace {
   std::vector<std::pair<std::filesystem::path, Scene>> listed_;  // the workstation's exercises
   QTimer frame_timer_;
   QElapsedTimer panel_clock_, rate_clock_, removed_clock_, cards_clock_;
+  bool all_is_due_ = false;
   std::vector<double> limits_N_;  // of the running session's arms
   struct GoingBack {
     std::uint32_t second;

@@ -57,7 +57,8 @@ class CasesControlsGuiTest : public test::WindowTest {
   SliceCanvas* canvas() { return find<SliceCanvas>("sliceCanvas"); }
   void click(const char* button) {
     auto* wanted = find<QPushButton>(button);
-    const bool ready = QTest::qWaitFor([&] { return wanted->isVisible() && wanted->isEnabled(); });
+    const bool ready =
+        QTest::qWaitFor([&] { return wanted->isVisible() && wanted->isEnabled(); }, kLong_ms);
     QVERIFY2(ready, button);
     QTest::mouseClick(find<QPushButton>(button), Qt::LeftButton);
   }
@@ -191,8 +192,8 @@ class CasesControlsGuiTest : public test::WindowTest {
     const QRect all = canvas()->rect();
     const QPoint from = all.center() - QPoint(40, 30), to = all.center() + QPoint(40, 30);
     QTest::mousePress(canvas(), Qt::LeftButton, {}, from);
-    QTest::mouseMove(canvas(), (from + to) / 2);
-    QTest::mouseMove(canvas(), to);
+    moveTo(*canvas(), (from + to) / 2, Qt::LeftButton);
+    moveTo(*canvas(), to, Qt::LeftButton);
     QTest::mouseRelease(canvas(), Qt::LeftButton, {}, to);
     Index3 low{}, high{};
     for (int axis = 0; axis < 3; ++axis) {

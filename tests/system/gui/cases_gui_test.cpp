@@ -70,7 +70,8 @@ class CasesGuiTest : public test::WindowTest {
     }
   }
   QString errorSaid() {
-    if (!QTest::qWaitFor([&] { return window_->findChild<QMessageBox*>("errorDialog"); }, 20000)) {
+    if (!QTest::qWaitFor([&] { return window_->findChild<QMessageBox*>("errorDialog"); },
+                         kLong_ms)) {
       return {};
     }
     auto* dialog = find<QMessageBox>("errorDialog");

@@ -66,8 +66,8 @@ inline std::filesystem::path sceneOn(const Volume& volume, const std::filesystem
 }
 
 // A test of one window, with a folder of its own. Exercises run on the test's clock, never late:
-// their time passes in pass(), and by a little with each turn of the event loop, so that whatever
-// waits for them goes on. Nothing here waits for a time; see rest() and Qt's QTRY macros.
+// their time passes in pass(), and by 20 ms with each beat of a timer, so that whatever waits for
+// them goes on. Nothing here waits for a time; see rest() and Qt's QTRY macros.
 class WindowTest : public QObject {
  public:
   WindowTest() {

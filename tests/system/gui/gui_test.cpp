@@ -208,11 +208,19 @@ class GuiTest : public test::WindowTest {
   void openingCanBeCancelled() {
     QSignalSpy failed(window_.get(), &MainWindow::failed);
     QSignalSpy ended(&workstation(), &Workstation::openingEnded);
-    prepareBuiltIn("cranium");
+    // Opening takes half a second: the button is pressed as soon as it is there.
     auto* cancel = find<QPushButton>("cancelOpening");
-    QTRY_VERIFY_WITH_TIMEOUT(cancel->isVisible(), kLong_ms);
-    QTest::mouseClick(cancel, Qt::LeftButton);
+    bool pressed = false;
+    const auto press = [&] {
+      if (pressed || !cancel->isVisible()) return;
+      pressed = true;
+      QTest::mouseClick(cancel, Qt::LeftButton);
+    };
+    const auto progress = connect(&workstation(), &Workstation::openingProgressed, this, press);
+    prepareBuiltIn("cranium");
     QVERIFY(ended.count() == 1 || ended.wait(kLong_ms));
+    disconnect(progress);
+    QVERIFY(pressed);
     QCoreApplication::processEvents();
     QVERIFY(!cancel->isVisible());
     QVERIFY(!workstation().currentCase());

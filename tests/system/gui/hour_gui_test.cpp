@@ -259,7 +259,7 @@ class HourGuiTest : public test::WindowTest {
     QVERIFY2(last.memory_mb <= second.memory_mb + kMostGrown_mb, "memory piles up");
     QCOMPARE(last.descriptors, second.descriptors);
     QCOMPARE(last.threads, second.threads);
-    // Of fifteen seconds they say too little to judge by.
+    // Of some seconds they say too little to judge by.
     constexpr double kTelling_s = 60.0;
     if (seconds < kTelling_s) return;
     QVERIFY2(last.frames_per_s >= 0.9 * first.frames_per_s, "pictures become slower");

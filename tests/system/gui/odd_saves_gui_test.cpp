@@ -21,17 +21,8 @@ using namespace trephine;
 
 namespace {
 
-constexpr int kLong_ms = 120000;
 constexpr double kMore = 1.0;  // N s/m that an edit adds
 const char* const kChild = "--child";
-
-std::unique_ptr<MainWindow> windowOn(const QString& storage) {
-  auto window = std::make_unique<MainWindow>(toPath(storage + "/sessions"));
-  window->workstation().setStepped(true);
-  window->resize(1000, 700);
-  window->show();
-  return window;
-}
 
 void setDamping(MainWindow& window, double add) {
   TissueSet set = window.workstation().scene()->tissues;
@@ -41,45 +32,53 @@ void setDamping(MainWindow& window, double add) {
   window.workstation().setTissues(set);
 }
 
-// A window that saves a case and then its tissues, and says what it has begun and done: to be
-// killed in between.
-int saveInAWindow(int argc, char** argv, const QString& storage, const QString& volume) {
-  QApplication application(argc, argv);
-  QStandardPaths::setTestModeEnabled(true);
-  QApplication::setApplicationName("trephine-test-killed");
-  const auto say = [](const char* words) {
-    std::printf("%s\n", words);
-    std::fflush(stdout);
-  };
-  const auto window = windowOn(storage);
-  Workstation& workstation = window->workstation();
-  Result<Volume> read = readVolume(toPath(volume));
-  if (!read) return 1;
-  workstation.openImported(caseOf(std::make_shared<const Volume>(*std::move(read))));
-  if (!QTest::qWaitFor([&] { return workstation.phase() == Workstation::Phase::ready; }, kLong_ms))
-    return 1;
-  say("saving");
-  window->findChild<QPushButton*>("saveCase")->click();
-  if (!QTest::qWaitFor([&] { return !workstation.currentCase()->stored.empty(); }, kLong_ms))
-    return 1;
-  say("saved");
-  setDamping(*window, kMore);
-  QSignalSpy saved(&workstation, &Workstation::saved);
-  window->findChild<QAction*>("saveInCase")->trigger();
-  if (saved.isEmpty() && !saved.wait(kLong_ms)) return 1;
-  say("changed");
-  return 0;
-}
-
 }  // namespace
 
 class OddSavesGuiTest : public test::WindowTest {
   Q_OBJECT
 
+ public:
+  // A window that saves a case and then its tissues, and says what it has begun and done: to be
+  // killed in between.
+  static int saveInAWindow(int argc, char** argv, const QString& storage, const QString& volume) {
+    QApplication application(argc, argv);
+    QStandardPaths::setTestModeEnabled(true);
+    QApplication::setApplicationName("trephine-test-killed");
+    const auto say = [](const char* words) {
+      std::printf("%s\n", words);
+      std::fflush(stdout);
+    };
+    MainWindow window(toPath(storage + "/sessions"));
+    show(window);
+    Workstation& workstation = window.workstation();
+    Result<Volume> read = readVolume(toPath(volume));
+    if (!read) return 1;
+    workstation.openImported(caseOf(std::make_shared<const Volume>(*std::move(read))));
+    if (!QTest::qWaitFor([&] { return workstation.phase() == Workstation::Phase::ready; },
+                         kLong_ms))
+      return 1;
+    say("saving");
+    window.findChild<QPushButton*>("saveCase")->click();
+    if (!QTest::qWaitFor([&] { return !workstation.currentCase()->stored.empty(); }, kLong_ms))
+      return 1;
+    say("saved");
+    setDamping(window, kMore);
+    QSignalSpy saved(&workstation, &Workstation::saved);
+    window.findChild<QAction*>("saveInCase")->trigger();
+    if (saved.isEmpty() && !saved.wait(kLong_ms)) return 1;
+    say("changed");
+    return 0;
+  }
+
  private:
+  static void show(MainWindow& window) {
+    window.resize(1000, 700);
+    window.show();
+  }
   QString storage() { return temporary_.filePath("storage"); }
   void open() {
-    window_ = windowOn(storage());
+    window_ = newWindow(toPath(storage() + "/sessions"));
+    show(*window_);
     QVERIFY(QTest::qWaitForWindowExposed(window_.get()));
     QApplication::setActiveWindow(window_.get());
   }
@@ -264,7 +263,7 @@ class OddSavesGuiTest : public test::WindowTest {
         QVERIFY(waitFor("changed"));
         whole_ms = double(since.nsecsElapsed()) * 1e-6;
       } else {
-        // It is killed at any moment of what it does.
+        // The true clock is the matter: it is killed at any moment of what it does.
         QTest::qSleep(int(whole_ms * 1.8 * double(random() % 1000) / 1000.0));
         child.kill();
       }
@@ -354,7 +353,7 @@ class OddSavesGuiTest : public test::WindowTest {
 int main(int argc, char** argv) {
   if (argc == 4 && QString(argv[1]) == kChild) {
     if (!prepareDisplay()) return 77;
-    return saveInAWindow(argc, argv, argv[2], argv[3]);
+    return OddSavesGuiTest::saveInAWindow(argc, argv, argv[2], argv[3]);
   }
   return test::runInWindow<OddSavesGuiTest>(argc, argv);
 }

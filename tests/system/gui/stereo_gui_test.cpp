@@ -41,6 +41,7 @@ class StereoGuiTest : public test::TrainTest {
   QMessageBox* error() { return window_->findChild<QMessageBox*>("errorDialog"); }
   // Until its picture does not change any more.
   QImage picture() {
+    restRefined();
     QImage last;
     (void)QTest::qWaitFor([&] {
       rest();

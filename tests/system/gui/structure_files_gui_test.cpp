@@ -219,14 +219,17 @@ class StructureFilesGuiTest : public test::WindowTest {
     QTRY_VERIFY(save->isEnabled());
     QApplication::setActiveWindow(window_.get());
     save->setFocus();
+    // The menu keeps the program until it is closed: its key comes once it is there.
     bool open = false;
-    QTimer::singleShot(500, this, [&] {
+    const auto press = [&] {
       auto* menu = qobject_cast<QMenu*>(QApplication::activePopupWidget());
       if (!menu) return;
       open = true;
       QTest::keyClick(menu, Qt::Key_D);
-    });
+    };
+    connect(save->menu(), &QMenu::aboutToShow, this, [&] { QTimer::singleShot(0, this, press); });
     QTest::keyClick(save, Qt::Key_Space);
+    disconnect(save->menu(), &QMenu::aboutToShow, this, nullptr);
     QVERIFY(open);
     wait<QFileDialog>("dicomDialog")->close();
     QTRY_VERIFY(!window_->findChild<QFileDialog*>("dicomDialog"));
@@ -292,7 +295,10 @@ class StructureFilesGuiTest : public test::WindowTest {
     std::optional<std::vector<CutStructure>> ended;
     connect(&workstation(), &Workstation::sessionEnded, window_.get(),
             [&](Session& session) { ended = session.report().structures_cut; });
-    window_->startExercise(*script, 12.0);
+    constexpr double kWhole_s = 12.0;
+    window_->startExercise(*script, kWhole_s);
+    QTRY_VERIFY_WITH_TIMEOUT(workstation().session(), kLong_ms);
+    pass(kWhole_s);
     QTRY_VERIFY_WITH_TIMEOUT(ended, kLong_ms);
     const std::vector<CutStructure>& cut = *ended;
     QVERIFY(!linesOf(cut).empty());

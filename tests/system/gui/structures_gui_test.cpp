@@ -23,8 +23,6 @@
 
 using namespace trephine;
 
-namespace {}
-
 class StructuresGuiTest : public test::WindowTest {
   Q_OBJECT
 
@@ -213,7 +211,7 @@ class StructuresGuiTest : public test::WindowTest {
     clock.start();
     const int drawn = axial().drawn();
     QTest::mousePress(handle(), Qt::LeftButton, {}, axial().mapTo(window_.get(), at));
-    while (axial().drawn() == drawn && clock.elapsed() < 5000) QCoreApplication::processEvents();
+    QVERIFY(QTest::qWaitFor([&] { return axial().drawn() != drawn; }, 5000));
     const qint64 ms = clock.elapsed();
     QTest::mouseRelease(handle(), Qt::LeftButton, {}, axial().mapTo(window_.get(), at));
     QTest::mouseMove(handle(), axial().mapTo(window_.get(), at + QPoint(60, 0)));

@@ -71,7 +71,7 @@ class ViewToolsGuiTest : public test::WindowTest {
   Picture seen() {
     restRefined();
     const auto label = view().findChild<QLabel*>("viewLevel");
-    (void)QTest::qWaitFor([&] { return label->text().isEmpty(); }, kLong_ms);
+    [&] { QTRY_VERIFY_WITH_TIMEOUT(label->text().isEmpty(), kLong_ms); }();
     const QImage image = view().grabFramebuffer().convertToFormat(QImage::Format_RGB888);
     Picture picture{image.width(), image.height(), {}};
     for (int y = 0; y < image.height(); ++y) {
@@ -270,7 +270,7 @@ class ViewToolsGuiTest : public test::WindowTest {
     const auto label = view().findChild<QLabel*>("viewLevel");
     press(Qt::Key_Left);
     QTRY_VERIFY(!label->text().isEmpty());
-    rest();  // it is drawn
+    label->repaint();  // it is on the screen
     seen();
     const QRect place(view().mapTo(window_.get(), label->pos()), label->size());
     QImage own = view().grabFramebuffer().copy(label->geometry());

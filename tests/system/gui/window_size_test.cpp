@@ -115,10 +115,10 @@ class WindowSizeTest : public test::WindowTest {
     // What found no room in the bar is behind a button that can be seen.
     const bool all =
         find<QToolBar>("toolBar")->widgetForAction(find<QAction>("saveVolume"))->isVisible();
-    auto* rest = find<QToolButton>("qt_toolbar_ext_button");
-    QVERIFY(all || rest->isVisible());
-    QVERIFY(all || rest->width() >= rest->fontMetrics().horizontalAdvance(rest->text()));
-    QVERIFY(!rest->text().isEmpty());
+    auto* more = find<QToolButton>("qt_toolbar_ext_button");
+    QVERIFY(all || more->isVisible());
+    QVERIFY(all || more->width() >= more->fontMetrics().horizontalAdvance(more->text()));
+    QVERIFY(!more->text().isEmpty());
     auto* purpose = find<QLabel>("purpose");
     QCOMPARE(purpose->visibleRegion().boundingRect(), purpose->rect());
     QVERIFY(purpose->width() >= purpose->sizeHint().width());

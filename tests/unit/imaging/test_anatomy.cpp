@@ -42,7 +42,9 @@ Volume turned(const Volume& of, const std::array<std::size_t, 3>& order, bool up
 void expectNamed(const Volume& volume, BodyRegion region, const std::string& name,
                  bool whole_is_known = true) {
   const Anatomy whole = anatomyOf(volume);
-  if (whole_is_known) EXPECT_EQ(whole.region, region) << name;
+  if (whole_is_known) {
+    EXPECT_EQ(whole.region, region) << name;
+  }
   int known = 0, wrong = 0;
   const auto look = [&](const Volume& v) {
     const BodyRegion found = anatomyOf(v).region;

@@ -88,7 +88,9 @@ TEST_P(LabelChanges, AnotherMapTakesThePlaceOfTheFirst) {
   mirror->setLabels(second);
   EXPECT_EQ(renderer.picture(), fresh(second, GetParam()));
   mirror->setLabels(nullptr);
-  if (GetParam() == 0) EXPECT_EQ(renderer.picture(), none);
+  if (GetParam() == 0) {
+    EXPECT_EQ(renderer.picture(), none);
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(WholeAndReduced, LabelChanges, testing::Values(0, 50));

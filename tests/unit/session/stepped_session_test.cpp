@@ -1,6 +1,8 @@
 // A session whose time its owner moves.
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "cases.h"
 #include "session_support.h"
 #include "support.h"
@@ -51,6 +53,20 @@ TEST(SteppedSession, ItsTimeIsThatOfItsTicks) {
   EXPECT_EQ(session->standsStillFor_s(), 0.0);
   ASSERT_TRUE(session->stop().ok());
   EXPECT_FALSE(session->running());
+}
+
+TEST(SteppedSession, DoesNotGoBackAndStandsStillOnceItIsStopped) {
+  const test::TemporaryFolder folder;
+  const auto session = made(folder.path() / "s.h5");
+  ASSERT_TRUE(session->startStepped().ok());
+  session->advance(0.25);
+  for (const double seconds : {-0.1, 0.0, std::nan("")}) session->advance(seconds);
+  EXPECT_EQ(session->now_ns(), 250'000'000);
+  ASSERT_TRUE(session->stop().ok());
+  const std::uint64_t ticks = session->state().ticks;
+  session->advance(1.0);
+  EXPECT_EQ(session->state().ticks, ticks);
+  EXPECT_EQ((*SessionReader::open(folder.path() / "s.h5"))->tickCount(), ticks);
 }
 
 TEST(SteppedSession, OneOfNoLengthIsOverAtOnce) {

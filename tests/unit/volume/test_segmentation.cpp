@@ -321,7 +321,9 @@ TEST(Structures, AShellIsAsThickAsAskedAndNothingLeaksThroughIt) {
         }
       }
       EXPECT_LE(deepest_mm, mm + glm::length(spacing)) << mm;
-      if (mm > 1.0) EXPECT_GT(deepest_mm, mm - 0.5 * spacing.z) << mm;
+      if (mm > 1.0) {
+        EXPECT_GT(deepest_mm, mm - 0.5 * spacing.z) << mm;
+      }
     }
   }
 }
