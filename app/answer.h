@@ -13,6 +13,9 @@ namespace trephine {
 // Prints `answer` with `schema` ("trephine.<name>.1") and `build` in front.
 void printAnswer(const std::string& name, const Json& answer);
 
+// The same in one line: of what is answered bit by bit.
+void printLine(const std::string& name, const Json& answer);
+
 // Under --json prints {error:{code,what,where,next}} with `extra` merged in, else the sentence on
 // stderr. Returns the exit code: 1.
 int printError(const std::string& name, const Error& error, bool json, const Json& extra = {});
@@ -28,6 +31,11 @@ void reportToTerminal(double fraction, const std::string& step);
 void reportInLines();
 
 Json errorJson(const Error& error);
+
+// printf to stdout and stderr of what a person reads, and the only way to print in the programs: text
+// of a file or a device in it cannot command the terminal (cleanLines).
+void say(const char* format, ...) __attribute__((format(printf, 1, 2)));
+void sayError(const char* format, ...) __attribute__((format(printf, 1, 2)));
 
 // Whether --json stands anywhere on the command line.
 bool wantsJson(int argc, char** argv);

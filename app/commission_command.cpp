@@ -68,7 +68,7 @@ int commissionCommand(const CommissionArguments& arguments, const Policy& policy
     answer["page"] = (out / "commission.html").string();
     printAnswer(name, answer);
   } else {
-    std::printf("%s%s\n", toText(*made, changes).c_str(), (out / "commission.html").c_str());
+    say("%s%s\n", toText(*made, changes).c_str(), (out / "commission.html").c_str());
   }
   return 0;
 }

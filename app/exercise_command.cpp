@@ -21,6 +21,9 @@ Result<fs::path> storageOf(const std::string& given, const Policy& policy) {
 
 namespace {
 
+constexpr const char* kLeftDevicesOut =
+    "The exercise named devices and how they are set; those of this workstation are used instead.";
+
 std::string listed(const char* title, const std::vector<std::string>& files) {
   std::string text;
   for (const std::string& file : files) text += "  " + std::string(title) + ": " + file + "\n";
@@ -38,7 +41,7 @@ int exportExerciseCommand(const std::string& scene, const std::string& case_sour
   if (json) {
     printAnswer("exercise-export", {{"folder", exported->folder.string()}, {"parts", parts}});
   } else {
-    std::printf("%s: %zu files\n", exported->folder.c_str(), exported->parts.size());
+    say("%s: %zu files\n", exported->folder.c_str(), exported->parts.size());
   }
   return 0;
 }
@@ -54,11 +57,13 @@ int importExerciseCommand(const std::string& folder, const std::string& storage,
     printAnswer("exercise-import", {{"scene", imported->scene.string()},
                                     {"verified", check.verified()},
                                     {"missing", check.missing},
-                                    {"changed", check.changed}});
+                                    {"changed", check.changed},
+                                    {"left_devices_out", imported->left_devices_out}});
   } else if (check.verified()) {
-    std::printf("%s\n", imported->scene.c_str());
+    say("%s\n", imported->scene.c_str());
+    if (imported->left_devices_out) sayError("%s\n", kLeftDevicesOut);
   } else {
-    std::fprintf(stderr, "It is not the exercise that was exported; nothing was written.\n%s%s",
+    sayError("It is not the exercise that was exported; nothing was written.\n%s%s",
                  listed("missing", check.missing).c_str(),
                  listed("changed", check.changed).c_str());
   }

@@ -31,34 +31,34 @@ std::string placesOf(const Finding& finding) {
 void printReport(const ImportReport& report) {
   for (const SeriesReport& s : report.series) {
     const GridGeometry& g = s.geometry;
-    std::printf("%-8s  ", verdictName(s.verdict));
+    say("%-8s  ", verdictName(s.verdict));
     if (s.verdict != Verdict::refused || g.spacing_mm.z > 0.0) {
-      std::printf("%dx%dx%d  %.3f x %.3f x %.3f mm  ", g.size[0], g.size[1], g.size[2],
+      say("%dx%dx%d  %.3f x %.3f x %.3f mm  ", g.size[0], g.size[1], g.size[2],
                   g.spacing_mm.x, g.spacing_mm.y, g.spacing_mm.z);
     }
-    std::printf("%s  %s\n", s.modality.c_str(), s.description.c_str());
+    say("%s  %s\n", s.modality.c_str(), s.description.c_str());
     if (report.series.size() > 1) {
       const char* mark = "";
       if (report.chosen && s.verdict != Verdict::refused) mark = "  (not read)";
       if (report.chosen == s.uid) mark = "  (this one was read)";
-      std::printf("          --series %s%s\n", seriesHash(s.uid).c_str(), mark);
+      say("          --series %zu%s\n", std::size_t(&s - report.series.data()) + 1, mark);
     }
     for (const Finding& f : s.findings) {
-      std::printf("          %s: %s. %s%s\n", f.code.c_str(), f.text.c_str(), placesOf(f).c_str(),
+      say("          %s: %s. %s%s\n", f.code.c_str(), f.text.c_str(), placesOf(f).c_str(),
                   f.action.c_str());
     }
     for (const Choice& c : s.choices) {
-      std::printf("          %s\n", c.question.c_str());
+      say("          %s\n", c.question.c_str());
       for (std::size_t n = 0; n < c.options.size(); ++n) {
         const std::string more =
             n < c.on_screen.size() && !c.on_screen[n].empty() ? " (" + c.on_screen[n] + ")" : "";
-        std::printf("            --choice %s=%s  %s%s\n", c.code.c_str(), c.options[n].c_str(),
+        say("            --choice %s=%s  %s%s\n", c.code.c_str(), c.options[n].c_str(),
                     c.words[n].c_str(), more.c_str());
       }
     }
   }
   for (const SkippedFiles& s : report.skipped) {
-    std::printf("skipped   %d: %s\n", s.count, s.reason.c_str());
+    say("skipped   %d: %s\n", s.count, s.reason.c_str());
   }
 }
 

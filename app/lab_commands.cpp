@@ -25,6 +25,7 @@
 #include "lab/trades/trades_measurement.h"
 #include "scene/names.h"
 #include "session/case.h"
+#include "training/recording_list.h"
 #include "training/replay.h"
 #include "volume/phantom_file.h"
 
@@ -38,7 +39,7 @@ void printMeasured(const char* name, const Measurement& measured, bool json) {
   if (json) {
     printAnswer(name, toJson(measured));
   } else {
-    std::printf("%s", toText(measured).c_str());
+    say("%s", toText(measured).c_str());
   }
 }
 
@@ -83,7 +84,7 @@ int phantomCommand(const std::string& name, const std::string& out, bool json,
                             {"spacing_mm", {g.spacing_mm.x, g.spacing_mm.y, g.spacing_mm.z}},
                             {"volume_sha256", volumeSha256(volume)}});
   } else {
-    std::printf("%d slices of the %s phantom are in %s\n", g.size[2], name.c_str(), out.c_str());
+    say("%d slices of the %s phantom are in %s\n", g.size[2], name.c_str(), out.c_str());
   }
   return 0;
 }
@@ -96,10 +97,12 @@ int replayCommand(const std::string& file, const std::string& case_source,
   std::string source = case_source;
   if (source.empty() && scene.contains("case") && scene["case"].is_string()) {
     source = scene["case"].get<std::string>();
+    // A recording opens no file: it may be a stranger's.
+    if (!phantomNamed(source)) source.clear();
   }
   if (source.empty()) {
     const Error error{"NO_CASE", "The recording was made on a case of its own", "--case",
-                      "Give the folder that the session was run on"};
+                      "Give the folder or the volume file that the session was run on"};
     return printError("replay", error, json);
   }
   Result<Case> of = readCase(source, progress);
@@ -129,12 +132,35 @@ int replayCommand(const std::string& file, const std::string& case_source,
                            {"structures_cut", toJson(result->structures_cut)},
                            {"volume_sha256", result->volume_sha256}});
   } else {
-    std::printf("%llu ticks replayed: %s\n", static_cast<unsigned long long>(result->ticks),
+    say("%llu ticks replayed: %s\n", static_cast<unsigned long long>(result->ticks),
                 result->identical ? "identical" : "different");
-    for (const std::string& cut : linesOf(result->structures_cut)) std::printf("%s\n", cut.c_str());
-    if (!result->identical) std::printf("first difference: %s\n", difference.dump().c_str());
+    for (const std::string& cut : linesOf(result->structures_cut)) say("%s\n", cut.c_str());
+    if (!result->identical) say("first difference: %s\n", difference.dump().c_str());
   }
   return result->identical ? 0 : 3;
+}
+
+int recordingsCommand(const std::vector<std::string>& files, bool json,
+                      const Progress& progress) {
+  bool all = true;
+  for (const std::string& file : files) {
+    if (progress.cancelled()) {
+      return printError("recordings", {"CANCELLED", "Not all recordings were listed", "", ""},
+                        json);
+    }
+    const ListedRecording row = listRecording(file);
+    all = all && !row.problem;
+    if (json) {
+      printLine("recordings", toJson(row));
+    } else if (row.problem) {
+      say("%s\n", row.problem->sentence().c_str());
+    } else {
+      say("%s: %s, %.1f s%s\n", file.c_str(), row.exercise.c_str(), row.seconds,
+          row.cut_short ? ", cut short" : "");
+    }
+    std::fflush(stdout);
+  }
+  return all ? 0 : 1;
 }
 
 int explainCommand(const std::string& scene_file, const Policy& policy, bool json,
@@ -156,7 +182,7 @@ int explainCommand(const std::string& scene_file, const Policy& policy, bool jso
   if (json) {
     printAnswer("explain", *answer);
   } else {
-    std::printf("%s", explanationText(*answer).c_str());
+    say("%s", explanationText(*answer).c_str());
   }
   return 0;
 }
@@ -167,7 +193,7 @@ int measureUploadCommand(bool json, const Progress& progress) {
   if (json) {
     printAnswer("measure.upload", toJson(*measured));
   } else {
-    std::printf("full upload %.2f ms, 48^3 box %.3f ms: 1/%.0f; pictures %s\n", measured->full_ms,
+    say("full upload %.2f ms, 48^3 box %.3f ms: 1/%.0f; pictures %s\n", measured->full_ms,
                 measured->box_ms, measured->ratio, measured->pictures_equal ? "equal" : "different");
   }
   return 0;
@@ -248,7 +274,7 @@ int measureStabilityCommand(const StabilityArguments& arguments, bool json,
   if (json) {
     printAnswer("measure.stability", *answer);
   } else {
-    std::printf("%s", text.c_str());
+    say("%s", text.c_str());
   }
   return 0;
 }
@@ -296,7 +322,7 @@ int measureTradesCommand(const std::string& out, bool json, const Progress& prog
     answer["charts"] = *charts;
     printAnswer(kName, answer);
   } else {
-    std::printf("%s", toText(*measured).c_str());
+    say("%s", toText(*measured).c_str());
   }
   return 0;
 }
@@ -325,7 +351,7 @@ int measureReadCommand(const std::string& path, bool json, const Progress& progr
   if (json) {
     printAnswer("measure.read", toJson(*floor));
   } else {
-    std::printf("%d files of %.1f MB: read in %.4f s, kept in memory in %.4f s\n", floor->files,
+    say("%d files of %.1f MB: read in %.4f s, kept in memory in %.4f s\n", floor->files,
                 double(floor->bytes) / 1048576.0, floor->seconds, floor->kept_seconds);
   }
   return 0;

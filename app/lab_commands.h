@@ -114,6 +114,8 @@ int commissionCommand(const CommissionArguments& arguments, const Policy& policy
 int shareStorageCommand(const std::string& folder, bool json);
 int replayCommand(const std::string& file, const std::string& case_source,
                   const std::string& labels, bool json, const Progress&);
+// A row for each file as soon as it is read. 1 where one cannot be replayed.
+int recordingsCommand(const std::vector<std::string>& files, bool json, const Progress&);
 int explainCommand(const std::string& scene, const Policy& policy, bool json, const Progress&);
 int measureUploadCommand(bool json, const Progress&);
 int measureStabilityCommand(const StabilityArguments& arguments, bool json, const Progress&);

@@ -57,9 +57,9 @@ Result<std::string> readLine(const Progress& progress) {
 
 Result<std::string> askOnTerminal(const char* question, const Progress& progress) {
   const QuietTerminal quiet;
-  std::fputs(question, stderr);
+  sayError("%s", question);
   Result<std::string> line = readLine(progress);
-  std::fputs("\n", stderr);
+  sayError("\n");
   return line;
 }
 
@@ -85,8 +85,8 @@ int pinCommand(bool json, const Progress& progress) {
   if (json) {
     printAnswer("pin", {{"pin", toJson(*pin)}});
   } else {
-    std::fprintf(stderr, "Put this under \"pin\" into %s:\n", kPolicyFile);
-    std::printf("%s\n", toJson(*pin).dump(1).c_str());
+    sayError("Put this under \"pin\" into %s:\n", kPolicyFile);
+    say("%s\n", toJson(*pin).dump(1).c_str());
   }
   return 0;
 }

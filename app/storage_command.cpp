@@ -34,6 +34,7 @@ int listStorageCommand(const std::string& storage, bool open, const Policy& poli
                       json);
   }
   CaseLibrary library(*at);
+  library.bringUpToDate(progress);
   const std::vector<ListedCase> all = library.list();
   Json cases = Json::array();
   std::size_t bad = 0;
@@ -57,11 +58,11 @@ int listStorageCommand(const std::string& storage, bool open, const Policy& poli
     } else {
       // The name of a folder that others made may hold what a terminal obeys.
       const std::string said = problem ? problem->sentence() : all[i].record.name;
-      std::printf("%s: %s\n", cleanUtf8(all[i].id).c_str(), cleanUtf8(said).c_str());
+      say("%s: %s\n", cleanUtf8(all[i].id).c_str(), cleanUtf8(said).c_str());
     }
   }
   if (json) printAnswer("storage-list", {{"storage", at->string()}, {"cases", cases}});
-  if (!json && all.empty()) std::printf("No case is kept in %s\n", at->c_str());
+  if (!json && all.empty()) say("No case is kept in %s\n", at->c_str());
   return bad > 0 ? 1 : 0;
 }
 
@@ -75,7 +76,7 @@ int shareStorageCommand(const std::string& folder, bool json) {
         "storage-share",
         {{"storage", shared->string()}, {"readers", groups.readers}, {"writers", groups.writers}});
   } else {
-    std::printf(
+    say(
         "%s: the group %s may look at cases and exercises, the group %s may change them, and each\n"
         "keeps recordings of his own. Accounts that make cases belong to both groups.\n"
         "Name the folder as \"storage\" in /etc/trephine/settings.json.\n",

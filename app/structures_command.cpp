@@ -16,6 +16,7 @@
 #include "imaging/dicom/seg_writer.h"
 #include "imaging/source_uids.h"
 #include "imaging/structure_importer.h"
+#include "library/name_words.h"
 #include "session/case.h"
 #include "structures/compare.h"
 #include "structures/grow.h"
@@ -184,10 +185,10 @@ int growCommand(const GrowArguments& arguments, bool json, const Progress& progr
                         {"steps", growth->steps}});
     return 0;
   }
-  std::printf("%s: %.1f mL, %zu voxels of about %.0f to %.0f HU, in %.2f s\n", name.c_str(),
+  say("%s: %.1f mL, %zu voxels of about %.0f to %.0f HU, in %.2f s\n", name.c_str(),
               growth->ml, growth->voxels, growth->hu.low, growth->hu.high, seconds);
   if (growth->leaked) {
-    std::printf(
+    say(
         "It reaches the border of the scan or fills much of it: look whether it is %s alone. "
         "--box, --hu or a larger --open hold it back.\n",
         name.c_str());
@@ -281,6 +282,11 @@ StructureRequest request(const std::optional<double>& threshold, const Answers& 
                          const Case& of) {
   StructureRequest made{answers, true, sourceOf(of)};
   made.threshold = threshold.value_or(made.threshold);
+  if (of.identity) {
+    made.hide_names = [keys = sourceKeys(*of.identity)](Segmentation& segmentation) {
+      return hideNames(segmentation, keys);
+    };
+  }
   return made;
 }
 
@@ -293,16 +299,16 @@ Status checkThreshold(const std::optional<double>& threshold) {
 
 void print(const StructureFit& fit) {
   for (const StructureCard& card : fit.structures) {
-    std::printf("%-24s %9.1f mL", card.name.c_str(), card.ml);
+    say("%-24s %9.1f mL", card.name.c_str(), card.ml);
     if (card.hu)
-      std::printf("  %5.0f HU (%.0f to %.0f)", (*card.hu)[1], (*card.hu)[0], (*card.hu)[2]);
-    std::printf("\n");
+      say("  %5.0f HU (%.0f to %.0f)", (*card.hu)[1], (*card.hu)[0], (*card.hu)[2]);
+    say("\n");
     for (const Finding& f : card.findings) {
-      std::printf("    %s: %s\n", f.code.c_str(), sentencesOf(f).c_str());
+      say("    %s: %s\n", f.code.c_str(), sentencesOf(f).c_str());
     }
   }
   for (const Finding& f : fit.findings) {
-    std::printf("%s: %s\n", f.code.c_str(), sentencesOf(f).c_str());
+    say("%s: %s\n", f.code.c_str(), sentencesOf(f).c_str());
   }
 }
 

@@ -2,6 +2,8 @@
 #include <CLI/CLI.hpp>
 #include <QApplication>
 #include <QTimer>
+#include <cerrno>
+#include <cstdlib>
 
 #include "app/answer.h"
 #include "app/out_folder.h"
@@ -93,7 +95,9 @@ int run(int argc, char** argv) {
     if (out.empty()) {
       const Result<std::filesystem::path> temporary = temporaryFolder();
       if (!temporary) return printError("exercise", temporary.error(), json);
-      options.out = *temporary / "trephine-exercise";
+      std::string folder = (*temporary / "trephine-exercise-XXXXXX").string();
+      if (!::mkdtemp(folder.data())) return printError("exercise", writeError(folder, errno), json);
+      options.out = folder;
     }
     return exercise(options, json);
   }
@@ -126,6 +130,7 @@ int run(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  keepMemoryPrivate();
   cancelOnSignals(progress);
   return guarded("exercise", wantsJson(argc, argv), [&] { return run(argc, argv); });
 }

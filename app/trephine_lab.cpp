@@ -46,7 +46,7 @@ int run(int argc, char** argv) {
   ImportArguments wanted;
   import_command->add_option("path", wanted.path, "A folder or a file")->required();
   import_command->add_option("--series", wanted.series,
-                             "The series to read, by its hash in the report or by its UID");
+                             "The series to read, by its number in the report or by its UID");
   import_command->add_option("--choice", wanted.choices,
                              "CODE=OPTION: the answer to a question of the report; may be repeated");
   import_command->add_option("--phase", wanted.phase, "Which phase, from 1: as --choice PHASES=N")
@@ -87,6 +87,11 @@ int run(int argc, char** argv) {
   replay_command->add_option("file", file, "A session file")->required();
   replay_command->add_option("--case", case_source, "The case, when it was not a phantom");
   replay_command->add_option("--labels", labels, "The label map, when the session had one");
+
+  std::vector<std::string> recordings;
+  auto* recordings_command = with_json(app.add_subcommand(
+      "recordings", "What each of these recordings holds; with --json a line of JSON for each"));
+  recordings_command->add_option("file", recordings, "Session files")->required();
 
   auto* explain_command =
       with_json(app.add_subcommand("explain", "What a scene instantiates and what it costs"));
@@ -326,7 +331,7 @@ int run(int argc, char** argv) {
         misnamed ? "There is no command '" + *word + "'" : std::string(error.what());
     if (!wantsJson(argc, argv)) {
       if (!misnamed) return app.exit(error) == 0 ? 0 : 1;
-      std::fprintf(stderr, "%s\nRun with --help for more information.\n", what.c_str());
+      sayError("%s\nRun with --help for more information.\n", what.c_str());
       return 1;
     }
     return printError("usage", {"BAD_ARGUMENT", what, "the command line", "See --help"}, true);
@@ -350,6 +355,7 @@ int run(int argc, char** argv) {
   if (*commission_command) return commissionCommand(commissioning, policy, json, progress);
   if (*share_storage_command) return shareStorageCommand(file, json);
   if (*replay_command) return replayCommand(file, case_source, labels, json, progress);
+  if (*recordings_command) return recordingsCommand(recordings, json, progress);
   if (*grow_command) return growCommand(growing, json, progress);
   if (*import_structures_command) return importStructuresCommand(structures, json, progress);
   if (*export_structures_command) return exportStructuresCommand(exported, json, progress);
@@ -375,6 +381,7 @@ int run(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  trephine::keepMemoryPrivate();
   trephine::cancelOnSignals(progress);
   return trephine::guarded("trephine-lab", trephine::wantsJson(argc, argv),
                            [&] { return run(argc, argv); });

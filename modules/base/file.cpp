@@ -1,6 +1,7 @@
 #include "base/file.h"
 
 #include <fcntl.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -10,6 +11,7 @@
 
 #include "base/descriptor.h"
 #include "base/shared_folder.h"
+#include "base/stretched_hash.h"
 
 namespace trephine {
 
@@ -23,8 +25,10 @@ fs::path temporaryFor(const fs::path& target) {
   std::string extension = name.extension().string();
   if (extension == ".gz") extension = name.stem().extension().string() + extension;
   fs::path temporary = target;
+  // Nobody can lay a link where it will be.
+  const Result<std::string> random = randomHex(4);
   return temporary.replace_filename("." + name.string() + ".part" + std::to_string(::getpid()) +
-                                    extension);
+                                    (random ? "-" + *random : "") + extension);
 }
 
 // Makes the data durable, and reports the errors that a full disk delays until now.
@@ -98,6 +102,40 @@ Status checkNewFile(const fs::path& file, const std::string& option) {
   }
   fs::remove(temporary, ec);
   return {};
+}
+
+Result<std::string> readWholeFile(const fs::path& file, std::size_t most_bytes) {
+  const char* const check = "Check the name and that you may read it";
+  const auto failed = [&](const char* code, int error) {
+    return Error{code, std::string("The file cannot be read: ") + std::strerror(error),
+                 file.string(), check};
+  };
+  // Opening a pipe would wait for its writer without O_NONBLOCK, which a regular file ignores.
+  const Descriptor opened(::open(file.c_str(), O_RDONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC));
+  if (!opened.ok()) {
+    return failed(errno == ENOENT || errno == ENOTDIR ? "MISSING_FILE" : "CANNOT_READ", errno);
+  }
+  struct stat of {};
+  if (::fstat(opened.get(), &of) != 0) return failed("CANNOT_READ", errno);
+  if (!S_ISREG(of.st_mode)) {
+    return Error{"NO_FILE", "This is no file but a folder, a pipe or a device", file.string(),
+                 check};
+  }
+  const Error too_large{"TOO_LARGE",
+                        "The file is larger than " + std::to_string(most_bytes >> 20) + " MB",
+                        file.string(), "Choose another file"};
+  if (std::uintmax_t(of.st_size) > most_bytes) return too_large;
+  std::string text(std::size_t(of.st_size), '\0');
+  std::size_t got = 0;
+  while (got < text.size()) {
+    const ssize_t part = ::read(opened.get(), text.data() + got, text.size() - got);
+    if (part < 0 && errno == EINTR) continue;
+    if (part < 0) return failed("CANNOT_READ", errno);
+    if (part == 0) break;  // it became shorter meanwhile
+    got += std::size_t(part);
+  }
+  text.resize(got);
+  return text;
 }
 
 Status writeTextFile(const fs::path& target, std::string_view text) {

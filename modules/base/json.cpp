@@ -1,17 +1,19 @@
 #include "base/json.h"
 
 #include <algorithm>
-#include <fstream>
 #include <limits>
 #include <set>
-#include <stdexcept>
+
+#include "base/file.h"
 
 namespace trephine {
 
 namespace {
 
-constexpr std::size_t kMaxFileBytes = std::size_t{64} << 20;
 constexpr std::size_t kMaxDepth = 64;  // printing a value recurses, so nesting has to end
+// A field is found by a search through its object, and a value takes up to 80 bytes of memory.
+constexpr std::size_t kMaxMembers = 1024;
+constexpr std::size_t kMaxValues = 4000000;
 constexpr std::size_t kMaxText = 4096;  // bytes; the longest path
 constexpr Range kDirectionLength{1e-3, 1e3};
 
@@ -26,107 +28,167 @@ std::string shorten(std::string text, std::size_t length) {
   return text.substr(0, length) + "...";
 }
 
+// Whether a value has more text or parts than are worth writing for its first letters.
+bool isLong(const Json& value, std::size_t& left) {
+  if (left == 0) return true;
+  --left;
+  if (value.is_string()) {
+    const std::size_t size = value.get_ref<const std::string&>().size();
+    left -= std::min(left, size / 64);
+  }
+  if (!value.is_structured()) return left == 0;
+  for (const Json& part : value) {
+    if (isLong(part, left)) return true;
+  }
+  return false;
+}
+
 std::string shorten(const Json& value) {
+  std::size_t most = 1000;
+  if (isLong(value, most)) {
+    return value.is_array() ? "a list of " + std::to_string(value.size())
+           : value.is_object() ? "an object of " + std::to_string(value.size())
+                               : "a long text";
+  }
   std::string text = value.dump(-1, ' ', false, Json::error_handler_t::replace);
   return shorten(std::move(text), 60);
 }
 
-// Follows the parser, so that what it refuses can be named by its field, and refuses what it lets
-// pass: a field given twice and nesting without end.
-class ParseWatch {
+// Makes the value out of what the parser reads. The library's own maker searches all members of an
+// object for each new one, and lets pass a field given twice.
+class ValueMaker : public Json::json_sax_t {
  public:
-  bool operator()(Json::parse_event_t event, const Json& parsed) {
-    using Event = Json::parse_event_t;
-    switch (event) {
-      case Event::object_start:
-      case Event::array_start:
-        if (levels_.size() >= kMaxDepth) {
-          throw std::length_error("it is nested deeper than " + std::to_string(kMaxDepth));
-        }
-        levels_.push_back({event == Event::array_start, 0, {}, {}});
-        break;
-      case Event::key:
-        levels_.back().key = parsed.get<std::string>();
-        if (!levels_.back().keys.insert(levels_.back().key).second) {
-          throw std::invalid_argument("a field is given twice");
-        }
-        break;
-      case Event::object_end:
-      case Event::array_end:
-        levels_.pop_back();
-        [[fallthrough]];
-      case Event::value:
-        if (!levels_.empty()) ++levels_.back().index;
-        break;
-    }
-    return true;
+  explicit ValueMaker(const Progress& progress) : progress_(progress) {}
+
+  bool null() override { return add(nullptr); }
+  bool boolean(bool value) override { return add(value); }
+  bool number_integer(std::int64_t value) override { return add(value); }
+  bool number_unsigned(std::uint64_t value) override { return add(value); }
+  bool number_float(double value, const std::string&) override { return add(value); }
+  bool string(std::string& value) override { return add(std::move(value)); }
+  bool binary(Json::binary_t&) override { return refuse("it is binary"); }
+  bool start_object(std::size_t) override { return open(Json::object()); }
+  bool start_array(std::size_t) override { return open(Json::array()); }
+  bool end_object() override { return close(); }
+  bool end_array() override { return close(); }
+  bool key(std::string& name) override {
+    Level& level = levels_.back();
+    level.key = std::move(name);
+    if (!level.keys.insert(level.key).second) return refuse("a field is given twice");
+    if (level.keys.size() <= kMaxMembers) return true;
+    return refuse("an object has more than " + std::to_string(kMaxMembers) + " fields");
+  }
+  bool parse_error(std::size_t, const std::string&, const Json::exception& e) override {
+    constexpr int kOutOfRange = 406;  // a number that no double holds
+    const std::string said = e.what();
+    // The library's message holds its own tag, then line and column.
+    const auto line = said.find("line ");
+    const auto words = said.find("] ");
+    if (e.id == kOutOfRange && words != said.npos) return refuse(said.substr(words + 2));
+    reason_ = line == said.npos ? said : said.substr(line);
+    return false;
   }
 
-  std::string field() const {
-    std::string text;
-    for (const Level& level : levels_) {
-      if (level.is_array) {
-        text += "[" + std::to_string(level.index) + "]";
-      } else if (!level.key.empty()) {
-        text += (text.empty() ? "" : ".") + level.key;
-      }
-    }
-    return shorten(std::move(text), 120);
-  }
+  Json take() { return std::move(value_); }
+  bool wasCancelled() const { return cancelled_; }
+  const std::string& reason() const { return reason_; }
+  // Where a value was refused; empty for what is no JSON.
+  const std::string& field() const { return field_; }
 
  private:
   struct Level {
-    bool is_array;
-    std::size_t index;
-    std::string key;
-    std::set<std::string> keys;
+    Json* value;
+    std::string key{};
+    std::set<std::string> keys{};
   };
+
+  bool refuse(const std::string& why) {
+    reason_ = why;
+    for (const Level& level : levels_) {
+      if (level.value->is_array()) {
+        // What is open stands in its list already, what is refused does not.
+        const bool open = &level != &levels_.back();
+        field_ += "[" + std::to_string(level.value->size() - (open ? 1 : 0)) + "]";
+      } else if (!level.key.empty()) {
+        field_ += (field_.empty() ? "" : ".") + level.key;
+      }
+    }
+    field_ = shorten(std::move(field_), 120);
+    return false;
+  }
+  Json* place(Json value) {
+    if (levels_.empty()) {
+      value_ = std::move(value);
+      return &value_;
+    }
+    Level& level = levels_.back();
+    if (level.value->is_array()) {
+      level.value->push_back(std::move(value));
+      return &level.value->back();
+    }
+    auto& members = level.value->get_ref<Json::object_t&>();
+    // The vector's own, which does not search: no two have one name.
+    members.Json::object_t::Container::emplace_back(level.key, std::move(value));
+    return &members.back().second;
+  }
+  // Null where it is refused.
+  Json* put(Json value) {
+    constexpr std::size_t kLooks = 4096;  // values from one look at `cancelled` to the next
+    if (++values_ > kMaxValues) {
+      refuse("it holds more than " + std::to_string(kMaxValues) + " values");
+      return nullptr;
+    }
+    cancelled_ = values_ % kLooks == 0 && progress_.cancelled();
+    return cancelled_ ? nullptr : place(std::move(value));
+  }
+  bool add(Json value) { return put(std::move(value)) != nullptr; }
+  bool open(Json empty) {
+    if (levels_.size() >= kMaxDepth) {
+      return refuse("it is nested deeper than " + std::to_string(kMaxDepth));
+    }
+    Json* value = put(std::move(empty));
+    if (value) levels_.push_back({value});
+    return value != nullptr;
+  }
+  bool close() {
+    levels_.pop_back();
+    return true;
+  }
+
+  const Progress& progress_;
+  Json value_;
   std::vector<Level> levels_;
+  std::size_t values_ = 0;
+  bool cancelled_ = false;
+  std::string reason_, field_;
 };
 
 }  // namespace
 
-Result<Json> parseJson(std::string_view text, const std::string& file) {
-  ParseWatch watch;
+Result<Json> parseJson(std::string_view text, const std::string& file, const Progress& progress) {
+  ValueMaker maker(progress);
   std::string reason;
-  std::string where = file;
   try {
-    return Json::parse(
-        text, [&](int, Json::parse_event_t event, Json& parsed) { return watch(event, parsed); });
-  } catch (const Json::parse_error& e) {
+    if (Json::sax_parse(text, &maker)) return maker.take();
+    if (maker.wasCancelled()) return Error{"CANCELLED", "Reading was cancelled", file, ""};
+    reason = maker.reason();
+  } catch (const std::exception& e) {  // no memory
     reason = e.what();
-    // nlohmann's message holds line and column after its own tag.
-    if (auto at = reason.find("line "); at != std::string::npos) reason = reason.substr(at);
-  } catch (const std::exception& e) {  // a number out of range, or what the watch refuses
-    reason = e.what();
-    if (auto at = reason.find("] "); at != std::string::npos) reason = reason.substr(at + 2);
-    where += ": " + watch.field();
   }
-  return Error{"BAD_JSON", "The file is not valid JSON: " + shorten(std::move(reason), 200), where,
+  return Error{"BAD_JSON", "The file is not valid JSON: " + shorten(std::move(reason), 200),
+               file + (maker.field().empty() ? "" : ": " + maker.field()),
                "Correct it at that place"};
 }
 
-Result<Json> readJsonFile(const std::filesystem::path& file) {
-  std::error_code ec;
-  const auto missing = [&](const char* what) {
-    return Error{"MISSING_FILE", what, file.string(), "Check the name and that you may read it"};
-  };
-  // Asked before it is opened: opening a pipe waits for its writer.
-  const auto status = std::filesystem::status(file, ec);
-  if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status)) {
-    return missing("This is no file but a folder, a pipe or a device");
-  }
-  const std::uintmax_t size = std::filesystem::file_size(file, ec);
-  std::ifstream in(file, std::ios::binary);
-  if (ec || !in) return missing("The file cannot be read");
-  if (size > kMaxFileBytes) {
-    return Error{"BAD_JSON", "The file is larger than 64 MB, which none of our JSON files is",
-                 file.string(), "Choose another file"};
-  }
-  std::string text(std::size_t(size), '\0');
-  in.read(text.data(), std::streamsize(text.size()));
-  text.resize(std::size_t(in.gcount()));
-  return parseJson(text, file.string());
+Result<Json> readJsonFile(const std::filesystem::path& file, const Progress& progress,
+                          std::size_t most_bytes) {
+  Result<std::string> text = readWholeFile(file, most_bytes);
+  if (text) return parseJson(*text, file.string(), progress);
+  Error error = text.error();
+  const bool too_large = error.code == "TOO_LARGE";
+  error.code = too_large ? "BAD_JSON" : "MISSING_FILE";
+  if (too_large) error.what += ", which none of our files of this kind is";
+  return error;
 }
 
 JsonReader::JsonReader(const Json& object, std::string file, std::string field)

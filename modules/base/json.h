@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "base/math.h"
+#include "base/progress.h"
 #include "base/range.h"
 #include "base/result.h"
 
@@ -18,12 +19,19 @@ namespace trephine {
 
 using Json = nlohmann::ordered_json;
 
-// Refuses what is not JSON, a number that no double holds (1e999), a field given twice in one
-// object, nesting deeper than 64 and a file of over 64 MB.
-Result<Json> parseJson(std::string_view text, const std::string& file);
-// Errors: MISSING_FILE, also for what is no regular file (a pipe could keep its reader waiting for
-// ever), and those of parseJson.
-Result<Json> readJsonFile(const std::filesystem::path& file);
+// Takes a time in proportion to the text. Refuses what is not JSON, a number that no double holds
+// (1e999), a field given twice in one object, more than 1024 fields in one object, more than
+// 4,000,000 values, and nesting deeper than 64. Errors: BAD_JSON, CANCELLED.
+Result<Json> parseJson(std::string_view text, const std::string& file,
+                       const Progress& progress = Progress());
+// A file of at most 64 MB: no file of ours is larger. What is read on the window's thread has at most
+// kMostWrittenBytes. Errors: MISSING_FILE, also for what is no regular file (a pipe could keep its reader
+// waiting for ever), BAD_JSON for a larger one, and those of parseJson.
+constexpr std::size_t kMostJsonBytes = std::size_t{64} << 20;
+// Of a scene, a tool, a tissue set: what a person writes. Read in 0.1 s.
+constexpr std::size_t kMostWrittenBytes = std::size_t{4} << 20;
+Result<Json> readJsonFile(const std::filesystem::path& file, const Progress& progress = Progress(),
+                          std::size_t most_bytes = kMostJsonBytes);
 
 // Reads one JSON object field by field. The first problem is kept and every later read returns a
 // default, so that a caller reads all fields straight through and asks `finish()` once.

@@ -2,6 +2,7 @@
 
 #include <openssl/crypto.h>
 #include <openssl/evp.h>
+#include <openssl/hmac.h>
 #include <openssl/rand.h>
 
 #include <vector>
@@ -17,6 +18,18 @@ std::string stretchedHash(std::string_view text, std::string_view salt, int iter
                         reinterpret_cast<const unsigned char*>(salt.data()), int(salt.size()),
                         iterations, EVP_sha256(), bytes, digest.data()) == 1;
   return made ? hexOf(digest) : std::string();
+}
+
+std::string keyedHash(std::string_view text, std::string_view key) {
+  constexpr std::size_t kKept = 16;
+  std::vector<std::uint8_t> digest(EVP_MAX_MD_SIZE, 0);
+  unsigned size = 0;
+  const bool made = HMAC(EVP_sha256(), key.data(), int(key.size()),
+                         reinterpret_cast<const unsigned char*>(text.data()), text.size(),
+                         digest.data(), &size) != nullptr;
+  if (!made || size < kKept) return {};
+  digest.resize(kKept);
+  return hexOf(digest);
 }
 
 bool sameSecret(std::string_view a, std::string_view b) {

@@ -1,5 +1,9 @@
 #include "base/system.h"
 
+#include <sys/prctl.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
 #include <cstdlib>
 
 namespace trephine {
@@ -74,8 +78,28 @@ std::optional<std::filesystem::path> stateFolder() {
 }
 
 void keepToOwnFolders() {
-  ::unsetenv("TREPHINE_RESOURCES");
-  ::unsetenv("TREPHINE_PLUGINS");
+  for (const char* name :
+       {"TREPHINE_RESOURCES", "TREPHINE_PLUGINS",
+        "HDF5_PLUGIN_PATH", "HDF5_PLUGIN_PRELOAD", "HDF5_DRIVER", "HDF5_VOL_CONNECTOR",
+        "QT_PLUGIN_PATH", "QT_QPA_PLATFORM_PLUGIN_PATH", "QT_QPA_PLATFORMTHEME",
+        "QT_QPA_GENERIC_PLUGINS", "QT_STYLE_OVERRIDE", "QT_LOGGING_CONF",
+        "XR_RUNTIME_JSON", "XR_API_LAYER_PATH", "XR_ENABLE_API_LAYERS", "XR_CONFIG_DIRS",
+        "OPENSSL_CONF", "OPENSSL_MODULES", "OPENSSL_ENGINES", "DCMDICTPATH",
+        "LIBGL_DRIVERS_PATH", "LIBGL_DRIVERS_DIR", "GBM_BACKENDS_PATH", "GALLIUM_PIPE_SEARCH_DIR",
+        "__EGL_VENDOR_LIBRARY_FILENAMES", "__EGL_VENDOR_LIBRARY_DIRS",
+        "VK_ICD_FILENAMES", "VK_DRIVER_FILES", "VK_ADD_DRIVER_FILES", "VK_LAYER_PATH",
+        "VK_ADD_LAYER_PATH", "VK_INSTANCE_LAYERS",
+        "GCONV_PATH", "LOCPATH", "GTK_MODULES", "GTK_PATH", "GIO_EXTRA_MODULES",
+        "GIO_MODULE_DIR"}) {
+    ::unsetenv(name);
+  }
+}
+
+void keepMemoryPrivate() {
+  // A limit of 0 alone does not stop a core_pattern that is a pipe.
+  const rlimit none{0, 0};
+  ::setrlimit(RLIMIT_CORE, &none);
+  ::prctl(PR_SET_DUMPABLE, 0);
 }
 
 }  // namespace trephine

@@ -27,8 +27,16 @@ std::filesystem::path labProgram();
 std::optional<std::filesystem::path> configFolder();
 std::optional<std::filesystem::path> dataFolder();
 std::optional<std::filesystem::path> stateFolder();
-// From now on both are where they were installed: takes the two out of this process's
-// environment, and so out of that of what it starts. Before there are threads.
+// From now on this process, and what it starts, loads code and settings of devices from where they
+// were installed: takes out of the environment TREPHINE_RESOURCES and TREPHINE_PLUGINS, and what
+// names other plugins, drivers, layers or tables to Qt, HDF5, OpenXR, OpenSSL, DCMTK, OpenGL and the
+// C library. LD_PRELOAD and its like have acted before any program runs: only what starts it can
+// keep them out. Before there are threads.
 void keepToOwnFolders();
+
+// The memory of this process holds patients' names and voxels: no core of it is written, by no way
+// that the system has, and no other process of the user may read it. A child that runs another
+// program begins anew. Before anything is read.
+void keepMemoryPrivate();
 
 }  // namespace trephine

@@ -1,6 +1,7 @@
 #include "base/utf8.h"
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <string_view>
 
@@ -28,6 +29,58 @@ std::size_t sequenceLength(std::string_view text) {
   return length;
 }
 
+// Of a sequence of that length.
+char32_t codePoint(std::string_view text, std::size_t length) {
+  constexpr std::array<unsigned char, 5> kFirst{0, 0x7F, 0x1F, 0x0F, 0x07};
+  char32_t code = static_cast<unsigned char>(text[0]) & kFirst[length];
+  for (std::size_t i = 1; i < length; ++i) {
+    code = code << 6 | (static_cast<unsigned char>(text[i]) & 0x3F);
+  }
+  return code;
+}
+
+struct CodeRange {
+  char32_t first, last;
+};
+
+// What has no width of its own: it would make two names look alike.
+constexpr CodeRange kUnseen[] = {
+    {0xAD, 0xAD},     {0x34F, 0x34F},   {0x61C, 0x61C},   {0x115F, 0x1160}, {0x17B4, 0x17B5},
+    {0x180B, 0x180E}, {0x200B, 0x200F}, {0x2060, 0x2065}, {0x206A, 0x206F}, {0x3164, 0x3164},
+    {0xFE00, 0xFE0F}, {0xFEFF, 0xFEFF}, {0xFFA0, 0xFFA0}, {0xFFF9, 0xFFFB}, {0xE0000, 0xE0FFF}};
+
+bool isUnseen(char32_t code) {
+  return std::ranges::any_of(
+      kUnseen, [code](const CodeRange& r) { return code >= r.first && code <= r.last; });
+}
+
+// Of C0 and C1, which a terminal obeys; what ends a line; what turns the direction of all that
+// follows, which is no part of a text's own line.
+bool isControl(char32_t code) {
+  return code < 0x20 || (code >= 0x7F && code < 0xA0) || (code >= 0x2028 && code <= 0x202E) ||
+         (code >= 0x2066 && code <= 0x2069);
+}
+
+std::string cleaned(std::string_view text, bool keep_lines) {
+  std::string clean;
+  while (!text.empty()) {
+    const std::size_t length = sequenceLength(text);
+    if (length == 0) {
+      clean += kReplacement;
+      text.remove_prefix(1);
+      continue;
+    }
+    const char32_t code = codePoint(text, length);
+    if (isControl(code) && !(keep_lines && (code == '\n' || code == '\t'))) {
+      clean += ' ';
+    } else if (!isUnseen(code)) {
+      clean += text.substr(0, length);
+    }
+    text.remove_prefix(length);
+  }
+  return clean;
+}
+
 }  // namespace
 
 bool isUtf8(std::string_view text) {
@@ -45,28 +98,12 @@ std::size_t charactersOf(std::string_view text) {
 }
 
 std::string cleanUtf8(std::string_view text) {
-  std::string clean;
-  while (!text.empty()) {
-    const std::size_t length = sequenceLength(text);
-    const auto first = static_cast<unsigned char>(text.front());
-    // What turns the direction of all that follows is no part of a text's own line.
-    const bool turns =
-        length == 3 && ((text.starts_with("\xE2\x80") && text[2] >= '\xAA' && text[2] <= '\xAE') ||
-                        (text.starts_with("\xE2\x81") && text[2] >= '\xA6' && text[2] <= '\xA9'));
-    if (turns) {
-      clean += ' ';
-    } else if (length == 0) {
-      clean += kReplacement;
-    } else if (first < 0x20 || first == 0x7F) {
-      clean += ' ';
-    } else {
-      clean += text.substr(0, length);
-    }
-    text.remove_prefix(std::max<std::size_t>(length, 1));
-  }
+  const std::string clean = cleaned(text, false);
   const std::size_t begin = clean.find_first_not_of(' '), end = clean.find_last_not_of(' ');
   return begin == clean.npos ? "" : clean.substr(begin, end + 1 - begin);
 }
+
+std::string cleanLines(std::string_view text) { return cleaned(text, true); }
 
 std::string cutUtf8(const std::string& text, std::size_t most_bytes) {
   if (text.size() <= most_bytes) return text;

@@ -12,9 +12,12 @@ bool isUtf8(std::string_view text);
 // Characters of valid UTF-8.
 std::size_t charactersOf(std::string_view text);
 
-// `text` as valid UTF-8 in one line: bytes that are none become U+FFFD, control characters a space,
-// and spaces around it go.
+// `text` as valid UTF-8 in one line: bytes that are none become U+FFFD, control characters (C0, C1)
+// a space, characters without a width go, and so do spaces around it.
 std::string cleanUtf8(std::string_view text);
+
+// The same of several lines: newlines, tabs and spaces stay. What a terminal gets.
+std::string cleanLines(std::string_view text);
 
 // Its first characters, in at most so many bytes.
 std::string cutUtf8(const std::string& text, std::size_t most_bytes);

@@ -8,6 +8,7 @@
 #include <set>
 #include <utility>
 
+#include "base/utf8.h"
 #include "device/arm_numbers.h"
 #include "device/library_file.h"
 
@@ -61,7 +62,15 @@ std::string lastSentence(const TrephineDeviceApi& api, TrephineDevice* handle) {
   while (!sentence.empty() && (sentence.back() == '.' || sentence.back() == '\n')) {
     sentence.pop_back();
   }
+  sentence = cleanUtf8(sentence);
   return sentence.empty() ? "The plugin gave no reason" : sentence;
+}
+
+// What a device says of itself may be any bytes.
+template <std::size_t N>
+void clean(char (&text)[N]) {
+  const std::string plain = cutUtf8(cleanUtf8({text, strnlen(text, N - 1)}), N - 1);
+  std::memcpy(text, plain.c_str(), plain.size() + 1);
 }
 
 template <class T>
@@ -146,9 +155,9 @@ std::vector<TrephineArmInfo> DevicePlugin::enumerate() const {
   // An arm may have come or gone in between.
   infos.resize(std::min(api_->enumerate(infos.data(), count), count));
   for (TrephineArmInfo& info : infos) {
-    info.bus_path[sizeof(info.bus_path) - 1] = '\0';
-    info.serial[sizeof(info.serial) - 1] = '\0';
-    info.model[sizeof(info.model) - 1] = '\0';
+    clean(info.bus_path);
+    clean(info.serial);
+    clean(info.model);
   }
   return infos;
 }

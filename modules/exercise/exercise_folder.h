@@ -61,18 +61,21 @@ struct ExerciseCheck {
   bool verified() const { return missing.empty() && changed.empty(); }
 };
 // Errors: MISSING_FILE (no exercise.json), BAD_JSON, BAD_FIELD (a newer version; a part outside of
-// the folder), CANCELLED.
+// the folder or listed twice), CANCELLED.
 Result<ExerciseCheck> checkExercise(const std::filesystem::path& folder,
                                     const Progress& progress = Progress());
 
 struct ImportedExercise {
   std::filesystem::path scene;  // in the storage, for `run`; empty where it was not verified
   ExerciseCheck check;
+  // Its scene named devices and how they are set, which are the workstation's: they were left out.
+  bool left_devices_out = false;
 };
-// Copies a verified folder to `storage`/exercises, whole or not at all; what is there already in
-// the same words is taken as it is. Nothing is written of one that is not verified. Errors: those
-// of checkExercise and readScene; BAD_FIELD where a file of it names one outside of the folder;
-// CANNOT_WRITE; CANCELLED.
+// Copies a verified folder to `storage`/exercises, whole or not at all, without devices; what is
+// there already in the same words is taken as it is. Case, structures and script are read to their
+// end from the copy, which holds nothing but the parts. Nothing is kept of one that is not verified
+// or cannot be read. Errors: those of checkExercise, readScene, readCase and withLabels; BAD_FIELD
+// where a file of it names one outside of the folder; CANNOT_WRITE; CANCELLED.
 Result<ImportedExercise> importExercise(const std::filesystem::path& folder,
                                         const std::filesystem::path& storage,
                                         const Progress& progress = Progress());

@@ -4,11 +4,14 @@
 
 #include "base/file.h"
 #include "base/json.h"
+#include "base/utf8.h"
 #include "exercise/exercise_folder.h"
 #include "exercise/exercise_parts.h"
 #include "exercise/named_files.h"
 #include "scene/scene.h"
+#include "session/case.h"
 #include "session/operator_script.h"
+#include "volume/phantom.h"
 
 namespace trephine {
 
@@ -30,35 +33,90 @@ Error namesOutside(const std::string& file, const std::string& name) {
           "Export the exercise anew"};
 }
 
-// Everything that the scene and its files name is among the parts.
-Status namesPartsAlone(const fs::path& folder, const ExerciseCheck& check) {
-  std::set<fs::path> parts;
+// Everything that the scene and its files name is among the parts. Each file is read once, however
+// often it is named.
+Status namesPartsAlone(const fs::path& folder, const ExerciseCheck& check, Json& scene,
+                       const Progress& progress) {
+  std::set<fs::path> parts, read;
   for (const ExercisePart& part : check.parts) parts.insert(part.file);
   const auto isPart = [&](const std::string& by, const std::string& name) {
     const fs::path file = (fs::path(by).parent_path() / name).lexically_normal();
     return parts.contains(file) ? Status() : Status(namesOutside(by, name));
   };
-  Result<Json> scene = readJsonFile(folder / check.scene);
-  if (!scene) return scene.error();
-  return eachNamedFile(*scene, [&](NamedFile kind, const std::string&, Json& name) -> Status {
+  return eachNamedFile(scene, [&](NamedFile kind, const std::string&, Json& name) -> Status {
     const std::string file = name.get<std::string>();
+    if (progress.cancelled()) return Error{"CANCELLED", "It was cancelled", "", ""};
     if (Status is = isPart(check.scene, file); !is) return is;
     if (kind != NamedFile::tissues && kind != NamedFile::tool) return {};
     const fs::path path = (fs::path(check.scene).parent_path() / file).lexically_normal();
-    Result<Json> json = readJsonFile(folder / path);
+    if (!read.insert(path).second) return {};
+    Result<Json> json = readJsonFile(folder / path, progress, kMostWrittenBytes);
     if (!json) return json.error();
     const Json* inner = kind == NamedFile::tool ? meshOf(*json) : elsewhereOf(*json);
     return inner ? isPart(path.string(), inner->get<std::string>()) : Status();
   });
 }
 
+// Reads all that the exercise of a folder consists of, to its end: what cannot be read here cannot
+// be opened later.
+Status readWhole(const fs::path& scene_file, const Progress& progress) {
+  const Result<Scene> scene = readScene(scene_file);
+  if (!scene) return scene.error();
+  if (!scene->operator_file.empty()) {
+    const Result<OperatorScript> script = readOperatorScript(scene->operator_file, *scene);
+    if (!script) return script.error();
+  }
+  if (scene->case_source.empty()) return {};
+  if (phantomNamed(scene->case_source) && scene->labels_file.empty()) return {};
+  const Result<Case> of = readCase(scene->case_source, Progress(progress, 0.0, 0.8));
+  if (!of) return of.error();
+  if (scene->labels_file.empty()) return {};
+  const Result<Case> labelled = withLabels(*of, scene->labels_file, Progress(progress, 0.8, 1.0));
+  return labelled ? Status() : Status(labelled.error());
+}
+
+// Takes out of a scene what the workstation chooses itself, as export does.
+struct LeftOut {
+  bool any = false;
+  std::set<fs::path> files;  // that described devices, and are named by nothing else
+};
+LeftOut leaveDevicesOut(Json& scene) {
+  LeftOut out;
+  (void)eachNamedFile(scene, [&](NamedFile kind, const std::string&, Json& name) {
+    if (kind == NamedFile::device) {
+      out.files.insert(fs::path(name.get<std::string>()).lexically_normal());
+    }
+    return Status();
+  });
+  const auto arms = scene.find("arms");
+  if (arms == scene.end() || !arms->is_array()) return out;
+  for (Json& arm : *arms) out.any = (arm.is_object() && arm.erase("device") > 0) || out.any;
+  (void)eachNamedFile(scene, [&](NamedFile, const std::string&, Json& name) {
+    out.files.erase(fs::path(name.get<std::string>()).lexically_normal());
+    return Status();
+  });
+  std::erase_if(out.files, [](const fs::path& file) { return !staysWithin(file); });
+  return out;
+}
+
 // The same exercise, in the same words, from an earlier import.
-bool isThere(const fs::path& target, const fs::path& folder, const Progress& progress) {
+bool isThere(const fs::path& target, const fs::path& part, const Progress& progress) {
   const Result<Json> here = readJsonFile(target / kListFile),
-                     there = readJsonFile(folder / kListFile);
+                     there = readJsonFile(part / kListFile);
   if (!here || !there || *here != *there) return false;
   const Result<ExerciseCheck> check = checkExercise(target, progress);
   return check && check->verified();
+}
+
+// An error about a part names the part, not the folder that the import makes.
+Error inFolder(Error error, const fs::path& part) {
+  const std::string folder = part.string() + '/';
+  for (std::string* text : {&error.what, &error.where, &error.next}) {
+    for (std::size_t at; (at = text->find(folder)) != std::string::npos;) {
+      text->erase(at, folder.size());
+    }
+  }
+  return error;
 }
 
 // The n-th folder of that name, from 1 on.
@@ -80,6 +138,7 @@ Result<ExerciseCheck> checkExercise(const fs::path& folder, const Progress& prog
   reader.format("trephine.exercise", 1);
   check.scene = reader.text("scene");
   bool scene_listed = false;
+  std::set<std::string> listed;
   for (JsonReader& item : reader.objects("parts", kMostParts)) {
     ExercisePart part;
     part.file = item.text("file");
@@ -87,6 +146,10 @@ Result<ExerciseCheck> checkExercise(const fs::path& folder, const Progress& prog
     part.bytes = std::uint64_t(item.integer("bytes", kBytes));
     if (item.ok() && !staysWithin(part.file)) {
       item.fail("file", "'" + part.file + "' lies outside of the folder");
+    } else if (item.ok() && part.file != cleanUtf8(part.file)) {
+      item.fail("file", "'" + cleanUtf8(part.file) + "' has letters that nobody sees");
+    } else if (item.ok() && !listed.insert(part.file).second) {
+      item.fail("file", "'" + part.file + "' is listed twice");
     }
     scene_listed = scene_listed || part.file == check.scene;
     check.parts.push_back(std::move(part));
@@ -101,7 +164,7 @@ Result<ExerciseCheck> checkExercise(const fs::path& folder, const Progress& prog
   for (const ExercisePart& part : check.parts) bytes += part.bytes;
   for (const ExercisePart& part : check.parts) {
     progress.at(double(done) / double(std::max<std::uint64_t>(1, bytes)), "Checking the exercise");
-    const Result<ExercisePart> found = partOf(folder, part.file, progress);
+    const Result<ExercisePart> found = partOf(folder, part.file, progress, part.bytes);
     done += part.bytes;
     if (!found && found.error().code == "CANCELLED") return found.error();
     if (!found && found.error().code == "MISSING_FILE") {
@@ -115,45 +178,61 @@ Result<ExerciseCheck> checkExercise(const fs::path& folder, const Progress& prog
 
 Result<ImportedExercise> importExercise(const fs::path& folder, const fs::path& storage,
                                         const Progress& progress) {
-  Result<ExerciseCheck> check = checkExercise(folder, Progress(progress, 0.0, 0.4));
+  Result<ExerciseCheck> check = checkExercise(folder, Progress(progress, 0.0, 0.3));
   if (!check) return check.error();
-  ImportedExercise imported{{}, *std::move(check)};
+  ImportedExercise imported{{}, *std::move(check), false};
   if (!imported.check.verified()) return imported;
-  if (Status names = namesPartsAlone(folder, imported.check); !names) return names.error();
-  const Result<Scene> scene = readScene(folder / imported.check.scene);
+  Result<Json> scene =
+      readJsonFile(folder / imported.check.scene, progress, kMostWrittenBytes);
   if (!scene) return scene.error();
-  if (!scene->operator_file.empty()) {
-    const Result<OperatorScript> script = readOperatorScript(scene->operator_file, *scene);
-    if (!script) return script.error();
+  const LeftOut devices = leaveDevicesOut(*scene);
+  imported.left_devices_out = devices.any;
+  if (Status names = namesPartsAlone(folder, imported.check, *scene, progress); !names) {
+    return names.error();
   }
+  const Result<Scene> parsed = parseScene(*scene, folder / imported.check.scene);
+  if (!parsed) return parsed.error();
 
-  const std::string stem = plainName(scene->name, "exercise");
+  const std::string stem = plainName(parsed->name, "exercise");
+  Result<PartFolder> part = PartFolder::make(numbered(storage, stem, 1));
+  if (!part) return part.error();
+  progress.at(0.3, "Copying the exercise");
+  for (const ExercisePart& one : imported.check.parts) {
+    if (progress.cancelled()) return Error{"CANCELLED", "It was cancelled", "", ""};
+    if (Status copied = part->copy(folder / one.file, one.file); !copied) return copied.error();
+  }
+  if (Status copied = part->copy(folder / kListFile, kListFile); !copied) return copied.error();
+  // The stick may have gone bad, or changed, on the way.
+  Result<ExerciseCheck> copy = checkExercise(part->path(), Progress(progress, 0.5, 0.7));
+  if (!copy) return copy.error();
+  if (!copy->verified()) return ImportedExercise{{}, *std::move(copy), false};
+  if (imported.left_devices_out) {
+    std::error_code ec;
+    fs::remove(part->path() / kListFile, ec);
+    for (const fs::path& file : devices.files) fs::remove(part->path() / file, ec);
+    const Status written = part->writeText(imported.check.scene, scene->dump(1) + '\n');
+    if (!written) return written.error();
+    const auto listed = part->writeList(imported.check.scene, Progress(progress, 0.7, 0.75));
+    if (!listed) return listed.error();
+  }
+  // In a folder that holds its parts alone: a file beside them is read by nobody.
+  const Status whole =
+      readWhole(part->path() / imported.check.scene, Progress(progress, 0.75, 0.95));
+  if (!whole) return inFolder(whole.error(), part->path());
+
   for (int n = 1;; ++n) {
     const fs::path target = numbered(storage, stem, n);
     std::error_code ec;
     const fs::file_type there = fs::symlink_status(target, ec).type();
     if (there == fs::file_type::none) return writeError(target, ec.value());
+    imported.scene = target / imported.check.scene;
     if (there != fs::file_type::not_found) {
-      if (!isThere(target, folder, Progress(progress, 0.4, 0.5))) continue;
-      imported.scene = target / imported.check.scene;
+      if (!isThere(target, part->path(), Progress(progress, 0.95, 1.0))) continue;
       return imported;
     }
-    Result<PartFolder> part = PartFolder::make(target);
-    if (!part) return part.error();
-    progress.at(0.5, "Copying the exercise");
-    for (const ExercisePart& one : imported.check.parts) {
-      if (progress.cancelled()) return Error{"CANCELLED", "It was cancelled", "", ""};
-      if (Status copied = part->copy(folder / one.file, one.file); !copied) return copied.error();
-    }
-    if (Status copied = part->copy(folder / kListFile, kListFile); !copied) return copied.error();
-    // The stick may have gone bad, or changed, on the way.
-    Result<ExerciseCheck> copy = checkExercise(part->path(), Progress(progress, 0.8, 1.0));
-    if (!copy) return copy.error();
-    if (!copy->verified()) return ImportedExercise{{}, *std::move(copy)};
-    Status done = part->become();
+    Status done = part->becomeAt(target);
     if (!done && fs::exists(target, ec)) continue;  // another import was faster
     if (!done) return done.error();
-    imported.scene = target / imported.check.scene;
     return imported;
   }
 }

@@ -57,7 +57,8 @@ Json toJson(const ExercisePart& part) {
 }
 
 Result<ExercisePart> partOf(const fs::path& folder, const std::string& file,
-                            const Progress& progress) {
+                            const Progress& progress,
+                            std::optional<std::uint64_t> expected_bytes) {
   const fs::path path = folder / file;
   std::error_code ec;
   bool linked = false;  // a folder of it, out of here
@@ -68,6 +69,10 @@ Result<ExercisePart> partOf(const fs::path& folder, const std::string& file,
   if (linked || fs::symlink_status(path, ec).type() != fs::file_type::regular) {
     return Error{"MISSING_FILE", "It is not there, or is no file", file, ""};
   }
+  // Of another size it is another file, whatever it holds.
+  if (expected_bytes && fs::file_size(path, ec) != *expected_bytes) {
+    return Error{"OTHER_SIZE", "It has another size", file, ""};
+  }
   std::ifstream in(path, std::ios::binary);
   Sha256 sha256;
   ExercisePart part{file, "", 0};
@@ -77,6 +82,10 @@ Result<ExercisePart> partOf(const fs::path& folder, const std::string& file,
     in.read(bytes.data(), std::streamsize(bytes.size()));
     sha256.add(bytes.data(), std::size_t(in.gcount()));
     part.bytes += std::uint64_t(in.gcount());
+    if (expected_bytes && part.bytes > *expected_bytes) break;  // it grows meanwhile
+  }
+  if (expected_bytes && part.bytes != *expected_bytes) {
+    return Error{"OTHER_SIZE", "It has another size", file, ""};
   }
   if (!in.eof()) return Error{"UNREADABLE", "It cannot be read", file, ""};
   part.sha256 = sha256.hex();
@@ -271,6 +280,11 @@ Status PartFolder::becomeInstead(const std::set<fs::path>& own) {
   }
   // What was there lies in this part's place now, and goes with it.
   return syncFolder(target_.parent_path());
+}
+
+Status PartFolder::becomeAt(const fs::path& target) {
+  target_ = target;
+  return become();
 }
 
 Status PartFolder::become() {

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <set>
 #include <string>
 #include <string_view>
@@ -24,9 +25,11 @@ std::string plainName(const std::string& text, const std::string& otherwise);
 // CANNOT_WRITE where something is there that is not an empty folder.
 Status checkFreeFolder(const std::filesystem::path& folder);
 
-// Of a regular file; a link is none. Errors: MISSING_FILE, UNREADABLE, CANCELLED.
+// Of a regular file; a link is none. Where `expected_bytes` is given, a file of another size is not
+// read. Errors: MISSING_FILE, OTHER_SIZE, UNREADABLE, CANCELLED.
 Result<ExercisePart> partOf(const std::filesystem::path& folder, const std::string& file,
-                            const Progress& progress);
+                            const Progress& progress,
+                            std::optional<std::uint64_t> expected_bytes = {});
 
 // Beside the folder that it is to be; gone with this unless it became that.
 class PartFolder {
@@ -48,6 +51,8 @@ class PartFolder {
   Result<std::vector<ExercisePart>> writeList(const std::string& scene, const Progress& progress);
   // The folder that it was made for, by one rename. CANNOT_WRITE.
   Status become();
+  // The same at another place in that folder.
+  Status becomeAt(const std::filesystem::path& target);
   // The same in the place of one that is there, which goes: either is whole at any time. What a
   // person has put into it stays: every file but `own`, paths in the folder.
   Status becomeInstead(const std::set<std::filesystem::path>& own);

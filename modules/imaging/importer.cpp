@@ -202,10 +202,13 @@ struct CtFolder::Contents {
   std::vector<Source> sources;  // of report.series
 
   Source* find(const std::string& uid) {
-    const auto it = std::ranges::find_if(report.series, [&](const SeriesReport& series) {
-      return series.uid == uid || seriesHash(series.uid) == uid;
-    });
-    return it == report.series.end() ? nullptr : &sources[std::size_t(it - report.series.begin())];
+    for (std::size_t n = 0; n < report.series.size(); ++n) {
+      if (report.series[n].uid == uid) return &sources[n];
+    }
+    for (std::size_t n = 0; n < report.series.size(); ++n) {
+      if (std::to_string(n + 1) == uid) return &sources[n];
+    }
+    return nullptr;
   }
   // That can be read, or could be with answers.
   bool hasDicomCt() const {

@@ -18,9 +18,9 @@ Error badSource(const std::string& what, const std::string& next) {
 }
 
 bool isOf(const DicomHeader& slice, const SourceIds& ids) {
-  return slice.series_key.empty() && hashOrNone(slice.series_uid) == ids.series &&
-         hashOrNone(slice.study_uid) == ids.study &&
-         hashOrNone(slice.frame_of_reference) == ids.frame_of_reference;
+  return slice.series_key.empty() && ids.standsFor(ids.series, hashOrNone(slice.series_uid)) &&
+         ids.standsFor(ids.study, hashOrNone(slice.study_uid)) &&
+         ids.standsFor(ids.frame_of_reference, hashOrNone(slice.frame_of_reference));
 }
 
 // Whether the slice lies along the grid's own, within half a step of one of them.
@@ -39,6 +39,10 @@ bool liesIn(const DicomHeader& slice, const GridGeometry& g) {
 Result<RawSourceUids> sourceUids(const std::filesystem::path& source, const Provenance& of,
                                  const GridGeometry& on, const Progress& progress) {
   const SourceIds& ids = of.source_ids;
+  if (ids.unreadable) {
+    return badSource("Which CT the case is of cannot be checked: this account may not read it",
+                     "Ask whoever imported the case");
+  }
   if (of.source != "DICOM" || ids.series.empty() || ids.study.empty() ||
       ids.frame_of_reference.empty()) {
     return badSource("The case is of no DICOM series whose UIDs are known",

@@ -36,9 +36,11 @@ bool liesOn(const GridGeometry& of, const GridGeometry& ct) {
 Status match(const DicomSegmentation& seg, const Volume& ct, const StructureRequest& request,
              std::optional<Choice>& asked) {
   const SourceIds &of = seg.of, &to = request.ct;
+  if (to.unreadable) return {};
   const bool frames = !of.frame_of_reference.empty() && !to.frame_of_reference.empty();
-  if (frames && of.frame_of_reference == to.frame_of_reference) return {};
-  const bool other_study = !of.study.empty() && !to.study.empty() && of.study != to.study;
+  if (to.standsFor(to.frame_of_reference, of.frame_of_reference)) return {};
+  const bool other_study =
+      !of.study.empty() && !to.study.empty() && !to.standsFor(to.study, of.study);
   // Of a CT that says nothing of itself only the place can speak, which is looked at later.
   if (!frames && !other_study) return {};
   if (!liesOn(seg.segmentation.geometry, ct.geometry)) {
@@ -64,22 +66,42 @@ Status match(const DicomSegmentation& seg, const Volume& ct, const StructureRequ
   return {};
 }
 
+int hideNames(Segmentation& segmentation, const StructureRequest& request) {
+  return request.hide_names ? request.hide_names(segmentation) : 0;
+}
+
+void sayHidden(StructureFit& fit, int hidden) {
+  if (hidden == 0) return;
+  fit.findings.push_back({"RENAMED_STRUCTURE",
+                          "notice",
+                          hidden == 1 ? "The name of a structure told who the patient is"
+                                      : "The names of " + std::to_string(hidden) +
+                                            " structures told who the patient is",
+                          {},
+                          hidden == 1 ? "It is called by its label" : "They are called by their labels"});
+}
+
 }  // namespace
 
 Result<StructureFit> importStructures(const std::filesystem::path& file, const Volume& ct,
                                       const StructureRequest& request, const Progress& progress) {
   const Progress reading(progress, 0.0, 0.5), fitting(progress, 0.5, 1.0);
   if (!isDicomSegmentation(file)) {
-    const Result<Segmentation> read = readSegmentation(file, reading);
+    Result<Segmentation> read = readSegmentation(file, reading);
     if (!read) return read.error();
-    return fitStructures(*read, ct, request.answers, request.ask_all, fitting);
+    const int hidden = hideNames(*read, request);
+    Result<StructureFit> fit =
+        fitStructures(*read, ct, request.answers, request.ask_all, fitting);
+    if (fit) sayHidden(*fit, hidden);
+    return fit;
   }
-  const Result<DicomSegmentation> read = readDicomSegmentation(file, request.threshold, reading);
+  Result<DicomSegmentation> read = readDicomSegmentation(file, request.threshold, reading);
   if (!read) return read.error();
   if (read->fractional && request.ask_threshold) {
     return Error{"THRESHOLD", "The file says how much of each voxel a structure has",
                  "the segmentation", "Say from which share on it has a voxel"};
   }
+  const int hidden = hideNames(read->segmentation, request);
   std::optional<Choice> asked;
   if (Status of = match(*read, ct, request, asked); !of) return of.error();
   Result<StructureFit> fit =
@@ -92,6 +114,16 @@ Result<StructureFit> importStructures(const std::filesystem::path& file, const V
          "The file says how much of each voxel a structure has",
          {},
          "It has a voxel from a share of " + plainNumber(request.threshold) + " on"});
+  }
+  if (fit) sayHidden(*fit, hidden);
+  if (fit && request.ct.unreadable) {
+    fit->findings.push_back(
+        {"SOURCE_UNCHECKED",
+         "notice",
+         "Whether the segmentation was made from this CT cannot be checked: what the case was made "
+         "from is kept where this account may not read it",
+         {},
+         "Its place alone was compared"});
   }
   if (fit && asked) {
     fit->findings.push_back({asked->code, "notice", asked->question, {}, "It was kept"});

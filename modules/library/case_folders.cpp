@@ -38,10 +38,11 @@ Result<fs::path> newPartName(const Folders& folders, const char* begin) {
   return folders.parts() / (begin + *name);
 }
 
-// Of the case.json in a part: no reader of the whole, since it may be of another version.
-std::string keyIn(const fs::path& part) {
-  const Result<Json> json = readJsonFile(part / kCaseFile);
-  if (!json || !json->is_object()) return "";
+// Of the case.json in a folder: no reader of the whole, since it may be of another version. Nothing
+// where it cannot be read.
+std::optional<std::string> keyIn(const fs::path& folder) {
+  const Result<Json> json = readJsonFile(folder / kCaseFile);
+  if (!json || !json->is_object()) return {};
   const auto key = json->find("names_key");
   return key != json->end() && key->is_string() ? key->get<std::string>() : "";
 }
@@ -50,9 +51,21 @@ bool isKey(const std::string& key) {
   return !key.empty() && key.find_first_not_of("0123456789abcdef") == key.npos;
 }
 
+bool isNamedByACase(const Folders& folders, const std::string& key) {
+  std::error_code ec;
+  for (fs::directory_iterator it(folders.cases(), ec), end; !ec && it != end; it.increment(ec)) {
+    std::error_code unknown;
+    if (fs::is_directory(it->path(), unknown) && keyIn(it->path()).value_or(key) == key) return true;
+  }
+  return false;
+}
+
 // What a whole case has outside of its folder goes first: a folder that is left behind names it.
+// A copy of a case has its key as well, and needs it; so may one that cannot be read.
 void discard(const Folders& folders, const fs::path& part) {
-  if (part.filename().string().starts_with(kWholeCase)) folders.removePrivate(keyIn(part));
+  const std::string key = keyIn(part).value_or("");
+  const bool whole = part.filename().string().starts_with(kWholeCase);
+  if (whole && isKey(key) && !isNamedByACase(folders, key)) folders.removePrivate(key);
   std::error_code ec;
   fs::remove_all(part, ec);
 }
@@ -105,6 +118,13 @@ Result<FileLock> Folders::lock() const {
   return FileLock::waitFor(lockFile());
 }
 
+void Folders::putInOrder() const {
+  std::error_code ec;
+  // Who may only look makes nothing, and needs nothing made.
+  if (fs::is_directory(cases(), ec) && mayChange()) (void)make();
+  sweep();
+}
+
 void Folders::sweep() const {
   std::error_code ec;
   if (!fs::is_directory(parts(), ec)) return;
@@ -152,6 +172,7 @@ void Folders::keepPrivateOf(const std::set<std::string>& keys) const {
 Result<Part> Part::make(const Folders& folders, Of what) {
   const Result<FileLock> list = folders.lock();
   if (!list) return list.error();
+  if (Status there = folders.make(); !there) return there.error();
   const auto path = newPartName(folders, what == Of::wholeCase ? kWholeCase : kSomeFiles);
   if (!path) return path.error();
   if (Status made = makeFolder(*path); !made) return made.error();
@@ -214,11 +235,13 @@ Status Part::becomeCase(const fs::path& case_folder) {
 
 Status removeCase(const Folders& folders, const std::string& id) {
   const fs::path folder = folders.caseFolder(id);
+  if (Status made = folders.make(); !made) return made;
   const auto part = newPartName(folders, kWholeCase);
   if (!part) return part.error();
   std::error_code ec;
+  std::error_code none;
   fs::rename(folder, *part, ec);
-  if (ec == std::errc::no_such_file_or_directory) {
+  if (ec && fs::symlink_status(folder, none).type() == fs::file_type::not_found) {
     return Error{"NO_SUCH_CASE", "The case is not there any more", id, "Look at the list again"};
   }
   if (ec) {

@@ -67,6 +67,9 @@ class Folders {
   // CANNOT_WRITE where the storage is a group's and this account only looks.
   Status mayChange() const;
   std::filesystem::path lockFile() const { return storage_ / ".lock"; }
+  // What a storage folder needs when it is opened: makes what is missing beside its cases, and
+  // sweeps. Nothing in a folder that has no cases yet. Never throws.
+  void putInOrder() const;
   // Removes parts that no living process holds. What cannot be removed stays. Never throws.
   void sweep() const;
   // CANNOT_WRITE where less than that is free; what cannot be told is not in the way.

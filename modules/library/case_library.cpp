@@ -24,6 +24,7 @@ using namespace case_folders;
 
 namespace {
 
+constexpr const char* kOldIds = "source_ids";  // in provenance.json, before they were kept by a key
 constexpr std::uint64_t kRoomForTheRest = 4 << 20;  // bytes: report, picture, JSON, folders
 
 Error noSuchCase(const std::string& id) {
@@ -144,6 +145,31 @@ Error ofStorage(Error error, const Folders& folders, std::uint64_t needed) {
   return error;
 }
 
+// A report of before names its series by hashes of their UIDs: now by their numbers.
+void numberSeries(Json& report) {
+  if (!report.is_object() || !report.contains("series") || !report["series"].is_array()) return;
+  std::size_t number = 0;
+  for (Json& series : report["series"]) {
+    const std::string name = std::to_string(++number);
+    if (!series.is_object() || !series.contains("uid")) continue;
+    if (report.contains("chosen") && report["chosen"] == series["uid"]) report["chosen"] = name;
+    series["uid"] = name;
+  }
+  if (report.contains("provenance") && report["provenance"].is_object()) {
+    report["provenance"].erase(kOldIds);
+  }
+}
+
+// The row of a report's page that did the same.
+std::string withoutKnownAs(std::string page) {
+  constexpr std::string_view kRow = "<tr><td><b>Known as</b></td>", kEnd = "</tr>\n";
+  for (std::size_t at; (at = page.find(kRow)) != page.npos;) {
+    const std::size_t end = page.find(kEnd, at);
+    page.erase(at, end == page.npos ? page.npos : end + kEnd.size() - at);
+  }
+  return page;
+}
+
 Error savingCancelled() {
   return Error{"CANCELLED", "Saving was cancelled", "", ""};
 }
@@ -171,7 +197,7 @@ bool isNeutralName(const std::string& name) {
 }
 
 CaseLibrary::CaseLibrary(fs::path storage) : folders_(std::move(storage)) {
-  folders_.sweep();
+  folders_.putInOrder();
 }
 
 Result<CaseRecord> CaseLibrary::record(const std::string& id) const {
@@ -315,13 +341,15 @@ Result<SavedCase> CaseLibrary::save(const NewCase& of, const Progress& progress)
 
   progress.at(0.9, "Keeping what the case may not be called");
   NameGuard guard;
-  if (!source.keys.empty()) {
+  const SourceIds ids = of.provenance ? of.provenance->source_ids : SourceIds();
+  if (!source.keys.empty() || !ids.empty()) {
     Result<std::string> key = randomHex(8);
     if (!key) return key.error();
     Result<NameGuard> of_source = NameGuard::of(source, progress);
     if (!of_source) return of_source.error();
     record.names_key = *key;
     guard = *std::move(of_source);
+    if (Status kept = guard.setSource(ids); !kept) return kept.error();
   }
 
   // From here on it is quick, and nobody else changes the list.
@@ -403,6 +431,11 @@ Result<LoadedCase> CaseLibrary::load(const std::string& id, const Progress& prog
     Result<Provenance> provenance = provenanceFrom(*json, id + "/" + file);
     if (!provenance) return provenance.error();
     loaded.provenance = *std::move(provenance);
+    if (json->contains(kOldIds)) {
+      (void)takeIdsOut(id);
+    } else {
+      loaded.provenance->source_ids = idsOf(loaded.record, *loaded.provenance);
+    }
   }
   loaded.volume = std::make_shared<const Volume>(*std::move(volume));
   const std::vector<CaseStructure> listed =
@@ -415,6 +448,75 @@ Result<LoadedCase> CaseLibrary::load(const std::string& id, const Progress& prog
   return loaded;
 } catch (const std::bad_alloc&) {
   return outOfMemory("for the case", id);
+}
+
+// Which CT a case is of, as far as this account may know.
+SourceIds CaseLibrary::idsOf(const CaseRecord& record, const Provenance& provenance) const {
+  if (record.names_key.empty()) return {};
+  const Result<NameGuard> guard = NameGuard::read(folders_.privateFile(record.names_key));
+  if (guard) return guard->source();
+  SourceIds unknown;
+  unknown.unreadable = provenance.source == "DICOM";
+  return unknown;
+}
+
+// First what is to stay is kept by a key; a program that ends in between begins again.
+Status CaseLibrary::takeIdsOut(const std::string& id) const {
+  Result<Part> part = Part::make(folders_, Part::Of::someFiles);
+  if (!part) return part.error();
+  const Result<FileLock> list_lock = folders_.lock();
+  if (!list_lock) return list_lock.error();
+  Result<CaseRecord> now = record(id);
+  if (!now) return now.error();
+  Result<Json> json = readJsonFile(now->folder / kProvenanceFile);
+  if (!json) return json.error();
+  const Result<Provenance> provenance = provenanceFrom(*json, id + "/" + kProvenanceFile);
+  if (!provenance) return provenance.error();
+
+  const bool first = now->names_key.empty();
+  if (!provenance->source_ids.empty()) {
+    Result<NameGuard> guard =
+        first ? NameGuard::of({}) : NameGuard::read(folders_.privateFile(now->names_key));
+    if (!guard) return guard.error();  // another account's, who will do it
+    const Result<std::string> key = randomHex(8);
+    if (first && !key) return key.error();
+    if (first) now->names_key = *key;
+    Status kept = guard->setSource(provenance->source_ids);
+    if (kept) kept = writeRecord(*now, *part);
+    if (kept) kept = part->writePrivate(now->names_key, pretty(guard->toJson()));
+    if (kept && first) kept = part->replace(kCaseFile, now->folder);
+    if (!kept) return kept;
+  }
+  const auto replace = [&](const char* file, const std::string& text) {
+    const Status written = writeTextFile(*part / file, text);
+    return written ? part->replace(file, now->folder) : written;
+  };
+  constexpr std::size_t kMostBytes = std::size_t{16} << 20;
+  if (Result<Json> report = readJsonFile(now->folder / kReportFile)) {
+    numberSeries(*report);
+    if (Status done = replace(kReportFile, pretty(*report)); !done) return done;
+  }
+  if (Result<std::string> page = readWholeFile(now->folder / kReportPage, kMostBytes)) {
+    if (Status done = replace(kReportPage, withoutKnownAs(*std::move(page))); !done) return done;
+  }
+  json->erase(kOldIds);
+  return replace(kProvenanceFile, pretty(*json));  // last: it says that there is something to do
+}
+
+void CaseLibrary::bringUpToDate(const Progress& progress) const {
+  std::vector<std::string> old;
+  std::error_code ec;
+  for (fs::directory_iterator it(folders_.cases(), ec), end; !ec && it != end; it.increment(ec)) {
+    if (progress.cancelled()) return;
+    constexpr std::size_t kMostBytes = std::size_t{1} << 20;
+    const Result<std::string> text = readWholeFile(it->path() / kProvenanceFile, kMostBytes);
+    const std::string id = it->path().filename().string();
+    if (text && text->find(kOldIds) != text->npos && isFolderName(id)) old.push_back(id);
+  }
+  for (const std::string& id : old) {
+    if (progress.cancelled()) return;
+    (void)takeIdsOut(id);
+  }
 }
 
 // A program that ended between the structures and their rows in case.json left old ones. The list

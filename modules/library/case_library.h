@@ -72,6 +72,11 @@ class CaseLibrary {
   // each and looks which files are there.
   std::vector<ListedCase> list() const;
 
+  // Cases of before say by hashes without a key which CT they are of, in provenance.json and the
+  // report: takes them out, and keeps them by a key where this account may. What cannot be changed
+  // stays as it is. A folder without such cases is read alone.
+  void bringUpToDate(const Progress& progress = Progress()) const;
+
   // Whole or not at all. Errors: CANNOT_WRITE (with the room that it needs where that is short),
   // BAD_NAME, NAME_TAKEN, NAME_IS_IDENTITY, WRONG_GRID (structures of another grid), CANCELLED,
   // OUT_OF_MEMORY.
@@ -99,6 +104,8 @@ class CaseLibrary {
   Result<CaseRecord> record(const std::string& id) const;
   Status writeRecord(const CaseRecord& record, const case_folders::Part& part) const;
   void mendRows(const CaseRecord& of) const;
+  SourceIds idsOf(const CaseRecord& record, const Provenance& provenance) const;
+  Status takeIdsOut(const std::string& id) const;
   // Folded, of all cases but that one.
   std::set<std::string> namesBeside(const std::string& id) const;
 

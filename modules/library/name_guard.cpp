@@ -74,6 +74,11 @@ Result<NameGuard> NameGuard::read(const std::filesystem::path& file) {
     if (!known) item.fail("kind", "The kind of text is not known");
     if (known) guard.hashes_[hash] = *known;
   }
+  if (reader.has("source")) {
+    JsonReader of = reader.object("source");
+    guard.source_ = {of.text("study"), of.text("series"), of.text("frame_of_reference"),
+                     of.text("key"), false};
+  }
   if (Status status = reader.finish(); !status) return status.error();
   return guard;
 }
@@ -83,9 +88,25 @@ Json NameGuard::toJson() const {
   for (const auto& [hash, kind] : hashes_) {
     refused.push_back({{"hash", hash}, {"kind", identityKindName(kind)}});
   }
-  return {{"format", "trephine.names"},   {"version", kNamesVersion},  {"salt", salt_},
-          {"iterations", iterations_},    {"most_words", most_words_}, {"lengths", lengths_},
-          {"refused", std::move(refused)}};
+  Json json = {{"format", "trephine.names"},   {"version", kNamesVersion},  {"salt", salt_},
+               {"iterations", iterations_},    {"most_words", most_words_}, {"lengths", lengths_},
+               {"refused", std::move(refused)}};
+  if (!source_.empty()) {
+    json["source"] = {{"study", source_.study},
+                      {"series", source_.series},
+                      {"frame_of_reference", source_.frame_of_reference},
+                      {"key", source_.key}};
+  }
+  return json;
+}
+
+Status NameGuard::setSource(const SourceIds& ids) {
+  source_ = ids;
+  if (ids.empty() || !ids.key.empty()) return {};
+  const Result<std::string> key = randomHex(16);
+  if (!key) return key.error();
+  source_ = ids.keyed(*key);
+  return {};
 }
 
 Status NameGuard::check(const std::string& name) const {

@@ -312,6 +312,17 @@ std::optional<IdentityKind> toldBy(std::string_view name, const SourceKeys& sour
   return told;
 }
 
+int hideNames(Segmentation& segmentation, const SourceKeys& source) {
+  int hidden = 0;
+  for (Segmentation::Segment& segment : segmentation.segments) {
+    const auto told = toldBy(segment.name, source);
+    if (!told || !tellsPatient(*told)) continue;
+    segment.name = "label " + std::to_string(int(segment.value));
+    ++hidden;
+  }
+  return hidden;
+}
+
 bool tellsPatient(IdentityKind kind) {
   return kind == IdentityKind::patient_name || kind == IdentityKind::patient_id ||
          kind == IdentityKind::accession;

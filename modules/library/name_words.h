@@ -10,6 +10,7 @@
 
 #include "base/result.h"
 #include "imaging/common/source_identity.h"
+#include "volume/segmentation.h"
 
 namespace trephine {
 
@@ -39,6 +40,8 @@ std::set<std::string> nameKeys(std::string_view name, int most_words, const std:
 
 // What of the source the name tells; nothing where it tells none of it.
 std::optional<IdentityKind> toldBy(std::string_view name, const SourceKeys& source);
+// Segments whose names tell who the patient is are called by their values, "label 7"; how many.
+int hideNames(Segmentation& segmentation, const SourceKeys& source);
 // Name, ID or accession number; not what folders and files are called.
 bool tellsPatient(IdentityKind kind);
 // NAME_IS_IDENTITY: why a name that tells this is refused. It repeats nothing of it.

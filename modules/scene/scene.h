@@ -103,6 +103,9 @@ void useCase(Scene& scene, const std::string& case_source);
 // each.
 Result<Scene> readScene(const std::filesystem::path& file);
 Result<Scene> parseScene(const Json& json, const std::filesystem::path& file);
+// A scene as toJson() gives it, from a file that may be anybody's: one that names a file is refused
+// before any is opened. `where` is named in errors.
+Result<Scene> parseSceneAlone(const Json& json, const std::string& where);
 
 // Self-contained: tissues inline and none for elsewhere, no file names, the plugin that moved each
 // arm, no label map, and a case only where it is a phantom (a path could name a patient). What a

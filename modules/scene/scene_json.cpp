@@ -194,7 +194,10 @@ Result<Scene> parseScene(const Json& json, const fs::path& file) {
   scene.name = reader.text("name");
   scene.anatomy = reader.text("anatomy");
   scene.case_source = reader.text("case", "");
-  if (!scene.case_source.empty() && !phantomNamed(scene.case_source)) {
+  if (const auto phantom = phantomNamed(scene.case_source)) {
+    const auto there = phantomGeometry(*phantom);
+    if (!there) reader.fail("case", there.error().what, there.error().next);
+  } else if (!scene.case_source.empty()) {
     scene.case_source = (folder / scene.case_source).lexically_normal().string();
   }
   const std::string labels = reader.text("labels", "");
@@ -280,8 +283,44 @@ Result<Scene> parseScene(const Json& json, const fs::path& file) {
   return scene;
 }
 
+namespace {
+
+// The key of a text that would name a file; empty where there is none.
+std::string namedFile(const Json& json) {
+  const auto is_text = [](const Json& object, const char* key) {
+    return object.is_object() && object.contains(key) && object[key].is_string();
+  };
+  for (const char* key : {"labels", "operator", "tissues"}) {
+    if (is_text(json, key)) return key;
+  }
+  if (is_text(json, "case") && !phantomNamed(json["case"].get<std::string>())) return "case";
+  if (json.contains("tissues") && is_text(json["tissues"], "elsewhere")) return "tissues.elsewhere";
+  const auto list = [&](const char* key) {
+    return json.contains(key) && json[key].is_array() ? json[key] : Json::array();
+  };
+  for (const Json& tool : list("tools")) {
+    if (is_text(tool, "file")) return "tools.file";
+    if (is_text(tool, "mesh")) return "tools.mesh";
+  }
+  for (const Json& arm : list("arms")) {
+    const bool device = arm.is_object() && arm.contains("device");
+    if (device && is_text(arm["device"], "config")) return "arms.device.config";
+  }
+  return {};
+}
+
+}  // namespace
+
+Result<Scene> parseSceneAlone(const Json& json, const std::string& where) {
+  if (const std::string key = json.is_object() ? namedFile(json) : ""; !key.empty()) {
+    return Error{"BAD_FIELD", "It names a file, which no scene of a recording does",
+                 where + ": " + key, "Choose a recording that this program made"};
+  }
+  return parseScene(json, where);
+}
+
 Result<Scene> readScene(const fs::path& file) {
-  Result<Json> json = readJsonFile(file);
+  Result<Json> json = readJsonFile(file, Progress(), kMostWrittenBytes);
   if (!json) return json.error();
   return parseScene(*json, file);
 }

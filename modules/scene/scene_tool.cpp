@@ -62,7 +62,7 @@ SceneTool readSceneTool(JsonReader& item, const std::filesystem::path& folder) {
     return out;
   }
   const std::filesystem::path file = (folder / name).lexically_normal();
-  Result<Json> json = readJsonFile(file);
+  Result<Json> json = readJsonFile(file, Progress(), kMostWrittenBytes);
   if (!json) {
     item.fail("file", json.error().what + " (" + json.error().where + ")", json.error().next);
     return out;

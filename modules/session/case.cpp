@@ -35,6 +35,7 @@ Result<Case> importBest(const std::string& source, const Progress& progress) {
   Case read = caseOf(std::make_shared<const Volume>(*std::move(volume)),
                      provenance ? provenance->volume_sha256 : "");
   read.provenance = provenance;
+  read.identity = std::make_shared<const SourceIdentity>(folder->sourceIdentity(*series));
   return read;
 }
 

@@ -9,6 +9,7 @@
 
 #include "base/progress.h"
 #include "base/result.h"
+#include "imaging/common/source_identity.h"
 #include "imaging/report/report.h"
 #include "imaging/segmentation/structure_fit.h"
 #include "imaging/steps/anatomy.h"
@@ -22,6 +23,8 @@ struct Case {
   std::shared_ptr<const Volume> volume;
   std::string sha256;                    // of its voxels
   std::optional<Provenance> provenance;  // of what was imported
+  // Whom it is of, where it was read from DICOM: to compare names with, and for nothing else.
+  std::shared_ptr<const SourceIdentity> identity;
   std::string name;                      // for the screen alone: it may be a series' description
   bool built_in = false;
   std::string stored;  // its id in the workstation's library; empty: not there

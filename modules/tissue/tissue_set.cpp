@@ -173,7 +173,7 @@ Result<TissueSet> parseTissueSet(const Json& json, const std::string& file) {
 }
 
 Result<TissueSet> readTissueSet(const std::filesystem::path& file) {
-  Result<Json> json = readJsonFile(file);
+  Result<Json> json = readJsonFile(file, Progress(), kMostWrittenBytes);
   if (!json) return json.error();
   Result<TissueSet> set = parseTissueSet(*json, file.string());
   if (set && !set->elsewhere_file.empty()) {

@@ -176,9 +176,12 @@ hid_t endType() {
 
 void quietHdf5() {
   static const herr_t no_exit = H5dont_atexit();  // refused when it is asked again
+  // A file names filters and drivers, and none of ours needs one that is loaded.
+  static const herr_t no_plugins = H5PLset_loading_state(0);
   // What it prints of errors is set for each thread.
   thread_local const herr_t quiet = H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
   (void)no_exit;
+  (void)no_plugins;
   (void)quiet;
 }
 

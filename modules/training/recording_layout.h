@@ -47,8 +47,8 @@ struct EndRow {
 };
 hid_t endType();
 
-// Before HDF5 is first used, any number of times: it prints nothing, and does not tidy up at exit,
-// where it would crash on a file that a full disk kept it from closing.
+// Before HDF5 is first used, any number of times: it prints nothing, loads no plugins, and does not
+// tidy up at exit, where it would crash on a file that a full disk kept it from closing.
 void quietHdf5();
 std::string armDatasetName(std::size_t arm);  // "arm0"
 

@@ -3,8 +3,13 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <fstream>
+#include <string>
 
+#include "base/child_process.h"
+#include "base/file.h"
 #include "base/shared_folder.h"
+#include "base/stretched_hash.h"
 #include "training/paused_ticks.h"
 #include "training/session_reader.h"
 
@@ -12,11 +17,11 @@ namespace trephine {
 
 namespace {
 
+constexpr double kLongest_s = 1e9;  // 30 years
+
 ListedRecording headOf(const std::filesystem::path& file) {
   ListedRecording row;
   row.file = file;
-  std::error_code ec;
-  row.written = std::filesystem::last_write_time(file, ec);
   const Result<std::unique_ptr<SessionReader>> reader = SessionReader::open(file);
   if (!reader) {
     row.problem = reader.error();
@@ -27,19 +32,89 @@ ListedRecording headOf(const std::filesystem::path& file) {
   row.exercise = scene.value("name", "");
   row.case_source = scene.value("case", "");
   row.volume_sha256 = header.volume_sha256;
-  const double rate_hz = scene.value("rate_hz", 1000.0);
+  constexpr double kSlowest_hz = 1.0;  // no scene is slower
+  const double rate_hz = std::max(kSlowest_hz, scene.value("rate_hz", 1000.0));
   const std::uint64_t ticks = (*reader)->tickCount();
   PausedTicks paused;
   if (const Result<std::vector<Event>> events = (*reader)->events()) {
     for (const Event& event : *events) paused.add(event);
   }
   const std::uint64_t done = ticks - std::min(ticks, paused.until(ticks));
-  row.seconds = rate_hz > 0.0 ? double(done) / rate_hz : 0.0;
+  row.seconds = std::min(double(done) / rate_hz, kLongest_s);
   row.cut_short = !(*reader)->end();
   if (!row.cut_short && (*reader)->end()->dropped > 0) {
     row.problem = Error{"NOT_REPLAYABLE", "A part of the recording is missing", file.string(),
                         "It can be kept, but not replayed"};
   }
+  return row;
+}
+
+ListedRecording rowFrom(const Json& json, const std::filesystem::path& file) {
+  JsonReader reader(json, "recordings");
+  ListedRecording row;
+  row.file = file;
+  for (const char* known : {"schema", "build", "file"}) (void)reader.text(known);
+  row.exercise = reader.text("exercise");
+  row.case_source = reader.text("case");
+  row.volume_sha256 = reader.text("volume_sha256");
+  row.seconds = reader.number("seconds", {0.0, kLongest_s, "s"});
+  row.cut_short = reader.boolean("cut_short", false);
+  if (reader.has("problem")) {
+    JsonReader problem = reader.object("problem");
+    row.problem = Error{problem.text("code"), problem.text("what"), problem.text("where"),
+                        problem.text("next")};
+  }
+  if (const Status read = reader.finish(); !read) row.problem = read.error();
+  return row;
+}
+
+// What one child read before it ended or its time was up.
+struct Pass {
+  std::vector<ListedRecording> rows;
+  bool timed_out = false;
+};
+
+Result<Pass> readPass(const std::vector<std::filesystem::path>& files, std::size_t first,
+                      const Progress& progress, const ReadApart& how) {
+  constexpr std::size_t kMost = 200;  // files for one child: a command line holds no more than 2 MB
+  const Result<std::filesystem::path> folder = temporaryFolder();
+  const Result<std::string> unique = randomHex(8);
+  if (!folder) return folder.error();
+  if (!unique) return unique.error();
+  ChildCommand command;
+  command.words = {how.program.string(), "recordings", "--json", "--"};
+  const std::size_t end = std::min(files.size(), first + kMost);
+  for (std::size_t i = first; i < end; ++i) command.words.push_back(files[i].string());
+  command.output = *folder / ("trephine-list-" + *unique);
+  command.limit_s = how.patience_s;
+  progress.at(double(first) / double(files.size()), "Looking at the recordings");
+  const Result<ChildRun> run = runChild(command, progress);
+  Pass pass;
+  std::ifstream lines(command.output);
+  std::error_code ec;
+  std::filesystem::remove(command.output, ec);
+  if (!run) return run.error();
+  constexpr int kNotRun = 100, kSignals = 128;  // by the loader, or by the command line
+  if (run->exit_code >= kNotRun && run->exit_code < kSignals) {
+    return Error{"CANNOT_RUN", "The recordings cannot be listed", how.program.filename().string(),
+                 "Install Trephine anew"};
+  }
+  pass.timed_out = run->timed_out;
+  for (std::string line; first + pass.rows.size() < end && std::getline(lines, line);) {
+    const Result<Json> json = parseJson(line, "recordings");
+    if (!json) break;  // half a line
+    pass.rows.push_back(rowFrom(*json, files[first + pass.rows.size()]));
+  }
+  return pass;
+}
+
+ListedRecording unread(const std::filesystem::path& file, bool timed_out) {
+  ListedRecording row;
+  row.file = file;
+  row.problem = timed_out ? Error{"TAKES_TOO_LONG", "The recording takes too long to read",
+                                  file.string(), "Check its disk; delete it if it is no recording"}
+                          : Error{"BAD_RECORDING", "The recording is damaged", file.string(),
+                                  "It cannot be replayed"};
   return row;
 }
 
@@ -57,8 +132,41 @@ ListedRecording listRecording(const std::filesystem::path& file) {
   }
 }
 
+Json toJson(const ListedRecording& row) {
+  Json json = {{"file", row.file.string()},
+               {"exercise", row.exercise},
+               {"case", row.case_source},
+               {"volume_sha256", row.volume_sha256},
+               {"seconds", row.seconds},
+               {"cut_short", row.cut_short}};
+  if (const auto& problem = row.problem) {
+    json["problem"] = {{"code", problem->code},
+                       {"what", problem->what},
+                       {"where", problem->where},
+                       {"next", problem->next}};
+  }
+  return json;
+}
+
+Result<std::vector<ListedRecording>> listFiles(const std::vector<std::filesystem::path>& files,
+                                               const Progress& progress, const ReadApart& how) {
+  std::vector<ListedRecording> rows;
+  while (rows.size() < files.size()) {
+    Result<Pass> pass = readPass(files, rows.size(), progress, how);
+    if (!pass) return pass.error();
+    rows.insert(rows.end(), pass->rows.begin(), pass->rows.end());
+    if (pass->rows.empty()) rows.push_back(unread(files[rows.size()], pass->timed_out));
+  }
+  for (ListedRecording& row : rows) {
+    std::error_code ec;
+    row.written = std::filesystem::last_write_time(row.file, ec);
+  }
+  return rows;
+}
+
 Result<std::vector<ListedRecording>> listRecordings(const std::filesystem::path& folder,
-                                                    const Progress& progress) {
+                                                    const Progress& progress,
+                                                    const ReadApart& how) {
   std::vector<std::filesystem::path> files;
   const bool others_keep_theirs = isEachOnesOwn(folder);
   std::error_code ec;
@@ -69,12 +177,9 @@ Result<std::vector<ListedRecording>> listRecordings(const std::filesystem::path&
     if (others_keep_theirs && ::access(it->path().c_str(), R_OK) != 0) continue;
     files.push_back(it->path());
   }
-  std::vector<ListedRecording> rows;
-  for (std::size_t i = 0; i < files.size(); ++i) {
-    if (progress.cancelled()) return Error{"CANCELLED", "The list was not made", "", ""};
-    progress.at(double(i) / double(files.size()), "Looking at the recordings");
-    rows.push_back(listRecording(files[i]));
-  }
+  Result<std::vector<ListedRecording>> listed = listFiles(files, progress, how);
+  if (!listed) return listed;
+  std::vector<ListedRecording> rows = *std::move(listed);
   std::sort(rows.begin(), rows.end(), [](const auto& a, const auto& b) {
     return a.written != b.written ? a.written > b.written : a.file > b.file;
   });

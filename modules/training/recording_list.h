@@ -6,8 +6,10 @@
 #include <string>
 #include <vector>
 
+#include "base/json.h"
 #include "base/progress.h"
 #include "base/result.h"
+#include "base/system.h"
 
 namespace trephine {
 
@@ -24,12 +26,27 @@ struct ListedRecording {
   const std::string& caseKey() const { return case_source.empty() ? volume_sha256 : case_source; }
 };
 
-// Any file; what is none says so in `problem`.
+// Any file; what is none says so in `problem`. Read in this process, which a damaged file may keep
+// waiting or end: what strangers may have put there is listed by the functions below.
 ListedRecording listRecording(const std::filesystem::path& file);
-// The newest first, without those that other accounts keep for themselves; a folder that is not
-// there has none. Reads the head of each, which takes some milliseconds. Any thread. Error:
-// CANCELLED.
+Json toJson(const ListedRecording& row);  // a line of `trephine-lab recordings --json`
+
+// How files that may be anybody's are read: each is opened by a child process, `trephine-lab
+// recordings`. A file that takes longer than `patience_s`, or that ends the child, is a row with its
+// problem (TAKES_TOO_LONG, BAD_RECORDING), and the rest goes on.
+struct ReadApart {
+  std::filesystem::path program = labProgram();
+  double patience_s = 5.0;
+};
+// One row for each file, in their order. Any thread; 50 ms and some milliseconds for each file.
+// Errors: CANCELLED, CANNOT_RUN, NO_TEMPORARY_FOLDER.
+Result<std::vector<ListedRecording>> listFiles(const std::vector<std::filesystem::path>& files,
+                                               const Progress& progress = Progress(),
+                                               const ReadApart& how = ReadApart());
+// The recordings of a folder, the newest first, without those that other accounts keep for
+// themselves; a folder that is not there has none. As listFiles().
 Result<std::vector<ListedRecording>> listRecordings(const std::filesystem::path& folder,
-                                                    const Progress& progress = Progress());
+                                                    const Progress& progress = Progress(),
+                                                    const ReadApart& how = ReadApart());
 
 }  // namespace trephine

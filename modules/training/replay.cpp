@@ -178,7 +178,7 @@ Result<ReplayResult> replay(const SessionReader& recording, const Volume& volume
                      std::to_string(recording.end()->dropped) + " entries",
                  "the recording", "Record again on a machine with less load"};
   }
-  Result<Scene> scene = parseScene(header.scene, "the recording");
+  Result<Scene> scene = parseSceneAlone(header.scene, "the recording");
   if (!scene) return scene.error();
   Result<std::vector<Event>> events = recording.events();
   if (!events) return events.error();

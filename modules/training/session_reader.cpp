@@ -6,6 +6,8 @@
 #include <cstring>
 #include <utility>
 
+#include "base/memory.h"
+#include "training/own_dataset.h"
 #include "training/recording_layout.h"
 
 namespace trephine {
@@ -29,8 +31,14 @@ hsize_t rowCount(hid_t dataset) {
 // Whether the file can hold that many rows of that size: else its tables lie, and there is no need
 // to set aside room for them. Deflate shrinks no further than 1 : 1032.
 bool canHold(hid_t dataset, hsize_t rows, std::size_t row_bytes) {
-  const hsize_t stored = H5Dget_storage_size(dataset);
-  return rows <= stored * 1032 / row_bytes;
+  constexpr hsize_t kDeflated = 1032;
+  const hsize_t stored = storedBytes(dataset);
+  return stored != kLies && rows <= stored / row_bytes * kDeflated + kDeflated;
+}
+
+Status roomFor(hsize_t rows, std::size_t row_bytes) {
+  const double needed_mb = double(rows) * double(row_bytes) / double(1 << 20);
+  return enoughMemory(needed_mb, "The recording", "the recording");
 }
 
 // Takes the type over.
@@ -49,18 +57,21 @@ bool readRows(hid_t dataset, hid_t type, hsize_t first, hsize_t count, void* row
 }
 
 std::optional<std::string> readText(hid_t file, const char* name) {
-  const hid_t dataset = H5Dopen2(file, name, H5P_DEFAULT);
+  const hid_t dataset = openOwnDataset(file, name);
   if (dataset < 0) return {};
   const hid_t type = H5Dget_type(dataset);
+  const hid_t space = H5Dget_space(dataset);
   std::optional<std::string> out;
   constexpr std::size_t kLongest = 16 << 20;
   const std::size_t size = H5Tget_size(type);
-  if (H5Tget_class(type) == H5T_STRING && H5Tis_variable_str(type) == 0 && size <= kLongest) {
+  const bool is_text = H5Tget_class(type) == H5T_STRING && H5Tis_variable_str(type) == 0;
+  if (is_text && size <= kLongest && isOneElement(space)) {
     std::string text(size, '\0');
     if (H5Dread(dataset, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, text.data()) >= 0) {
       out = text.c_str();
     }
   }
+  H5Sclose(space);
   H5Tclose(type);
   H5Dclose(dataset);
   return out;
@@ -69,10 +80,21 @@ std::optional<std::string> readText(hid_t file, const char* name) {
 int readVersion(hid_t file) {
   const hid_t attribute = H5Aopen(file, "version", H5P_DEFAULT);
   if (attribute < 0) return 0;
+  const hid_t space = H5Aget_space(attribute);
   int version = 0;
-  if (H5Aread(attribute, H5T_NATIVE_INT32, &version) < 0) version = 0;
+  if (!isOneElement(space) || H5Aread(attribute, H5T_NATIVE_INT32, &version) < 0) version = 0;
+  H5Sclose(space);
   H5Aclose(attribute);
   return version;
+}
+
+std::vector<std::string> datasetNames() {
+  std::vector<std::string> names{"format", "build",          "scene",  "volume", "head_sha256",
+                                 "ticks",  "removed_voxels", "events", "end"};
+  for (std::size_t arm = 0; arm < std::size_t(kMaxArms); ++arm) {
+    names.push_back(armDatasetName(arm));
+  }
+  return names;
 }
 
 // The controller that acts in each tick: the scene's at first, then as the commands say.
@@ -185,6 +207,11 @@ Result<std::unique_ptr<SessionReader>> SessionReader::open(const std::filesystem
   H5Pclose(access);
   if (f.file < 0) return f.bad("The recording cannot be read: it is damaged or not a recording");
 
+  for (const std::string& name : datasetNames()) {
+    if (!isForeign(f.file, name.c_str())) continue;
+    return f.bad("The recording's \"" + name +
+                 "\" is not in the file itself, or not stored as Trephine stores it");
+  }
   const std::optional<std::string> format = readText(f.file, "format");
   if (format != "trephine.session") return f.bad("The file is not a recording of Trephine");
   const int version = readVersion(f.file);
@@ -223,11 +250,11 @@ Result<std::unique_ptr<SessionReader>> SessionReader::open(const std::filesystem
   f.header.geometry = *geometry;
   f.header.build = *build;
 
-  f.ticks = H5Dopen2(f.file, "ticks", H5P_DEFAULT);
-  f.carves = H5Dopen2(f.file, "removed_voxels", H5P_DEFAULT);
-  f.events = H5Dopen2(f.file, "events", H5P_DEFAULT);
+  f.ticks = openOwnDataset(f.file, "ticks");
+  f.carves = openOwnDataset(f.file, "removed_voxels");
+  f.events = openOwnDataset(f.file, "events");
   for (std::size_t i = 0; i < std::size_t(kMaxArms); ++i) {
-    const hid_t arm = H5Dopen2(f.file, armDatasetName(i).c_str(), H5P_DEFAULT);
+    const hid_t arm = openOwnDataset(f.file, armDatasetName(i).c_str());
     if (arm < 0) break;
     f.arms.push_back(arm);
   }
@@ -242,7 +269,7 @@ Result<std::unique_ptr<SessionReader>> SessionReader::open(const std::filesystem
   f.tick_count = count;
 
   // The end of a recording that was killed has no row; one that cannot be read is damage.
-  const hid_t end = H5Dopen2(f.file, "end", H5P_DEFAULT);
+  const hid_t end = openOwnDataset(f.file, "end");
   const hsize_t ends = end >= 0 ? rowCount(end) : 1;
   EndRow row;
   const bool read = end >= 0 && ends == 1 && readRows(end, endType(), 0, 1, &row);
@@ -305,6 +332,7 @@ Result<std::vector<Event>> SessionReader::events() const {
   const Error damaged = file_->bad("The recording's events are damaged");
   const hsize_t count = rowCount(file_->events);
   if (!canHold(file_->events, count, sizeof(Event))) return damaged;
+  if (Status enough = roomFor(count, sizeof(Event)); !enough) return enough.error();
   std::vector<Event> out(count);
   if (!readRows(file_->events, eventType(), 0, out.size(), out.data())) return damaged;
   for (const Event& event : out) {
@@ -323,6 +351,7 @@ Result<std::vector<CarveRecord>> SessionReader::carves() const {
   const Error damaged = file_->bad("The recording's removed voxels are damaged");
   const hsize_t count = rowCount(file_->carves);
   if (!canHold(file_->carves, count, sizeof(CarveRecord))) return damaged;
+  if (Status enough = roomFor(count, sizeof(CarveRecord)); !enough) return enough.error();
   std::vector<CarveRecord> out(count);
   if (!readRows(file_->carves, compoundType(carveFields(), sizeof(CarveRecord)), 0, out.size(),
                 out.data())) {

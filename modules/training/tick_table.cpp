@@ -7,6 +7,7 @@
 #include <iomanip>
 #include <limits>
 #include <locale>
+#include <string_view>
 
 #include "base/file.h"
 
@@ -17,7 +18,11 @@ namespace {
 constexpr std::uint64_t kSlice = 4096;  // ticks
 
 // As a field of its own, whatever a scene calls an arm.
-std::string quoted(const std::string& text) {
+std::string quoted(std::string text) {
+  // A spreadsheet would take it for a formula.
+  if (!text.empty() && std::string_view("=+-@\t\r").find(text.front()) != std::string_view::npos) {
+    text.insert(0, 1, '\'');
+  }
   if (text.find_first_of(",\"\r\n") == text.npos) return text;
   std::string out = "\"";
   for (char c : text) out += c == '"' ? std::string("\"\"") : std::string(1, c);

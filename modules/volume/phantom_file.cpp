@@ -6,8 +6,6 @@
 #include <atomic>
 #include <cstdint>
 #include <cstring>
-#include <fstream>
-#include <iterator>
 #include <new>
 #include <vector>
 
@@ -26,6 +24,7 @@ using Bytes = std::vector<std::uint8_t>;
 constexpr char kMagic[] = "TREPCASE";
 constexpr std::size_t kMagicSize = sizeof kMagic - 1, kLengthSize = 4;
 constexpr int kBlockSlices = 8;
+constexpr std::size_t kMostBytes = std::size_t{64} << 20;
 constexpr const char* kStep = "Opening the built-in case";
 
 Error damaged(const std::filesystem::path& file) {
@@ -128,13 +127,15 @@ bool unpackBlock(const GridGeometry& geometry, const Block& block, const std::ui
 struct Part {
   std::size_t at = 0, size = 0;
 };
-std::vector<Part> partsOf(const Bytes& file, std::size_t count) {
+std::vector<Part> partsOf(const std::string& file, std::size_t count) {
   if (file.size() < kMagicSize || std::memcmp(file.data(), kMagic, kMagicSize) != 0) return {};
   std::vector<Part> parts;
   std::size_t at = kMagicSize;
   while (parts.size() < count && file.size() - at >= kLengthSize) {
     std::size_t size = 0;
-    for (std::size_t n = 0; n < kLengthSize; ++n) size |= std::size_t(file[at + n]) << (8 * n);
+    for (std::size_t n = 0; n < kLengthSize; ++n) {
+      size |= std::size_t(std::uint8_t(file[at + n])) << (8 * n);
+    }
     at += kLengthSize;
     if (file.size() - at < size) return {};
     parts.push_back({at, size});
@@ -143,7 +144,11 @@ std::vector<Part> partsOf(const Bytes& file, std::size_t count) {
   return parts.size() == count && at == file.size() ? parts : std::vector<Part>();
 }
 
-Result<Phantom> unpacked(const PhantomFrame& frame, const Bytes& bytes,
+const std::uint8_t* bytesAt(const std::string& file, std::size_t at) {
+  return reinterpret_cast<const std::uint8_t*>(file.data()) + at;
+}
+
+Result<Phantom> unpacked(const PhantomFrame& frame, const std::string& bytes,
                          const std::filesystem::path& file, const std::string& name,
                          const Progress& progress) {
   const std::vector<Block> blocks = blocksOf(frame.geometry);
@@ -156,7 +161,7 @@ Result<Phantom> unpacked(const PhantomFrame& frame, const Bytes& bytes,
     const auto& block = blocks[std::size_t(n)];
     const Part& part = parts[std::size_t(n)];
     try {
-      if (!unpackBlock(frame.geometry, block, bytes.data() + part.at, part.size,
+      if (!unpackBlock(frame.geometry, block, bytesAt(bytes, part.at), part.size,
                        &phantom.volume.hu[block.first])) {
         whole = false;
       }
@@ -172,7 +177,7 @@ Result<Phantom> unpacked(const PhantomFrame& frame, const Bytes& bytes,
   if (!whole || (labels.size > 0) != frame.labelled) return damaged(file);
   if (frame.labelled) {
     LabelMap map{frame.geometry, Bytes(frame.geometry.voxelCount()), frame.structures};
-    if (!unpack(bytes.data() + labels.at, labels.size, map.labels)) return damaged(file);
+    if (!unpack(bytesAt(bytes, labels.at), labels.size, map.labels)) return damaged(file);
     phantom.labels = std::move(map);
   }
   progress.at(0.6, kStep);
@@ -219,13 +224,12 @@ Result<Phantom> readPhantomFile(const std::string& name, const std::filesystem::
   const double needed_mb = voxelsMb(count) + (frame->labelled ? labelsMb(count) : 0.0);
   if (Status enough = enoughMemory(needed_mb, kStep, name); !enough) return enough.error();
   try {
-    std::ifstream in(file, std::ios::binary);
-    const Bytes bytes{std::istreambuf_iterator<char>(in), {}};
-    if (!in.is_open() || in.bad()) {
+    const Result<std::string> bytes = readWholeFile(file, kMostBytes);
+    if (!bytes) {
       return Error{"CANNOT_READ", "The file of the built-in case cannot be read", file.string(),
                    "Install Trephine again"};
     }
-    Result<Phantom> phantom = unpacked(*frame, bytes, file, name, progress);
+    Result<Phantom> phantom = unpacked(*frame, *bytes, file, name, progress);
     if (phantom) progress.at(1.0, kStep);
     return phantom;
   } catch (const std::bad_alloc&) {

@@ -11,7 +11,18 @@
 
 namespace trephine::fuzz {
 
-enum Kind : std::uint8_t { kScene, kTool, kTissues, kDevice, kOperator, kRecording, kKinds };
+enum Kind : std::uint8_t {
+  kScene,
+  kTool,
+  kTissues,
+  kDevice,
+  kOperator,
+  kRecording,
+  kList,        // exercise.json of an exported folder
+  kCase,        // case.json
+  kProvenance,  // provenance.json
+  kKinds
+};
 // Of resources, each with files of its kind; recordings are made.
 constexpr const char* kFolders[kRecording] = {"scenes", "tools", "tissues", "devices", "operators"};
 

@@ -1,5 +1,6 @@
-// Any bytes as a scene, tool, tissue, device or operator file, or as a recording: read, and where
-// they are accepted used for a few hundred ticks. See README.md.
+// Any bytes as a scene, tool, tissue, device or operator file, as a recording, as the list of an
+// exported exercise or as a case's files: read, and where they are accepted used for a few hundred
+// ticks. See README.md.
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -13,10 +14,14 @@
 #include "base/system.h"
 #include "cases.h"
 #include "device/device.h"
+#include "exercise/exercise_folder.h"
 #include "exercise_files.h"
+#include "imaging/report/provenance.h"
 #include "json_mutator.h"
+#include "library/case_record.h"
 #include "processor_time.h"
 #include "session/session.h"
+#include "training/recording_list.h"
 #include "training/replay.h"
 
 extern "C" std::size_t LLVMFuzzerMutate(std::uint8_t* data, std::size_t size, std::size_t most);
@@ -46,7 +51,13 @@ class Files {
     for (const char* folder : kFolders) {
       fs::copy(resourceFolder() / folder, root_ / folder);
       require(::mkfifo((root_ / folder / "pipe.json").c_str(), 0600) == 0, "no pipe can be made");
+      fs::create_symlink("/dev/zero", root_ / folder / "link.json");
     }
+    const auto exported =
+        exportExercise(root_ / "scenes" / "liver-one-arm.json", "", root_ / "stick");
+    require(exported.ok(), "the shipped exercise cannot be exported");
+    require(::mkfifo((root_ / "stick" / "pipe.json").c_str(), 0600) == 0, "no pipe can be made");
+    fs::create_symlink("/dev/zero", root_ / "stick" / "link.json");
   }
   ~Files() {
     std::error_code error;
@@ -56,13 +67,16 @@ class Files {
   Files& operator=(const Files&) = delete;
 
   fs::path put(Kind kind, std::string_view bytes) const {
-    const fs::path file =
-        kind == kRecording ? root_ / "input.h5" : root_ / kFolders[kind] / "input.json";
+    const fs::path file = kind == kRecording ? root_ / "input.h5"
+                          : kind == kList    ? root_ / "stick" / "exercise.json"
+                          : kind > kList     ? root_ / "input.json"
+                                             : root_ / kFolders[kind] / "input.json";
     std::ofstream out(file, std::ios::binary);
     out.write(bytes.data(), std::streamsize(bytes.size()));
     require(out.good(), "the temporary folder is full");
     return file;
   }
+  const fs::path& root() const { return root_; }
   fs::path scene(const char* name) const { return root_ / "scenes" / name; }
 
  private:
@@ -117,6 +131,25 @@ void runScript(const Files& files, const fs::path& file) {
   run(*scene, *script);
 }
 
+void importFolder(const fs::path& list, const fs::path& storage) {
+  const auto imported = importExercise(list.parent_path(), storage);
+  if (!imported) return expectSaid(imported.error());
+  std::error_code none;
+  fs::remove_all(storage, none);
+}
+
+// What is read once is written and read again as it was.
+template <class Read>
+void readAgain(const fs::path& file, const Read& read) {
+  const Result<Json> json = readJsonFile(file);
+  if (!json) return expectSaid(json.error());
+  const auto once = read(*json, "input");
+  if (!once) return expectSaid(once.error());
+  const Json written = toJson(*once);
+  const auto twice = read(written, "again");
+  require(twice.ok() && toJson(*twice) == written, "what was read is written otherwise");
+}
+
 void replayFile(const fs::path& file) {
   const auto recording = SessionReader::open(file);
   if (!recording) return expectSaid(recording.error());
@@ -147,6 +180,16 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       break;
     case kRecording:
       replayFile(file);
+      listRecording(file);
+      break;
+    case kList:
+      importFolder(file, files.root() / "storage");
+      break;
+    case kCase:
+      readAgain(file, caseRecordFrom);
+      break;
+    case kProvenance:
+      readAgain(file, provenanceFrom);
       break;
     default:
       runWith(files, kind);

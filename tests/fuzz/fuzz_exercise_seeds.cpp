@@ -2,6 +2,8 @@
 // shipped scene. Each must be accepted, or the program fails.
 //
 // usage: fuzz_exercise_seeds FOLDER
+#include <hdf5.h>
+
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
@@ -11,7 +13,10 @@
 #include "base/file.h"
 #include "base/system.h"
 #include "cases.h"
+#include "exercise/exercise_folder.h"
 #include "exercise_files.h"
+#include "imaging/report/provenance.h"
+#include "library/case_record.h"
 #include "session/session.h"
 #include "training/replay.h"
 
@@ -47,6 +52,63 @@ Status record(const fs::path& scene_file, const fs::path& file) {
   return Error{"DIFFERS", "A recording does not replay", scene_file.string(), ""};
 }
 
+// A recording whose ticks are a link to a pipe, and one whose events lie in another file: refused, and
+// opening nothing.
+Status writeForeign(const fs::path& folder, const fs::path& recording, const std::string& name) {
+  const auto with = [&](const std::string& kind, const char* dataset, const auto& put) {
+    const fs::path foreign = folder / "foreign.h5";
+    fs::copy_file(recording, foreign, fs::copy_options::overwrite_existing);
+    const hid_t file = H5Fopen(foreign.c_str(), H5F_ACC_RDWR, H5P_DEFAULT);
+    H5Ldelete(file, dataset, H5P_DEFAULT);
+    put(file);
+    H5Fclose(file);
+    if (SessionReader::open(foreign)) return Error{"TAKEN", "A foreign recording is taken", kind, ""};
+    const Status written = writeSeed(folder, kRecording, kind + "-" + name, foreign);
+    fs::remove(foreign);
+    return written ? Error{} : written.error();
+  };
+  const Error linked = with("linked", "ticks", [](hid_t file) {
+    H5Lcreate_external("scenes/pipe.json", "/x", file, "ticks", H5P_DEFAULT, H5P_DEFAULT);
+  });
+  if (!linked.code.empty()) return linked;
+  const Error outside = with("outside", "events", [](hid_t file) {
+    const hsize_t count = 8;
+    const hid_t space = H5Screate_simple(1, &count, nullptr), made = H5Pcreate(H5P_DATASET_CREATE);
+    H5Pset_external(made, "/dev/zero", 0, 64);
+    H5Dclose(H5Dcreate2(file, "events", H5T_NATIVE_INT64, space, H5P_DEFAULT, made, H5P_DEFAULT));
+    H5Pclose(made);
+    H5Sclose(space);
+  });
+  return outside.code.empty() ? Status() : Status(outside);
+}
+
+// The list of an exported exercise, and what a case of the library says of itself.
+Status writeOfCases(const fs::path& folder) {
+  const fs::path stick = folder / "stick";
+  const auto exported =
+      exportExercise(resourceFolder() / "scenes" / "liver-one-arm.json", "", stick);
+  if (!exported) return exported.error();
+  if (Status s = writeSeed(folder, kList, "list", stick / "exercise.json"); !s) return s;
+  fs::remove_all(stick);
+  CaseRecord record;
+  record.name = "Head 2026-11-24 1";
+  record.imported = "2026-11-24T09:30:00";
+  record.region = BodyRegion::head;
+  record.grid.size = {48, 48, 48};
+  record.volume_sha256 = std::string(64, 'a');
+  record.verdict = Verdict::repaired;
+  record.structures = {{"liver", 1500.0, Vec3(0.5)}};
+  record.names_key = "0123456789abcdef";
+  if (Result<CaseRecord> again = caseRecordFrom(toJson(record), "case"); !again) return again.error();
+  if (Status s = writeTextFile(folder / "case", char(kCase) + toJson(record).dump()); !s) return s;
+  Provenance of;
+  of.source = "DICOM";
+  of.answers = {{"FACE", "deface"}};
+  of.changes = {{"GANTRY_TILT", "repair", "The stack leans", {"3"}, "Straightened"}};
+  if (Result<Provenance> again = provenanceFrom(toJson(of), "p"); !again) return again.error();
+  return writeTextFile(folder / "provenance", char(kProvenance) + toJson(of).dump());
+}
+
 Status writeSeeds(const fs::path& folder) {
   if (Status made = makeFolder(folder); !made) return made;
   for (int kind = 0; kind < kRecording; ++kind) {
@@ -58,10 +120,11 @@ Status writeSeeds(const fs::path& folder) {
       const fs::path recording = folder / "recording.h5";
       if (Status s = record(entry.path(), recording); !s) return s;
       if (Status s = writeSeed(folder, kRecording, "recording-" + name, recording); !s) return s;
+      if (Status s = writeForeign(folder, recording, name); !s) return s;
       fs::remove(recording);
     }
   }
-  return {};
+  return writeOfCases(folder);
 }
 
 }  // namespace

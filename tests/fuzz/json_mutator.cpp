@@ -20,7 +20,7 @@ class Mutator {
     places_.clear();
     collect(root);
     Json& place = *places_[std::size_t(below(places_.size()))];
-    switch (below(8)) {
+    switch (below(10)) {
       case 0:
       case 1:
       case 2:
@@ -41,6 +41,19 @@ class Mutator {
         break;
       case 6:  // another type
         place = Json::array({nullptr, true, 7, "x", Json::array(), Json::object()})[below(6)];
+        break;
+      case 8:  // a long list
+        if (place.is_array()) {
+          const Json one = place.empty() ? Json(7) : Json(place[std::size_t(below(place.size()))]);
+          const int count = 200 + below(3000);
+          for (int n = 0; n < count; ++n) place.push_back(one);
+        }
+        break;
+      case 9:  // many members
+        if (place.is_object()) {
+          const int count = 100 + below(2000);
+          for (int n = 0; n < count; ++n) place["f" + std::to_string(n)] = n;
+        }
         break;
       case 7:  // an unknown or a known field
         if (place.is_object()) place[kFields[below(std::size(kFields))]] = number(Json(1.0));
@@ -98,6 +111,15 @@ class Mutator {
                                   "liver",
                                   "right",
                                   "../tools/burr6.json",
+                                  "<b>x</b><img src='/dev/zero'>",
+                                  "<a href='file:///etc/passwd'>x</a>",
+                                  "\x1b[2J\x07 \xc2\x9b \xe2\x80\x8b \xe2\x80\xae",
+                                  "two\nlines",
+                                  "phantom:cranium/../x",
+                                  "../../../etc/passwd",
+                                  "link.json",
+                                  std::string("a\0b", 3),
+                                  "\xff\xfe",
                                   std::string(5000, 'a')};
     return kTexts[below(std::size(kTexts))];
   }

@@ -13,6 +13,7 @@ import tempfile
 import unittest
 from pathlib import Path
 
+from check_runpath import faults
 from lab_support import LAB, SOURCE, WINDOW, main
 
 BUILD = Path(LAB).parents[1]
@@ -74,6 +75,11 @@ class Package(unittest.TestCase):
         self.assertIn("qt6-qpa-plugins", depends)
         self.assertNotIn("-dev", depends)
         self.assertIn("xvfb", output("dpkg-deb", "-f", self.deb, "Recommends"))
+
+    def test_looks_for_libraries_nowhere_but_where_the_system_does(self):
+        found, count = faults([self.root])
+        self.assertEqual(found, [])
+        self.assertGreaterEqual(count, 6)
 
     def test_tells_nobody_where_it_was_built(self):
         for path in self.root.rglob("*"):

@@ -1,9 +1,13 @@
 #include "ui/cases/case_entry.h"
 
+#include <QBuffer>
 #include <QCoreApplication>
 #include <QDateTime>
+#include <QImageReader>
 #include <QLocale>
 
+#include "base/file.h"
+#include "base/log.h"
 #include "base/system.h"
 #include "ui/cases/import_words.h"
 #include "ui/common/words.h"
@@ -94,23 +98,42 @@ QString caseWords(const Case& of) {
   return about;
 }
 
+// Null where it is none of ours: another format, which a plugin would read, or a size that takes
+// seconds.
+QImage pictureIn(const std::filesystem::path& file) {
+  constexpr std::size_t kMostBytes = std::size_t{8} << 20;
+  constexpr int kMost_px = 2048;
+  const Result<std::string> bytes = readWholeFile(file, kMostBytes);
+  if (!bytes) return {};
+  QByteArray data = QByteArray::fromStdString(*bytes);
+  QBuffer buffer(&data);
+  QImageReader reader(&buffer, "png");
+  reader.setAutoDetectImageFormat(false);
+  const QSize size = reader.size();
+  if (size.isEmpty() || size.width() > kMost_px || size.height() > kMost_px) return {};
+  return reader.read();
+}
+
 Result<std::vector<CaseEntry>> listCases(const CaseLibrary& library,
                                          const std::filesystem::path& recordings,
                                          const Progress& progress) {
+  library.bringUpToDate(progress);
   std::vector<CaseEntry> entries;
   for (const ListedCase& listed : library.list()) {
     CaseEntry entry;
     entry.id = listed.id;
     entry.record = listed.record;
     entry.problem = listed.problem;
-    const std::filesystem::path picture = listed.record.folder / "picture.png";
-    std::error_code ec;  // a pipe would be waited for
-    if (std::filesystem::is_regular_file(picture, ec)) (void)entry.picture.load(toQt(picture));
+    entry.picture = pictureIn(listed.record.folder / case_folders::kPictureFile);
     entries.push_back(std::move(entry));
   }
   for (const std::string& name : phantomNames()) entries.push_back(builtIn(name));
   Result<std::vector<ListedRecording>> recorded = listRecordings(recordings, progress);
-  if (!recorded) return recorded.error();
+  if (!recorded) {
+    if (recorded.error().code == "CANCELLED") return recorded.error();
+    spdlog::warn("No recordings: {}", recorded.error().code);  // the cases are there all the same
+    return entries;
+  }
   for (CaseEntry& entry : entries) {
     for (const ListedRecording& one : *recorded) {
       const std::string key = entry.caseKey();

@@ -1,10 +1,11 @@
 #include "ui/cases/cases_workspace.h"
 
 #include <QDialogButtonBox>
-#include <QFile>
+#include <QImage>
 #include <QTextBrowser>
 #include <QVBoxLayout>
 
+#include "base/file.h"
 #include "scene/scene.h"
 #include "scene/scene_structures.h"
 #include "ui/cases/report_file.h"
@@ -22,6 +23,16 @@ namespace trephine {
 namespace {
 
 constexpr int kMostRecent = 10;
+
+// The page of a case's folder, which anybody may have made: it opens nothing else.
+class PageAlone : public QTextBrowser {
+ public:
+  PageAlone() { setOpenLinks(false); }
+
+ protected:
+  // A picture: what is none, or nothing, Qt would then look for in a file by itself.
+  QVariant loadResource(int, const QUrl&) override { return QImage(1, 1, QImage::Format_ARGB32); }
+};
 
 Error stillChanging() {
   return {"BUSY", "The change before is still being written", "", "Try again in a moment"};
@@ -305,18 +316,19 @@ void CasesWorkspace::askToDelete(const CaseEntry& entry) {
 }
 
 void CasesWorkspace::showReport(const CaseEntry& entry) {
-  QFile page(toQt(entry.record.folder / "report.html"));
-  if (!page.open(QIODevice::ReadOnly)) {
-    return bench_.report({"MISSING_FILE", "The case's report cannot be read",
-                          (entry.record.folder / "report.html").string(),
+  constexpr std::size_t kMostBytes = std::size_t{4} << 20;
+  const Result<std::string> page = readWholeFile(entry.record.folder / case_folders::kReportPage, kMostBytes);
+  if (!page) {
+    return bench_.report({page.error().code, "The case's report cannot be read",
+                          (entry.record.folder / case_folders::kReportPage).string(),
                           "The case can be used without it"});
   }
   auto* dialog = new QDialog(bench_.window());
   dialog->setObjectName("reportDialog");
   dialog->setAttribute(Qt::WA_DeleteOnClose);
   dialog->setWindowTitle(tr("Import report of \"%1\"").arg(toQt(entry.record.name)));
-  auto* text = new QTextBrowser;
-  text->setHtml(QString::fromUtf8(page.readAll()));
+  auto* text = new PageAlone;
+  text->setHtml(toQt(*page));
   auto* close = new QDialogButtonBox(QDialogButtonBox::Close);
   connect(close, &QDialogButtonBox::rejected, dialog, &QDialog::reject);
   auto* layout = new QVBoxLayout(dialog);
@@ -328,10 +340,11 @@ void CasesWorkspace::showReport(const CaseEntry& entry) {
 
 // --- Importing ---
 
-void CasesWorkspace::caseRead(const Case& read, const std::filesystem::path& labels) {
+void CasesWorkspace::caseRead(Case read, const std::filesystem::path& labels) {
   NewCase to_save;
   to_save.report = workstation_.import().report();
   to_save.source = workstation_.import().identity();
+  read.identity = std::make_shared<const SourceIdentity>(to_save.source);
   bench_.unlessLost({Bench::Loss::structures, Bench::Loss::cuts}, [this, read, labels, to_save] {
     bench_.setCaseSource(workstation_.import().source());
     bench_.goOnceOpen(Place::prepare);

@@ -46,7 +46,7 @@ class CasesWorkspace : public Workspace {
   void rename(const CaseEntry& entry, const QString& name);
   void askToDelete(const CaseEntry& entry);
   void showReport(const CaseEntry& entry);
-  void caseRead(const Case& read, const std::filesystem::path& labels);
+  void caseRead(Case read, const std::filesystem::path& labels);
   void showCase();
   void showPhase();
 

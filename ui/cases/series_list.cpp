@@ -8,6 +8,7 @@
 
 #include "ui/cases/state_mark.h"
 #include "ui/common/colours.h"
+#include "ui/common/plain_text.h"
 #include "ui/common/words.h"
 
 namespace trephine {
@@ -136,9 +137,8 @@ void fill(QListWidgetItem& item, const SeriesReport& series, const Answers& answ
   item.setData(kLine, line);
   item.setData(kState, int(state));
   item.setData(Qt::AccessibleTextRole, QStringList{name, line, stateWord(state)}.join(", "));
-  item.setToolTip(QString("<b>%1</b><br>%2<br>%3")
-                      .arg(name.toHtmlEscaped(), line.toHtmlEscaped(),
-                           verdictSentence(series, answers).toHtmlEscaped()));
+  item.setToolTip(
+      inLines(QStringList{name, line, verdictSentence(series, answers)}.join('\n')));
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <QStyleFactory>
 
 #include "scene/scene.h"
+#include "ui/common/plain_text.h"
 
 namespace trephine::colours {
 
@@ -29,6 +30,7 @@ void makeLight() {
 }  // namespace
 
 void applyTheme(QApplication& application, Theme theme, int text_percent) {
+  PlainText::rule();
   if (theme == Theme::light) makeLight();
   QFont font = application.font();
   font.setPointSizeF(font.pointSizeF() * text_percent / 100.0);

@@ -37,8 +37,8 @@ inline const QColor kOnPicture(0xe4, 0xe6, 0xea);
 
 enum class Theme { dark, light };
 
-// Fusion style, palette and a few style rules; text so many per cent of its usual size. Before the
-// first widget.
+// Fusion style, palette and a few style rules; text so many per cent of its usual size, and plain
+// (PlainText). Before the first widget.
 void applyTheme(QApplication& application, Theme theme = Theme::dark, int text_percent = 100);
 
 // In which an arm's tool, box and card are drawn; `index`: among the scene's.

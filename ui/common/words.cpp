@@ -182,14 +182,14 @@ QString forceChangeWords(const ArmRecord& arm, bool paused) {
 }
 
 QString forceChangeMeanings() {
-  QString rows;
+  QStringList rows{
+      tr("What is changed in the force that the tissue demands, before it is sent.")};
   for (const PartWords& part : kPartWords) {
-    rows += QStringLiteral("<p><b>%1</b>: %2</p>").arg(tr(part.words), tr(part.meaning));
+    rows << QStringLiteral("%1: %2").arg(tr(part.words), tr(part.meaning));
   }
-  return tr("<p>What is changed in the force that the tissue demands, before it is sent.</p>") +
-         rows +
-         tr("<p><b>off</b>: in a pause, a fault, and tissue that the tool did not come into, "
-            "nothing is sent.</p>");
+  rows << tr("off: in a pause, a fault, and tissue that the tool did not come into, nothing is "
+             "sent.");
+  return rows.join("\n\n");
 }
 
 QString faultWords(std::uint32_t faults) {

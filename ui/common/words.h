@@ -40,7 +40,7 @@ QString controllerMeaning(ControllerKind kind);
 // What makes the sent force another than the demanded one: the parts of the controller that acted
 // (ControllerPart), or why there is none at all.
 QString forceChangeWords(const ArmRecord& arm, bool paused);
-// Each of those words explained, as rich text.
+// Each of those words explained, a paragraph each.
 QString forceChangeMeanings();
 // Each fault bit as a sentence, one a line; empty for none.
 QString faultWords(std::uint32_t faults);

@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/child_process.h"
 #include "base/file.h"
 #include "base/log.h"
 #include "base/system.h"
-#include "lab/common/child_process.h"
 #include "lab/common/temporary_folder.h"
 #include "lab/touch/law_costs.h"
 #include "lab/trades/recommended.h"

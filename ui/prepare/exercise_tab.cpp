@@ -323,17 +323,23 @@ void ExerciseTab::importIt() {
   dialog->setOption(QFileDialog::ShowDirsOnly);
   connect(dialog, &QFileDialog::fileSelected, this, [this](const QString& folder) {
     auto scene = std::make_shared<std::filesystem::path>();
+    auto without_devices = std::make_shared<bool>(false);
     workstation_.save(
         tr("The exercise is imported."),
         [from = toPath(folder), storage = bench_.storage(),
-         scene](const Progress& progress) -> Status {
+         scene, without_devices](const Progress& progress) -> Status {
           const auto imported = trephine::importExercise(from, storage, progress);
           if (!imported) return imported.error();
           if (!imported->check.verified()) return notVerified(imported->check);
           *scene = imported->scene;
+          *without_devices = imported->left_devices_out;
           return {};
         },
-        [this, scene] {
+        [this, scene, without_devices] {
+          if (*without_devices) {
+            bench_.say(tr("The exercise is imported. It named devices and how they are set: those "
+                          "of this workstation are used instead."));
+          }
           bench_.tellExercises();
           bench_.unlessLost({Bench::Loss::structures, Bench::Loss::cuts, Bench::Loss::tissues},
                             [this, scene] { bench_.openExercise(*scene, Place::prepare); });

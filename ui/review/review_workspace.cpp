@@ -14,7 +14,8 @@ namespace {
 // The case that it was done on: one that comes with the program, or one that is kept.
 Result<Case> recordedCase(const ListedRecording& recording, CaseLibrary& library,
                           const Progress& progress) {
-  if (!recording.case_source.empty()) return readCase(recording.case_source, progress);
+  // A recording may be a stranger's: it opens no file.
+  if (phantomNamed(recording.case_source)) return readCase(recording.case_source, progress);
   for (const ListedCase& one : library.list()) {
     if (one.problem || one.record.volume_sha256 != recording.volume_sha256) continue;
     Result<Workstation::Stored> stored = storedCase(library, one.id, progress);
@@ -67,7 +68,9 @@ void ReviewWorkspace::list() {
         const bool is_there = std::ranges::any_of(
             listed.rows, [&](const ListedRecording& row) { return row.file == opened; });
         if (!opened.empty() && !is_there) {
-          listed.rows.insert(listed.rows.begin(), listRecording(opened));
+          Result<std::vector<ListedRecording>> one = listFiles({opened}, progress);
+          if (!one) return one.error();
+          listed.rows.insert(listed.rows.begin(), one->front());
         }
         for (const std::string& name : phantomNames()) {
           listed.cases[phantomSource(name)] = builtInName(name);

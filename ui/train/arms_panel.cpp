@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "ui/common/colours.h"
+#include "ui/common/plain_text.h"
 #include "ui/common/words.h"
 
 namespace trephine {
@@ -144,17 +145,17 @@ ArmsPanel::Card ArmsPanel::addCard(const Scene& scene, std::size_t index) {
   card.bar->setObjectName(prefix + "ForceBar");
   card.bar->setToolTip(
       tr("Bar: the force sent, against the arm's limit. Mark: the force demanded."));
-  card.energy->setToolTip(tr(
-      "<p>Net work that the sent force did on the hand since the start; below zero where the "
+  card.energy->setToolTip(inLines(tr(
+      "Net work that the sent force did on the hand since the start; below zero where the "
       "hand worked on the tissue. A little above zero is no fault: the encoder hides about 0.1 mJ "
       "of each contact, and a force that comes back after a pause or a change gives out what the "
-      "tissue holds.</p><p>Red: just now the arm gives out more than 1 mJ a second beyond what "
-      "was pressed into the tissue. It shakes or pushes by itself.</p>"));
+      "tissue holds.\n\nRed: just now the arm gives out more than 1 mJ a second beyond what "
+      "was pressed into the tissue. It shakes or pushes by itself.")));
   card.position->setToolTip(tr("Tip of the tool in the patient, mm: left, posterior, superior."));
   card.parts->setWordWrap(true);
   card.parts->setMinimumHeight(2 * card.parts->fontMetrics().lineSpacing());  // or all below moves
   card.parts->setAlignment(Qt::AlignTop | Qt::AlignLeft);
-  card.parts->setToolTip(forceChangeMeanings());
+  card.parts->setToolTip(inLines(forceChangeMeanings()));
   card.faults->setWordWrap(true);
   colours::setText(*card.faults, colours::kBad);
 

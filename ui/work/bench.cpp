@@ -8,7 +8,6 @@
 #include <QPlainTextEdit>
 #include <QPushButton>
 #include <QRegularExpression>
-#include <QSettings>
 
 #include "base/log.h"
 #include "exercise/exercise_folder.h"
@@ -125,12 +124,6 @@ QFileDialog* Bench::fileDialog(const char* name, const QString& title, const QSt
   dialog->setDirectory(last.isEmpty() ? QDir::homePath() : last);
   connect(dialog, &QFileDialog::fileSelected, this,
           [&last](const QString& file) { last = QFileInfo(file).absolutePath(); });
-  // Qt keeps where its dialogs have been, for the next user to read: folders named for patients.
-  connect(dialog, &QObject::destroyed, [] {
-    QSettings settings(QSettings::UserScope, "QtProject");
-    settings.remove("FileDialog/history");
-    settings.remove("FileDialog/lastVisited");
-  });
   return dialog;
 }
 

@@ -6,6 +6,7 @@
 #include "base/memory.h"
 #include "base/system.h"
 #include "imaging/structure_importer.h"
+#include "library/name_words.h"
 #include "scene/scene_structures.h"
 #include "session/arm_devices.h"
 #include "tissue/tissue_edits.h"
@@ -235,6 +236,11 @@ Result<Case> Workstation::withAnswered(const Case& of, const Opened& opening, As
   StructureRequest request{opening.answers, true, sourceOf(of)};
   if (const auto share = request.answers.find(kThreshold); share != request.answers.end()) {
     request.threshold = toQt(share->second).toDouble();
+  }
+  if (of.identity) {
+    request.hide_names = [keys = sourceKeys(*of.identity)](Segmentation& segmentation) {
+      return hideNames(segmentation, keys);
+    };
   }
   request.ask_threshold = !request.answers.contains(kThreshold);
   Result<StructureFit> fit = importStructures(opening.labels_file, *of.volume, request, progress);

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "base/sha256.h"
+#include "base/stretched_hash.h"
 
 namespace trephine {
 
@@ -16,6 +17,17 @@ std::string seriesHash(const std::string& uid) {
 
 std::string hashOrNone(const std::string& uid) {
   return uid.empty() ? "" : seriesHash(uid);
+}
+
+bool SourceIds::standsFor(const std::string& own, const std::string& hash) const {
+  return !own.empty() && !hash.empty() && own == (key.empty() ? hash : keyedHash(hash, key));
+}
+
+SourceIds SourceIds::keyed(const std::string& with_key) const {
+  const auto by_key = [&](const std::string& id) {
+    return id.empty() ? std::string() : keyedHash(id, with_key);
+  };
+  return {by_key(study), by_key(series), by_key(frame_of_reference), with_key, false};
 }
 
 }  // namespace trephine

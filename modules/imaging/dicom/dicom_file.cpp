@@ -179,7 +179,9 @@ void readKind(const DicomItem& item, const DcmTagKey& type, DicomHeader& header)
 void readValueMaps(const DicomItem& item, DicomHeader& header) {
   const std::vector<DcmItem*> maps = item.items(DCM_RealWorldValueMappingSequence);
   if (!maps.empty()) header.value_maps.clear();
+  constexpr std::size_t kMost = 64;  // each frame of a file has its own
   for (DcmItem* map : maps) {
+    if (header.value_maps.size() == kMost) break;
     const DicomItem values(map);
     header.value_maps.push_back(
         {trimmedText(firstItem(values, DCM_MeasurementUnitsCodeSequence), DCM_CodeValue),
@@ -242,6 +244,21 @@ bool isThere(const DicomHeader& frame) {
              frame.file_bytes;
 }
 
+// Memory that a copy of a header takes for its texts.
+std::uint64_t textBytes(const DicomHeader& h) {
+  std::uint64_t bytes = 0;
+  for (const std::string* text :
+       {&h.series_key, &h.modality, &h.description, &h.body_part, &h.rescale_type,
+        &h.instance_number, &h.patient[0], &h.patient[1], &h.patient[2], &h.patient_name,
+        &h.study_text, &h.volumetric, &h.technique, &h.presentation, &h.kernel, &h.scanner,
+        &h.patient_position, &h.contrast, &h.photometric, &h.defect_text}) {
+    bytes += text->size();
+  }
+  for (const std::string& text : h.image_type) bytes += sizeof text + text.size();
+  for (const auto& map : h.value_maps) bytes += sizeof map + map.unit.size();
+  return bytes;
+}
+
 std::vector<DicomHeader> splitFrames(const DicomItem& data, DicomHeader whole) {
   const bool grouped = data.find(DCM_SharedFunctionalGroupsSequence) ||
                        data.find(DCM_PerFrameFunctionalGroupsSequence);
@@ -257,6 +274,14 @@ std::vector<DicomHeader> splitFrames(const DicomItem& data, DicomHeader whole) {
   // Without functional groups nothing says where a frame lies.
   if (!grouped) whole.position_mm.reset();
   const DicomItem shared = firstItem(data, DCM_SharedFunctionalGroupsSequence);
+  constexpr std::uint64_t kMostText = std::uint64_t(512) << 20;
+  if (textBytes(whole) * std::uint64_t(whole.frames) > kMostText) {
+    whole.defect = Defect::size_mismatch;
+    whole.defect_text = "its header says too much for so many frames";
+    std::vector<DicomHeader> one;
+    one.push_back(std::move(whole));
+    return one;
+  }
   std::vector<DicomHeader> frames(std::size_t(whole.frames), whole);
   for (int n = 0; n < whole.frames; ++n) {
     DicomHeader& frame = frames[std::size_t(n)];
@@ -376,12 +401,12 @@ Result<std::vector<DicomHeader>> readDicomHeaders(const std::filesystem::path& f
   if (head.find(kDicomDir) != head.npos) {
     return skip("a DICOMDIR: the files themselves are read instead");
   }
-  if (nestsTooDeeply(file, file_bytes, progress)) return skip("nested too deeply");
 
   DcmFileFormat dicom;
   dicom.transferInit();
   const bool cut =
       dicom.readUntilTag(stream, EXS_Unknown, EGL_noChange, kLongestValue, DCM_PixelData).bad();
+  if (stream.isTooDeep()) return skip("nested too deeply");
   if (cut) {
     dropHalfRead(*dicom.getDataset());
     dropHalfRead(*dicom.getMetaInfo());

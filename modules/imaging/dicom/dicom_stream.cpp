@@ -7,20 +7,12 @@
 
 #include <algorithm>
 #include <cstring>
-#include <fstream>
-#include <string>
 #include <string_view>
-
-#include "imaging/common/workers.h"
 
 namespace trephine {
 
 namespace {
 
-// A level of nesting takes at least 16 bytes of file and up to 2.1 KB of stack (measured), so that
-// a file of this size cannot exhaust a worker's stack; the items of larger ones are counted first.
-constexpr std::uint64_t kSafeBytes = std::uint64_t(2) << 20;
-constexpr std::size_t kMostItems = 100000;
 constexpr offile_off_t kMostSkipped = offile_off_t(256) << 20;  // inflated in about a second
 
 // Stands for a value that was skipped: it cannot be had later.
@@ -112,7 +104,8 @@ DicomStream::DicomStream(const std::filesystem::path& file, const StreamBounds& 
 offile_off_t DicomStream::avail() {
   const std::uintptr_t now = stackPlace();
   const std::size_t taken = std::max(now, stack_) - std::min(now, stack_);
-  if (taken > bounds_.stack || read_ > bounds_.inflated || skipped_ > kMostSkipped) return 0;
+  too_deep_ = too_deep_ || taken > bounds_.stack;
+  if (too_deep_ || read_ > bounds_.inflated || skipped_ > kMostSkipped) return 0;
   return DcmInputStream::avail();
 }
 
@@ -142,27 +135,6 @@ OFCondition DicomStream::installCompressionFilter(E_StreamCompression filter) {
 DcmInputStreamFactory* DicomStream::newFactory() const {
   if (deflated_) return new NoValue;
   return new DcmInputFileStreamFactory(OFFilename(path_.c_str()), tell());
-}
-
-bool nestsTooDeeply(const std::filesystem::path& file, std::uint64_t file_bytes,
-                    const Progress& progress) {
-  if (file_bytes <= kSafeBytes) return false;
-  constexpr std::string_view kLittle("\xFE\xFF\x00\xE0", 4), kBig("\xFF\xFE\xE0\x00", 4);
-  std::ifstream in(file, std::ios::binary);
-  std::string block(kPieceBytes, '\0');
-  std::size_t items = 0, kept = 0;
-  while (in) {
-    if (progress.cancelled()) return true;
-    in.read(block.data() + kept, std::streamsize(block.size() - kept));
-    const std::string_view view(block.data(), kept + std::size_t(in.gcount()));
-    for (const std::string_view tag : {kLittle, kBig}) {
-      for (std::size_t at = view.find(tag); at != view.npos; at = view.find(tag, at + 4)) ++items;
-    }
-    if (items > kMostItems) return true;
-    kept = std::min<std::size_t>(3, view.size());  // a tag across two blocks
-    std::memmove(block.data(), view.data() + view.size() - kept, kept);
-  }
-  return false;
 }
 
 }  // namespace trephine

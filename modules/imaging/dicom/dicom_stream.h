@@ -63,6 +63,10 @@ class DicomStream : public DcmInputStream {
   // Zeros after bytes that were skipped.
   const std::array<std::uint8_t, 12>& newest() const { return newest_; }
 
+  // Whether it ended because sequences nest so deep that the thread's stack would not hold them: a
+  // level takes up to 2.1 KB of it (measured).
+  bool isTooDeep() const { return too_deep_; }
+
   offile_off_t avail() override;
   offile_off_t read(void* to, offile_off_t bytes) override;
   offile_off_t skip(offile_off_t bytes) override;
@@ -74,14 +78,9 @@ class DicomStream : public DcmInputStream {
   std::filesystem::path path_;
   StreamBounds bounds_;
   std::uintptr_t stack_;  // where it was made
-  bool deflated_ = false;
+  bool deflated_ = false, too_deep_ = false;
   offile_off_t read_ = 0, skipped_ = 0;  // of a deflated data set
   std::array<std::uint8_t, 12> newest_{};
 };
-
-// Whether sequences in the file might nest so deep that no worker's stack holds them, told by the
-// number of its items. True as well where it was cancelled.
-bool nestsTooDeeply(const std::filesystem::path& file, std::uint64_t file_bytes,
-                    const Progress& progress = Progress());
 
 }  // namespace trephine

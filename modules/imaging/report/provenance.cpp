@@ -33,10 +33,6 @@ Json toJson(const Provenance& provenance) {
           {"reduction", provenance.reduction},
           {"loss", std::move(loss)},
           {"volume_sha256", provenance.volume_sha256},
-          {"source_ids",
-           {{"study", provenance.source_ids.study},
-            {"series", provenance.source_ids.series},
-            {"frame_of_reference", provenance.source_ids.frame_of_reference}}},
           {"build", provenance.build}};
 }
 
@@ -86,8 +82,12 @@ Result<Provenance> provenanceFrom(const Json& json, const std::string& file) {
                                    loss.number("bone_volume_change_percent", kPercent)};
   }
   provenance.volume_sha256 = reader.text("volume_sha256");
-  JsonReader ids = reader.object("source_ids");
-  provenance.source_ids = {ids.text("study"), ids.text("series"), ids.text("frame_of_reference")};
+  if (reader.has("source_ids")) {
+    JsonReader ids = reader.object("source_ids");
+    provenance.source_ids.study = ids.text("study");
+    provenance.source_ids.series = ids.text("series");
+    provenance.source_ids.frame_of_reference = ids.text("frame_of_reference");
+  }
   provenance.build = reader.text("build");
   if (Status status = reader.finish(); !status) return status.error();
   return provenance;

@@ -1,6 +1,6 @@
 // What became of a source on its way to a volume, as JSON: in the import's answer, and in a file
-// beside a volume that is written. It names no patient, path or UID: "source_ids" are hashes of
-// UIDs.
+// beside a volume that is written. It names no patient, path or UID, and nothing that stands for
+// one: source_ids are not in it (the library keeps them by a key).
 #pragma once
 
 #include <filesystem>
@@ -13,7 +13,8 @@ namespace trephine {
 
 Json toJson(const Provenance& provenance);
 
-// The same back; `file` is named in errors. Errors: BAD_FIELD.
+// The same back; `file` is named in errors. Files of before say source_ids, which are taken. Errors:
+// BAD_FIELD.
 Result<Provenance> provenanceFrom(const Json& json, const std::string& file);
 
 // "head.nii.gz.provenance.json" for "head.nii.gz".

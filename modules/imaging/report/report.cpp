@@ -44,7 +44,8 @@ Json choiceJson(const Choice& choice) {
           {"words", choice.words}};
 }
 
-Json seriesJson(const SeriesReport& series, Identity identity) {
+// `number`: its place in the report, from 1, which names it where its UID may not.
+Json seriesJson(const SeriesReport& series, std::size_t number, Identity identity) {
   const bool shown = identity == Identity::shown;
   const GridGeometry& g = series.geometry;
   Json direction = Json::array();
@@ -55,7 +56,7 @@ Json seriesJson(const SeriesReport& series, Identity identity) {
   for (const Finding& finding : series.findings) findings.push_back(findingJson(finding));
   Json choices = Json::array();
   for (const Choice& choice : series.choices) choices.push_back(choiceJson(choice));
-  return {{"uid", shown ? cleanUtf8(series.uid) : seriesHash(series.uid)},
+  return {{"uid", shown ? cleanUtf8(series.uid) : std::to_string(number)},
           {"description", shown ? cleanUtf8(series.description) : ""},
           {"modality", shown ? cleanUtf8(series.modality) : shownTerm(series.modality)},
           {"source", shown ? series.source : ""},
@@ -115,9 +116,12 @@ Json toJson(const ImportReport& report, Identity identity) {
     skipped.push_back({{"reason", cleanUtf8(files.reason)}, {"count", files.count}});
   }
   Json series = Json::array();
-  for (const SeriesReport& one : report.series) series.push_back(seriesJson(one, identity));
   std::optional<std::string> chosen = report.chosen;
-  if (chosen && !shown) chosen = seriesHash(*chosen);
+  for (const SeriesReport& one : report.series) {
+    const std::size_t number = series.size() + 1;
+    series.push_back(seriesJson(one, number, identity));
+    if (!shown && report.chosen == one.uid) chosen = std::to_string(number);
+  }
   Json json = {{"path", shown ? cleanUtf8(report.path) : ""},
                {"files_seen", report.files_seen},
                {"files_read", report.files_read},

@@ -92,12 +92,11 @@ std::string seriesSection(const SeriesReport& series, std::size_t number, std::s
                      (chosen ? " (opened)" : "") + ": <font color=\"" +
                      verdictColour(series.verdict) + "\">" + verdictSentence(series.verdict) +
                      "</font></h3>\n<table cellpadding=\"2\">\n";
-  html += row("Kind", escaped(series.modality.empty() ? "unknown" : series.modality) + ", " +
+  html += row("Kind", escaped(series.modality.empty() ? "unknown" : shownTerm(series.modality)) + ", " +
                           escaped(series.source) +
                           (series.transfer_syntax.empty()
                                ? ""
                                : ", " + escaped(transferSyntaxName(series.transfer_syntax))));
-  html += row("Known as", "<font size=\"1\">" + seriesHash(series.uid) + "</font>");
   html += row("Slices",
               std::to_string(series.slices) +
                   (series.phases > 1 ? " in " + std::to_string(series.phases) + " phases" : ""));

@@ -124,7 +124,7 @@ std::string otherScale(const DicomHeader& header) {
   };
   for (const DicomHeader::ValueMap& map : header.value_maps) {
     if (map.unit != "[hnsf'U]" && map.unit != "HU") {
-      return map.unit.empty() ? "an unnamed unit" : "'" + map.unit + "'";
+      return map.unit.empty() ? "an unnamed unit" : "'" + shownTerm(map.unit) + "'";
     }
     if (!near(map.slope, header.format.slope) || !near(map.intercept, header.format.intercept)) {
       return "other HU";

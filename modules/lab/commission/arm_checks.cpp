@@ -9,7 +9,7 @@
 #include "base/system.h"
 #include "device/find_arms.h"
 #include "lab/commission/commission.h"
-#include "lab/common/child_process.h"
+#include "base/child_process.h"
 #include "lab/common/temporary_folder.h"
 #include "session/arm_trial.h"
 

@@ -9,9 +9,9 @@
 #include <sstream>
 #include <thread>
 
+#include "base/child_process.h"
 #include "base/file.h"
 #include "base/system.h"
-#include "lab/common/child_process.h"
 #include "lab/common/quantile.h"
 #include "lab/devices/loop_watch.h"
 #include "scene/arms_file.h"

@@ -5,8 +5,8 @@
 #include <thread>
 #include <utility>
 
+#include "base/child_process.h"
 #include "base/json.h"
-#include "lab/common/child_process.h"
 
 namespace trephine {
 

@@ -1,3 +1,4 @@
+#include "base/child_process.h"
 #include "bench/import/peers.h"
 
 #include <unistd.h>
@@ -9,7 +10,6 @@
 #include <optional>
 #include <sstream>
 
-#include "lab/common/child_process.h"
 #include "volume/volume_files.h"
 
 namespace trephine::bench {

@@ -1,3 +1,4 @@
+#include "base/child_process.h"
 #include "bench/import/peers.h"
 
 #include <gtest/gtest.h>
@@ -6,7 +7,6 @@
 #include <fstream>
 #include <iterator>
 
-#include "lab/common/child_process.h"
 #include "support.h"
 #include "unit/lab/import_fixture.h"
 #include "volume/volume_files.h"

@@ -372,10 +372,7 @@ class ImportGuiTest : public test::WindowTest {
                               QString("Head"), kLong_ms);
     // It is listed as soon as it is found.
     QTRY_VERIFY_WITH_TIMEOUT(!workstation().import().isWorking(), kLong_ms);
-    // Qt would keep where the dialog has been.
     QTRY_VERIFY(!files);
-    const QSettings kept(QSettings::UserScope, "QtProject");
-    QVERIFY(!kept.contains("FileDialog/history") && !kept.contains("FileDialog/lastVisited"));
     QVERIFY(!find<QPushButton>("import")->isEnabled());  // one slice is no volume
     QVERIFY(find<QLabel>("reportCard")->text().contains("not a volume"));
   }
@@ -410,9 +407,7 @@ class ImportGuiTest : public test::WindowTest {
             temporary_.filePath(QString("many/%1").arg(series)));
     }
     // The case opened before is drawn finely while nothing moves; that is not what is timed here.
-    QSignalSpy painted(&window_->view(), &ViewWidget::framePainted);
-    while (painted.wait(1500)) {
-    }
+    restRefined();
     QSignalSpy progressed(&workstation().import(), &ImportTask::progressed);
     Gaps gaps;
     QElapsedTimer clock;
@@ -456,7 +451,6 @@ class ImportGuiTest : public test::WindowTest {
         QVERIFY(!find<QLabel>("verdictSentence")->text().isEmpty());
       }
       list()->setCurrentRow(0);
-      rest();
       keepGrab(qPrintable(QString("import-%1.png").arg(folder)));
     }
   }

@@ -1,4 +1,4 @@
-#include "lab/common/child_process.h"
+#include "base/child_process.h"
 
 #include <gtest/gtest.h>
 #include <sys/stat.h>
@@ -12,7 +12,6 @@
 #include <sstream>
 #include <vector>
 
-#include "lab/import/read_floor.h"
 #include "support.h"
 
 namespace trephine {
@@ -179,27 +178,6 @@ TEST_F(Child, ThatCannotBeRunIsNamed) {
   EXPECT_EQ(run.error().code, "CANNOT_RUN");
   EXPECT_NE(run.error().sentence().find("no-such-program"), std::string::npos);
   EXPECT_NE(run.error().sentence().find("No such file"), std::string::npos);
-}
-
-TEST(ReadFloor, ReadsEveryByteOfEveryFile) {
-  const test::TemporaryFolder folder;
-  std::ofstream(folder / "a") << std::string(100000, 'a');
-  std::ofstream(folder / "b") << std::string(300, 'b');
-  std::ofstream(folder / "c");
-  const Result<ReadFloor> floor = readEveryByte(folder.path());
-  ASSERT_TRUE(floor) << floor.error().sentence();
-  EXPECT_EQ(floor->files, 3);
-  EXPECT_EQ(floor->bytes, 100300u);
-  EXPECT_GT(floor->seconds, 0.0);
-  EXPECT_GT(floor->kept_seconds, 0.0);
-  EXPECT_EQ(toJson(*floor)["bytes"], 100300u);
-}
-
-TEST(ReadFloor, SaysWhatItCannotRead) {
-  const test::TemporaryFolder folder;
-  EXPECT_EQ(readEveryByte(folder / "none").error().code, "MISSING_FOLDER");
-  std::filesystem::create_directory(folder / "sub");
-  EXPECT_EQ(readEveryByte(folder.path()).error().code, "UNREADABLE");
 }
 
 }  // namespace

@@ -64,6 +64,45 @@ TEST(ParseJson, RefusesNestingWithoutEnd) {
   EXPECT_TRUE(parseJson(std::string(30, '[') + std::string(30, ']'), "f.json").ok());
 }
 
+// "{"f0": 0, "f1": 0, ...}"
+std::string objectOf(std::size_t fields) {
+  std::string text = "{";
+  for (std::size_t n = 0; n < fields; ++n) {
+    text += (n ? ", " : "") + ("\"f" + std::to_string(n)) + "\": 0";
+  }
+  return text + "}";
+}
+
+TEST(ParseJson, ReadsAnObjectOfAThousandFieldsAndRefusesOneOfMore) {
+  const Result<Json> most = parseJson(objectOf(1024), "f.json");
+  ASSERT_TRUE(most.ok()) << most.error().sentence();
+  EXPECT_EQ(most->size(), 1024u);
+  EXPECT_TRUE(most->contains("f1023"));
+  const Result<Json> more = parseJson("{\"a\": [1, " + objectOf(1025) + "]}", "f.json");
+  ASSERT_FALSE(more.ok());
+  EXPECT_EQ(more.error().where, "f.json: a[1].f1024");
+  EXPECT_NE(more.error().what.find("more than 1024 fields"), std::string::npos);
+}
+
+std::string listOf(std::size_t values) {
+  std::string text = "[";
+  for (std::size_t n = 0; n < values; ++n) text += n ? ",0" : "0";
+  return text + "]";
+}
+
+TEST(ParseJson, RefusesMoreThanFourMillionValues) {
+  EXPECT_TRUE(parseJson(listOf(3999999), "f.json").ok()) << "the list is a value, too";
+  EXPECT_FALSE(parseJson(listOf(4000000), "f.json").ok());
+}
+
+TEST(ParseJson, IsCancelledInTheMiddleOfALongText) {
+  Progress progress;
+  progress.cancel();
+  const Result<Json> json = parseJson(listOf(10000), "f.json", progress);
+  ASSERT_FALSE(json.ok());
+  EXPECT_EQ(json.error().code, "CANCELLED");
+}
+
 TEST(ReadJsonFile, ReadsAFile) {
   const test::TemporaryFolder folder;
   ASSERT_TRUE(writeTextFile(folder / "f.json", R"({"a": 1})"));

@@ -18,6 +18,12 @@ TEST(StretchedHash, DiffersWithTheSalt) {
   EXPECT_NE(stretchedHash("doe", "a", 10), stretchedHash("roe", "a", 10));
 }
 
+TEST(KeyedHash, IsHmacSha256) {
+  // RFC 4231, test case 2, its first 16 bytes.
+  EXPECT_EQ(keyedHash("what do ya want for nothing?", "Jefe"), "5bdcc146bf60754e6a042426089575c7");
+  EXPECT_NE(keyedHash("a", "one"), keyedHash("a", "other"));
+}
+
 TEST(RandomHex, IsNeverTheSame) {
   const auto one = randomHex(16), other = randomHex(16);
   ASSERT_TRUE(one && other);

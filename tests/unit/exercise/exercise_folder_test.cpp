@@ -203,6 +203,93 @@ TEST_F(ExerciseFolder, WhatLiesOutsideOfItIsRefused) {
   EXPECT_FALSE(fs::exists(folder_ / "there"));
 }
 
+// The list of a folder as its files are now, which an exporter of a stranger writes as well.
+void listAnew(const fs::path& folder) {
+  Json list = *readJsonFile(folder / "exercise.json");
+  list["parts"] = Json::array();
+  for (const auto& entry : fs::recursive_directory_iterator(folder)) {
+    const std::string name = entry.path().lexically_relative(folder).string();
+    if (!entry.is_regular_file() || name == "exercise.json") continue;
+    const std::string bytes = test::bytesOfFile(entry.path());
+    list["parts"].push_back(
+        {{"file", name}, {"sha256", sha256Hex(bytes.data(), bytes.size())}, {"bytes", bytes.size()}});
+  }
+  ASSERT_TRUE(writeTextFile(folder / "exercise.json", list.dump()));
+}
+
+TEST_F(ExerciseFolder, DevicesOfAnotherWorkstationAreLeftOutOfAnImportAndThatIsSaid) {
+  exported(shipped("liver"));
+  EXPECT_FALSE(imported().left_devices_out);
+  const fs::path stick = folder_ / "stick";
+  Json scene = *readJsonFile(stick / "scene.json");
+  scene["arms"][0]["device"] = {{"plugin", "woodenhaptics"}, {"config", "tools/arm.json"}};
+  ASSERT_TRUE(writeTextFile(stick / "scene.json", scene.dump()));
+  ASSERT_TRUE(writeTextFile(stick / "tools/arm.json", R"({"gravity_N": 40})"));
+  listAnew(stick);
+  const ImportedExercise there = imported();
+  ASSERT_TRUE(there.check.verified());
+  EXPECT_TRUE(there.left_devices_out);
+  EXPECT_FALSE((*readJsonFile(there.scene))["arms"][0].contains("device"));
+  EXPECT_FALSE(fs::exists(there.scene.parent_path() / "tools/arm.json"));
+  EXPECT_TRUE(checkExercise(there.scene.parent_path())->verified());
+  EXPECT_EQ(imported().scene, there.scene) << "the same again is taken as it is";
+}
+
+TEST_F(ExerciseFolder, APartThatIsListedTwiceOrHasAnUnseenLetterInItsNameIsRefused) {
+  exported(shipped("liver"));
+  const fs::path list = folder_ / "stick/exercise.json";
+  const Json good = *readJsonFile(list);
+  Json twice = good;
+  for (int n = 0; n < 4000; ++n) twice["parts"].push_back(good["parts"][0]);
+  ASSERT_TRUE(writeTextFile(list, twice.dump()));
+  EXPECT_EQ(importExercise(folder_ / "stick", folder_ / "there").error().code, "BAD_FIELD");
+  for (const char* name : {"tools/a\nb.json", "tools/a\x1b[2Jb.json", "tools/a\u200bb.json"}) {
+    Json unseen = good;
+    unseen["parts"][1]["file"] = name;
+    ASSERT_TRUE(writeTextFile(list, unseen.dump()));
+    EXPECT_EQ(importExercise(folder_ / "stick", folder_ / "there").error().code, "BAD_FIELD");
+  }
+}
+
+TEST_F(ExerciseFolder, ACaseThatCannotBeOpenedFromItsPartsAloneIsRefusedAndNothingIsKept) {
+  const auto refused = [&] {
+    listAnew(folder_ / "stick");
+    const auto done = importExercise(folder_ / "stick", folder_ / "there");
+    EXPECT_FALSE(done.ok());
+    EXPECT_TRUE(exercisesIn(folder_ / "there").empty());
+    return done ? Error{} : done.error();
+  };
+  exported(ofAPatient());
+  const fs::path stick = folder_ / "stick";
+  const Json good = *readJsonFile(stick / "scene.json");
+  Json scene = good;
+  scene["case"] = "phantom:cranium/../x";
+  ASSERT_TRUE(writeTextFile(stick / "scene.json", scene.dump()));
+  EXPECT_EQ(refused().code, "BAD_FIELD");
+  // A header whose voxels are in a file that no list names, wherever that lies.
+  fs::create_directories(folder_ / "voxels");
+  Volume small;
+  small.geometry.size = {8, 8, 8};
+  small.hu.assign(512, 100);
+  ASSERT_TRUE(writeVolume(slabsOf(small), folder_ / "voxels/v.mha"));
+  std::string header = test::bytesOfFile(folder_ / "voxels/v.mha");
+  header.resize(header.find("ElementDataFile"));
+  const std::string beside = (folder_ / "voxels/v.raw").string();
+  ASSERT_TRUE(writeTextFile(beside, std::string(1024, '\0')));
+  for (const std::string& data : {beside, std::string("../../voxels/v.raw")}) {
+    ASSERT_TRUE(writeTextFile(stick / "case/volume.mhd", header + "ElementDataFile = " + data + "\n"));
+    scene["case"] = "case/volume.mhd";
+    ASSERT_TRUE(writeTextFile(stick / "scene.json", scene.dump()));
+    const Error error = refused();
+    EXPECT_EQ(error.sentence().find(".part-"), std::string::npos) << error.sentence();
+  }
+  // Cut short.
+  ASSERT_TRUE(writeTextFile(stick / "scene.json", good.dump()));
+  fs::remove(stick / "case/volume.mhd");
+  fs::resize_file(stick / "case/volume.mha", fs::file_size(stick / "case/volume.mha") / 2);
+  refused();
+}
+
 TEST_F(ExerciseFolder, IsNotWrittenOverWhatIsThereAndLeavesNothingWhereItFails) {
   ASSERT_TRUE(makeFolder(folder_ / "stick"));
   ASSERT_TRUE(writeTextFile(folder_ / "stick/mine.txt", "mine"));

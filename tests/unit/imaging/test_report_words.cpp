@@ -157,7 +157,9 @@ TEST_F(ReportWords, InJsonNameNothingOfTheSourceUnlessAsked) {
     EXPECT_EQ(hidden.dump().find(name), std::string::npos) << name;
   }
   EXPECT_EQ(hidden["series"][0]["uid"], hidden["chosen"]);
-  EXPECT_TRUE(std::regex_match(hidden["chosen"].get<std::string>(), std::regex("[0-9a-f]{32}")));
+  EXPECT_EQ(hidden["chosen"], "1") << "its number";
+  EXPECT_EQ(hidden.dump().find(seriesHash(uid)), std::string::npos);
+  EXPECT_EQ(reportPage(report_).find(seriesHash(uid)), std::string::npos);
   for (const char* key : {"description", "source"}) EXPECT_EQ(hidden["series"][0][key], "") << key;
   EXPECT_EQ(hidden["path"], "");
   EXPECT_EQ(shown["path"], folder().string());
@@ -183,11 +185,25 @@ TEST(SeriesHash, IsTheSameEverywhereAndKeepsTheNumberOfAPart) {
   EXPECT_EQ(seriesHash("file:Anna#2").find('#'), std::string::npos);
 }
 
-TEST_F(ReportWords, AHashChoosesTheSeriesAsItsUidDoes) {
+TEST_F(ReportWords, ANumberChoosesTheSeriesAsItsUidDoes) {
   CtFolder ct = scan();
   const std::string uid = ct.report().series.front().uid;
-  ASSERT_TRUE(ct.read(seriesHash(uid), {}, Progress()).ok());
+  ASSERT_TRUE(ct.read("1", {}, Progress()).ok());
   EXPECT_EQ(ct.report().chosen, uid);
+  EXPECT_EQ(ct.read("2", {}, Progress()).error().code, "NO_SUCH_SERIES");
+}
+
+TEST(SourceIds, ByAKeyStandForTheSameUidsAndForNobodyWithoutIt) {
+  const SourceIds plain{seriesHash("1.2"), seriesHash("1.2.3"), seriesHash("1.2.7")};
+  const SourceIds kept = plain.keyed("a"), others = plain.keyed("b");
+  EXPECT_NE(kept.study, plain.study);
+  EXPECT_NE(kept.study, others.study) << "two cases of one patient cannot be told";
+  for (const SourceIds* of : {&plain, &kept, &others}) {
+    EXPECT_TRUE(of->standsFor(of->study, seriesHash("1.2")));
+    EXPECT_FALSE(of->standsFor(of->study, seriesHash("1.3")));
+    EXPECT_FALSE(of->standsFor(of->study, ""));
+  }
+  EXPECT_TRUE(SourceIds().keyed("a").empty());
 }
 
 TEST_F(ReportWords, AnOptionThatNoSeriesOffersIsNamedWhereverItIsAsked) {

@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include "imaging/dicom/seg_writer.h"
 #include "imaging/importer.h"
 #include "imaging/structure_importer.h"
@@ -90,6 +92,44 @@ TEST(StructureImporter, ASegmentationOfAnotherPatientIsRefused) {
     ASSERT_FALSE(refused);
     EXPECT_EQ(refused.error().code, "OTHER_PATIENT");
   }
+}
+
+TEST(StructureImporter, OfACaseThatIsKeptByAKeyTheSameIsTakenAndAnotherRefused) {
+  const test::TemporaryFolder folder;
+  const Written own = write(belly(), folder / "a");
+  const SourceIds kept = own.ids.keyed("of this case");
+  const auto fit = importStructures(own.seg, own.volume, of(kept));
+  ASSERT_TRUE(fit) << fit.error().sentence();
+  EXPECT_TRUE(fit->choices.empty());
+  const Written other = write(belly(Vec3(13.0, 2.0, 31.0), 7), folder / "b");
+  EXPECT_EQ(importStructures(other.seg, own.volume, of(kept)).error().code, "OTHER_PATIENT");
+}
+
+TEST(StructureImporter, WhereItIsNotKnownWhichCtTheCaseIsOfThatIsSaidAndThePlaceDecides) {
+  const test::TemporaryFolder folder;
+  const Written own = write(belly(), folder / "a");
+  SourceIds unknown;
+  unknown.unreadable = true;
+  const auto fit = importStructures(own.seg, own.volume, of(unknown));
+  ASSERT_TRUE(fit) << fit.error().sentence();
+  EXPECT_EQ(std::ranges::count(fit->findings, "SOURCE_UNCHECKED", &Finding::code), 1);
+  const Written other = write(belly(Vec3(1300.0, 2.0, 31.0), 7), folder / "b");
+  EXPECT_FALSE(importStructures(other.seg, own.volume, of(unknown)));
+}
+
+TEST(StructureImporter, NamesThatAreHiddenAreNeitherSaidNorInTheMap) {
+  const test::TemporaryFolder folder;
+  const Written own = write(belly(), folder / "a");
+  StructureRequest request = of(own.ids);
+  request.hide_names = [](Segmentation& segmentation) {
+    for (Segmentation::Segment& segment : segmentation.segments) segment.name = "label 4";
+    return int(segmentation.segments.size());
+  };
+  const auto fit = importStructures(own.seg, own.volume, request);
+  ASSERT_TRUE(fit) << fit.error().sentence();
+  EXPECT_EQ(fit->map.structures[0].name, "label 4");
+  EXPECT_EQ(toJson(*fit).dump().find("liver"), std::string::npos);
+  EXPECT_EQ(std::ranges::count(fit->findings, "RENAMED_STRUCTURE", &Finding::code), 1);
 }
 
 }  // namespace

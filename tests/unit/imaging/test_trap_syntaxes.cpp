@@ -145,6 +145,25 @@ TEST_F(TrapSyntaxes, SeveralFragmentsOfASingleFrame) {
   }
 }
 
+// They are no nesting, however many there are.
+TEST_F(TrapSyntaxes, ThreeHundredThousandFragmentsOfASingleFrame) {
+  Packing packing{EXS_JPEGProcess14SV1};
+  packing.fragments = 300000;
+  for (int k = 0; k < 4; ++k) {
+    Image slice = image(kForms[1]);
+    slice.position_mm.z = 100.0 + k;
+    slice.instance = k + 1;
+    fillPattern(slice, k);
+    DcmDataset data = makeImage(slice);
+    auto codestreams = encodeFrames(data, packing);
+    // Before a marker JPEG may have any number of these.
+    auto& bytes = codestreams.front();
+    bytes.insert(bytes.begin() + 2, 600000 - bytes.size(), 0xFF);
+    saveEncapsulated(data, codestreams, packing, folder() / std::to_string(k));
+  }
+  expectStack(import(), kForms[1], 4);
+}
+
 TEST_F(TrapSyntaxes, CompressedPixelsOfAnotherSizeThanTheHeaderSays) {
   for (const E_TransferSyntax syntax : kCompressed) {
     for (const auto& [columns, rows] :

@@ -285,6 +285,24 @@ TEST_F(CaseLibraryTest, RemovesACaseWhole) {
   EXPECT_EQ(entriesIn(storage() / "private"), 0u);
 }
 
+TEST_F(CaseLibraryTest, RemovesACaseWhereTheFoldersBesideItAreMissing) {
+  CaseLibrary library(storage());
+  const auto saved = library.save(test::smallCase());
+  ASSERT_TRUE(saved) << saved.error().sentence();
+  for (const char* folder : {".parts", "private"}) fs::remove_all(storage() / folder);
+  const Status removed = library.remove(saved->record.id);
+  EXPECT_TRUE(removed.ok()) << removed.error().sentence();
+  EXPECT_FALSE(fs::exists(saved->record.folder));
+  EXPECT_EQ(library.remove(saved->record.id).error().code, "NO_SUCH_CASE");
+}
+
+TEST_F(CaseLibraryTest, PutsAStorageFolderInOrderWhenItIsOpened) {
+  ASSERT_TRUE(CaseLibrary(storage()).save(test::smallCase()));
+  for (const char* folder : {".parts", "private"}) fs::remove_all(storage() / folder);
+  const CaseLibrary again(storage());
+  for (const char* folder : {".parts", "private"}) EXPECT_TRUE(fs::is_directory(storage() / folder));
+}
+
 TEST_F(CaseLibraryTest, SavesOtherStructuresOfACase) {
   const NewCase of = smallCase();
   const CaseRecord record = saved(of);

@@ -5,9 +5,11 @@
 
 #include <algorithm>
 
+#include "base/file.h"
 #include "cases.h"
 #include "imaging/dicom/ct_writer.h"
 #include "imaging/importer.h"
+#include "library/name_words.h"
 #include "volume/label_map.h"
 
 namespace trephine {
@@ -88,6 +90,99 @@ TEST_F(CaseOfJaneDoe, HasTheCardOfItsImportAndItsVerdict) {
             std::string::npos);
   EXPECT_TRUE(Json::parse(test::bytesOf(record.folder / "report.json")).contains("series"));
   EXPECT_EQ(CaseLibrary(storage()).load(record.id)->provenance->source, "DICOM");
+}
+
+// Every file of the storage but those for its importer alone.
+std::string allThatOthersMayRead(const fs::path& storage) {
+  std::string all;
+  for (const auto& file : fs::recursive_directory_iterator(storage)) {
+    const bool own = file.path().lexically_relative(storage).begin()->string() == "private";
+    if (file.is_regular_file() && !own) all += test::bytesOf(file.path());
+  }
+  return all;
+}
+
+TEST_F(CaseOfJaneDoe, KeepsWhichCtItIsOfByAKeyThatOthersMayNotRead) {
+  const SourceIds plain = case_.provenance->source_ids;
+  ASSERT_FALSE(plain.study.empty());
+  const std::string uid = case_.report->series.front().uid;
+  const CaseRecord one = saved(), other = saved();
+  const std::string all = allThatOthersMayRead(storage());
+  for (const std::string& told : {plain.study, plain.series, plain.frame_of_reference, uid,
+                                  seriesHash(uid)}) {
+    EXPECT_EQ(all.find(told), std::string::npos);
+  }
+  const SourceIds kept = CaseLibrary(storage()).load(one.id)->provenance->source_ids;
+  EXPECT_TRUE(kept.standsFor(kept.study, plain.study));
+  EXPECT_TRUE(kept.standsFor(kept.series, plain.series));
+  EXPECT_NE(kept.study, CaseLibrary(storage()).load(other.id)->provenance->source_ids.study)
+      << "two cases of one patient cannot be told";
+  fs::remove(storage() / "private" / (one.names_key + ".json"));
+  EXPECT_TRUE(CaseLibrary(storage()).load(one.id)->provenance->source_ids.unreadable);
+}
+
+TEST_F(CaseOfJaneDoe, AsItWasSavedBeforeLosesItsHashesAndIsKnownAllTheSame) {
+  const SourceIds plain = case_.provenance->source_ids;
+  const CaseRecord record = saved();
+  const auto asBefore = [&] {
+    Json provenance = Json::parse(test::bytesOf(record.folder / "provenance.json"));
+    provenance["source_ids"] = {{"study", plain.study},
+                                {"series", plain.series},
+                                {"frame_of_reference", plain.frame_of_reference}};
+    ASSERT_TRUE(writeTextFile(record.folder / "provenance.json", provenance.dump(2)));
+    Json report = Json::parse(test::bytesOf(record.folder / "report.json"));
+    report["series"][0]["uid"] = report["chosen"] = plain.series;
+    report["provenance"]["source_ids"] = provenance["source_ids"];
+    ASSERT_TRUE(writeTextFile(record.folder / "report.json", report.dump(2)));
+    std::string page = test::bytesOf(record.folder / "report.html");
+    page.insert(page.find("<tr><td><b>Slices"),
+                "<tr><td><b>Known as</b></td><td><font size=\"1\">" + plain.series +
+                    "</font></td></tr>\n");
+    ASSERT_TRUE(writeTextFile(record.folder / "report.html", page));
+    // It had a guard without them.
+    const fs::path guard = storage() / "private" / (record.names_key + ".json");
+    Json names = Json::parse(test::bytesOf(guard));
+    names.erase("source");
+    ASSERT_TRUE(writeTextFile(guard, names.dump()));
+  };
+  const std::string page = test::bytesOf(record.folder / "report.html");
+  for (const bool by_opening : {false, true}) {
+    asBefore();
+    ASSERT_NE(allThatOthersMayRead(storage()).find(plain.study), std::string::npos);
+    CaseLibrary library(storage());
+    by_opening ? (void)library.load(record.id) : library.bringUpToDate();
+    const std::string all = allThatOthersMayRead(storage());
+    for (const std::string& told : {plain.study, plain.series, plain.frame_of_reference}) {
+      EXPECT_EQ(all.find(told), std::string::npos);
+    }
+    EXPECT_EQ(test::bytesOf(record.folder / "report.html"), page);
+    EXPECT_EQ(Json::parse(test::bytesOf(record.folder / "report.json"))["chosen"], "1");
+    const SourceIds kept = library.load(record.id)->provenance->source_ids;
+    EXPECT_TRUE(kept.standsFor(kept.study, plain.study));
+    EXPECT_TRUE(library.rename(record.id, "Jane Doe").error().code == "NAME_IS_IDENTITY")
+        << "its guard is the one that it had";
+  }
+}
+
+TEST_F(CaseOfJaneDoe, WhenACopyOfItIsDeletedKeepsWhatItMayNotBeCalled) {
+  const CaseRecord record = saved();
+  fs::copy(record.folder, storage() / "cases" / "copy", fs::copy_options::recursive);
+  ASSERT_TRUE(CaseLibrary(storage()).remove("copy"));
+  EXPECT_EQ(CaseLibrary(storage()).rename(record.id, "Jane Doe").error().code, "NAME_IS_IDENTITY");
+}
+
+TEST(HideNames, CallsSegmentsByTheirValuesWhereTheyTellWhoThePatientIs) {
+  SourceIdentity jane;
+  jane.add(IdentityKind::patient_name, "DOE^JANE");
+  jane.add(IdentityKind::patient_id, "4711");
+  jane.add(IdentityKind::folder, "liver");
+  Segmentation segmentation;
+  segmentation.segments = {{"Jane's liver"}, {"liver"}, {"4711"}};
+  segmentation.segments[2].value = 3;
+  EXPECT_EQ(hideNames(segmentation, sourceKeys(jane)), 2);
+  EXPECT_EQ(segmentation.segments[0].name, "label 1");
+  EXPECT_EQ(segmentation.segments[1].name, "liver");
+  EXPECT_EQ(segmentation.segments[2].name, "label 3");
 }
 
 TEST_F(CaseOfJaneDoe, CallsAStructureByItsLabelWhereItsNameTellsWhoSheIs) {

@@ -1,5 +1,6 @@
 // Files that are no recording, or one no longer: cut short, with bytes or rows that changed.
 #include <hdf5.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -26,6 +27,163 @@ void takeOut(const char* dataset, const std::filesystem::path& recording) {
   const hid_t file = H5Fopen(recording.c_str(), H5F_ACC_RDWR, H5P_DEFAULT);
   ASSERT_GE(H5Ldelete(file, dataset, H5P_DEFAULT), 0);
   H5Fclose(file);
+}
+
+// A recording that points elsewhere is refused before anything else is opened: `change` is given the
+// file, in which `dataset` is not there any more.
+void isForeignWhere(const char* dataset, const std::function<void(hid_t)>& change) {
+  test::TemporaryFolder folder;
+  const auto recording = folder / "a.h5";
+  recordRun(recording, 500);
+  takeOut(dataset, recording);
+  const hid_t file = H5Fopen(recording.c_str(), H5F_ACC_RDWR, H5P_DEFAULT);
+  change(file);
+  H5Fclose(file);
+  const auto reader = SessionReader::open(recording);
+  ASSERT_FALSE(reader.ok());
+  EXPECT_EQ(reader.error().code, "BAD_RECORDING");
+  EXPECT_NE(reader.error().what.find(dataset), std::string::npos) << reader.error().what;
+  EXPECT_NE(reader.error().what.find("not in the file itself"), std::string::npos);
+}
+
+// A dataset of 500 numbers, by these properties, which are closed.
+void makeNumbers(hid_t file, const char* name, hid_t properties) {
+  const hsize_t count = 500, unlimited = H5S_UNLIMITED;
+  const bool chunked = H5Pget_layout(properties) == H5D_CHUNKED;
+  const hid_t space = H5Screate_simple(1, &count, chunked ? &unlimited : nullptr);
+  const hid_t made =
+      H5Dcreate2(file, name, H5T_NATIVE_INT64, space, H5P_DEFAULT, properties, H5P_DEFAULT);
+  EXPECT_GE(made, 0);
+  H5Dclose(made);
+  H5Sclose(space);
+  H5Pclose(properties);
+}
+
+TEST(ForeignRecording, WithAnExternalOrASoftLinkIsRefused) {
+  test::TemporaryFolder elsewhere;
+  ASSERT_EQ(::mkfifo((elsewhere / "pipe").c_str(), 0600), 0);  // opening it would wait for ever
+  for (const char* name : {"format", "scene", "ticks", "arm0", "removed_voxels", "events", "end"}) {
+    SCOPED_TRACE(name);
+    isForeignWhere(name, [&](hid_t file) {
+      H5Lcreate_external((elsewhere / "pipe").c_str(), "/x", file, name, H5P_DEFAULT, H5P_DEFAULT);
+    });
+    isForeignWhere(name,
+                   [&](hid_t file) { H5Lcreate_soft("/build", file, name, H5P_DEFAULT, H5P_DEFAULT); });
+  }
+  // Also one of an arm that it does not have.
+  recordRun(elsewhere / "a.h5", 500);
+  const hid_t file = H5Fopen((elsewhere / "a.h5").c_str(), H5F_ACC_RDWR, H5P_DEFAULT);
+  H5Lcreate_external((elsewhere / "pipe").c_str(), "/x", file, "arm1", H5P_DEFAULT, H5P_DEFAULT);
+  H5Fclose(file);
+  EXPECT_EQ(SessionReader::open(elsewhere / "a.h5").error().code, "BAD_RECORDING");
+}
+
+TEST(ForeignRecording, WhoseDataLieInAnotherFileIsRefused) {
+  isForeignWhere("ticks", [](hid_t file) {
+    const hid_t properties = H5Pcreate(H5P_DATASET_CREATE);
+    H5Pset_external(properties, "/etc/hostname", 0, 500 * 8);
+    makeNumbers(file, "ticks", properties);
+  });
+  isForeignWhere("events", [](hid_t file) {
+    const hsize_t count = 500;
+    const hid_t properties = H5Pcreate(H5P_DATASET_CREATE), space = H5Screate_simple(1, &count, nullptr);
+    H5Pset_virtual(properties, space, "/etc/hostname", "/x", space);
+    H5Sclose(space);
+    makeNumbers(file, "events", properties);
+  });
+}
+
+TEST(ForeignRecording, OfAnotherLayoutOrFilterIsRefused) {
+  isForeignWhere("ticks", [](hid_t file) {  // 64 MB a chunk
+    const hid_t properties = H5Pcreate(H5P_DATASET_CREATE);
+    const hsize_t chunk = hsize_t{8} << 20;
+    H5Pset_chunk(properties, 1, &chunk);
+    H5Pset_deflate(properties, 1);
+    makeNumbers(file, "ticks", properties);
+  });
+  isForeignWhere("ticks", [](hid_t file) {  // a deflated file of 1 MB would be a terabyte
+    const hid_t properties = H5Pcreate(H5P_DATASET_CREATE);
+    const hsize_t chunk = 64;
+    H5Pset_chunk(properties, 1, &chunk);
+    for (int n = 0; n < 2; ++n) H5Pset_deflate(properties, 1);
+    makeNumbers(file, "ticks", properties);
+  });
+  isForeignWhere("arm0", [](hid_t file) {  // any other filter could be a plugin's
+    const hid_t properties = H5Pcreate(H5P_DATASET_CREATE);
+    const hsize_t chunk = 64;
+    H5Pset_chunk(properties, 1, &chunk);
+    H5Pset_fletcher32(properties);
+    makeNumbers(file, "arm0", properties);
+  });
+  unsigned plugins = 1;
+  ASSERT_GE(H5PLget_loading_state(&plugins), 0);
+  EXPECT_EQ(plugins, 0u) << "none is loaded";
+}
+
+// What is of many elements where one is meant is not written past that one.
+TEST(ForeignRecording, WithATextOrAVersionOfManyElementsIsRefused) {
+  test::TemporaryFolder folder;
+  const auto many = [](const char* name, const std::filesystem::path& recording, bool attribute) {
+    const hid_t file = H5Fopen(recording.c_str(), H5F_ACC_RDWR, H5P_DEFAULT);
+    const hsize_t count = 100000;
+    const hid_t space = H5Screate_simple(1, &count, nullptr);
+    if (attribute) {
+      H5Adelete(file, name);
+      const hsize_t few = 1000;
+      const hid_t small = H5Screate_simple(1, &few, nullptr);
+      const hid_t made = H5Acreate2(file, name, H5T_NATIVE_INT32, small, H5P_DEFAULT, H5P_DEFAULT);
+      const std::vector<int> versions(few, 8);
+      EXPECT_GE(H5Awrite(made, H5T_NATIVE_INT32, versions.data()), 0);
+      H5Aclose(made);
+      H5Sclose(small);
+    } else {
+      H5Ldelete(file, name, H5P_DEFAULT);
+      const hid_t type = H5Tcopy(H5T_C_S1);
+      H5Tset_size(type, 17);
+      const hid_t made =
+          H5Dcreate2(file, name, type, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
+      const std::string texts(17 * count, 'x');
+      EXPECT_GE(H5Dwrite(made, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, texts.data()), 0);
+      H5Dclose(made);
+      H5Tclose(type);
+    }
+    H5Sclose(space);
+    H5Fclose(file);
+  };
+  for (const bool attribute : {false, true}) {
+    const auto recording = folder / (attribute ? "a.h5" : "b.h5");
+    recordRun(recording, 500);
+    many(attribute ? "version" : "format", recording, attribute);
+    EXPECT_FALSE(SessionReader::open(recording).ok());
+  }
+}
+
+TEST(ForeignRecording, WhoseSceneNamesAFileOpensNone) {
+  test::TemporaryFolder folder;
+  ASSERT_EQ(::mkfifo((folder / "pipe").c_str(), 0600), 0);
+  const std::string pipe = (folder / "pipe").string();
+  const auto replayed = [&](const std::function<void(Json&)>& change) {
+    Json scene = toJson(test::sceneWithOneArm());
+    change(scene);
+    const auto file = folder / "a.h5";
+    std::filesystem::remove(file);
+    auto recorder = SessionRecorder::create(
+        file, {scene, volumeSha256(slab()), slab().geometry, "test"}, 1);
+    EXPECT_TRUE((*recorder)->finish({0, 0, 0, volumeSha256(slab())}));
+    const auto reader = SessionReader::open(file);
+    EXPECT_TRUE(reader.ok()) << reader.error().sentence();
+    const auto result = replay(**reader, slab());
+    return result ? std::string() : result.error().code;
+  };
+  EXPECT_EQ(replayed([](Json&) {}), "");
+  EXPECT_EQ(replayed([&](Json& s) { s["tissues"] = pipe; }), "BAD_FIELD");
+  EXPECT_EQ(replayed([&](Json& s) { s["tissues"]["elsewhere"] = pipe; }), "BAD_FIELD");
+  EXPECT_EQ(replayed([&](Json& s) { s["tools"][0] = {{"id", "blade"}, {"file", pipe}}; }), "BAD_FIELD");
+  EXPECT_EQ(replayed([&](Json& s) { s["tools"][0]["mesh"] = pipe; }), "BAD_FIELD");
+  EXPECT_EQ(replayed([&](Json& s) { s["arms"][0]["device"]["config"] = pipe; }), "BAD_FIELD");
+  for (const char* key : {"case", "labels", "operator"}) {
+    EXPECT_EQ(replayed([&](Json& s) { s[key] = pipe; }), "BAD_FIELD") << key;
+  }
 }
 
 TEST(Recording, WhoseEndIsDamagedIsNotTakenForOneThatWasCutShort) {

@@ -1,0 +1,100 @@
+// A folder's recordings, of which each may be anybody's: read by trephine-lab, a child process.
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "recording_support.h"
+#include "support.h"
+#include "training/recording_list.h"
+
+namespace trephine {
+namespace {
+
+namespace fs = std::filesystem;
+
+class RecordingFolder : public ::testing::Test {
+ protected:
+  void record(const std::string& name) { test::recordRun(folder_ / name, 200); }
+  // A program that does with its files what the script says, the n-th being "$f".
+  ReadApart by(const std::string& script) {
+    const fs::path program = folder_ / "program";
+    std::ofstream(program) << "#!/bin/sh\nshift 3\nfor f in \"$@\"; do\n" << script << "\ndone\n";
+    fs::permissions(program, fs::perms::owner_all);
+    return {program, 1.0};
+  }
+  std::vector<ListedRecording> listed(const ReadApart& how = ReadApart()) {
+    const auto rows = listRecordings(folder_.path(), Progress(), how);
+    EXPECT_TRUE(rows.ok()) << rows.error().sentence();
+    return rows ? *rows : std::vector<ListedRecording>();
+  }
+  test::TemporaryFolder folder_;
+};
+
+TEST_F(RecordingFolder, IsListedAsEachOfItsFilesIs) {
+  record("a.h5");
+  record("b.h5");
+  std::ofstream(folder_ / "empty.h5");
+  std::ofstream(folder_ / "letter.txt") << "Dear Sir";
+  ASSERT_EQ(::mkfifo((folder_ / "pipe.h5").c_str(), 0600), 0);
+  const auto rows = listed();
+  ASSERT_EQ(rows.size(), 4u);
+  for (const ListedRecording& row : rows) {
+    const ListedRecording alone = listRecording(row.file);
+    EXPECT_EQ(row.exercise, alone.exercise);
+    EXPECT_EQ(row.caseKey(), alone.caseKey());
+    EXPECT_EQ(row.seconds, alone.seconds);
+    EXPECT_EQ(row.cut_short, alone.cut_short);
+    ASSERT_EQ(row.problem.has_value(), alone.problem.has_value()) << row.file;
+    if (row.problem) {
+      EXPECT_EQ(row.problem->sentence(), alone.problem->sentence());
+    }
+    EXPECT_EQ(row.written, fs::last_write_time(row.file));
+  }
+  EXPECT_TRUE(listRecordings(folder_ / "none")->empty());
+}
+
+constexpr const char* kRow =
+    R"(echo '{"schema": "s", "build": "b", "file": "f", "exercise": "x", "case": "", )"
+    R"("volume_sha256": "", "seconds": 1.5, "cut_short": false}')";
+
+TEST_F(RecordingFolder, GoesOnPastAFileThatTakesLongOrEndsItsReader) {
+  for (const char* name : {"a.h5", "long.h5", "c.h5", "bad.h5", "e.h5"}) {
+    std::ofstream(folder_ / name) << "x";
+  }
+  // It would never end.
+  const auto rows = listed(by("case \"$f\" in *long*) exec sleep 600;; *bad*) kill -SEGV $$;; esac\n" +
+                              std::string(kRow)));
+  ASSERT_EQ(rows.size(), 5u);
+  for (const ListedRecording& row : rows) {
+    const std::string name = row.file.filename().string();
+    const std::string code = name == "long.h5"  ? "TAKES_TOO_LONG"
+                             : name == "bad.h5" ? "BAD_RECORDING"
+                                                : "";
+    EXPECT_EQ(row.problem ? row.problem->code : "", code) << name;
+    if (code.empty()) {
+      EXPECT_EQ(row.seconds, 1.5);
+    }
+  }
+}
+
+TEST_F(RecordingFolder, IsCancelledWhileAFileTakesLong) {
+  std::ofstream(folder_ / "a.h5") << "x";
+  Progress progress;
+  progress.cancel();
+  // It would never end.
+  const auto rows = listRecordings(folder_.path(), progress, by("exec sleep 600"));
+  ASSERT_FALSE(rows);
+  EXPECT_EQ(rows.error().code, "CANCELLED");
+}
+
+TEST_F(RecordingFolder, SaysThatTheReaderIsNotThere) {
+  std::ofstream(folder_ / "a.h5") << "x";
+  const auto rows = listRecordings(folder_.path(), Progress(), {folder_ / "none", 1.0});
+  ASSERT_FALSE(rows);
+  EXPECT_EQ(rows.error().code, "CANNOT_RUN");
+}
+
+}  // namespace
+}  // namespace trephine
