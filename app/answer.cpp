@@ -36,7 +36,7 @@ void printClean(std::FILE* to, const char* format, std::va_list arguments) {
 void print(const std::string& name, const Json& answer, int indent) {
   Json out = {{"schema", "trephine." + name + ".1"}, {"build", buildName()}};
   for (auto it = answer.begin(); it != answer.end(); ++it) out[it.key()] = it.value();
-  std::printf("%s\n", out.dump(indent, ' ', false, Json::error_handler_t::replace).c_str());
+  std::printf("%s\n", out.dump(indent, ' ', true, Json::error_handler_t::replace).c_str());
 }
 
 }  // namespace

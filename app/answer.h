@@ -32,8 +32,8 @@ void reportInLines();
 
 Json errorJson(const Error& error);
 
-// printf to stdout and stderr of what a person reads, and the only way to print in the programs: text
-// of a file or a device in it cannot command the terminal (cleanLines).
+// printf to stdout and stderr of what a person reads, and the only way to print in the programs:
+// text of a file or a device in it cannot command the terminal (cleanLines).
 void say(const char* format, ...) __attribute__((format(printf, 1, 2)));
 void sayError(const char* format, ...) __attribute__((format(printf, 1, 2)));
 

@@ -5,6 +5,7 @@
 #include "app/lab_commands.h"
 #include "base/system.h"
 #include "exercise/exercise_folder.h"
+#include "library/name_words.h"
 
 namespace trephine {
 
@@ -34,7 +35,7 @@ std::string listed(const char* title, const std::vector<std::string>& files) {
 
 int exportExerciseCommand(const std::string& scene, const std::string& case_source,
                           const std::string& out, bool json, const Progress& progress) {
-  const auto exported = exportExercise(scene, case_source, out, progress);
+  const auto exported = exportExercise(scene, case_source, out, progress, hideNamesOf);
   if (!exported) return printError("exercise-export", exported.error(), json);
   Json parts = Json::array();
   for (const ExercisePart& part : exported->parts) parts.push_back(toJson(part));
@@ -64,8 +65,7 @@ int importExerciseCommand(const std::string& folder, const std::string& storage,
     if (imported->left_devices_out) sayError("%s\n", kLeftDevicesOut);
   } else {
     sayError("It is not the exercise that was exported; nothing was written.\n%s%s",
-                 listed("missing", check.missing).c_str(),
-                 listed("changed", check.changed).c_str());
+             listed("missing", check.missing).c_str(), listed("changed", check.changed).c_str());
   }
   return check.verified() ? 0 : 1;
 }

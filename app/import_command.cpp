@@ -33,8 +33,8 @@ void printReport(const ImportReport& report) {
     const GridGeometry& g = s.geometry;
     say("%-8s  ", verdictName(s.verdict));
     if (s.verdict != Verdict::refused || g.spacing_mm.z > 0.0) {
-      say("%dx%dx%d  %.3f x %.3f x %.3f mm  ", g.size[0], g.size[1], g.size[2],
-                  g.spacing_mm.x, g.spacing_mm.y, g.spacing_mm.z);
+      say("%dx%dx%d  %.3f x %.3f x %.3f mm  ", g.size[0], g.size[1], g.size[2], g.spacing_mm.x,
+          g.spacing_mm.y, g.spacing_mm.z);
     }
     say("%s  %s\n", s.modality.c_str(), s.description.c_str());
     if (report.series.size() > 1) {
@@ -45,7 +45,7 @@ void printReport(const ImportReport& report) {
     }
     for (const Finding& f : s.findings) {
       say("          %s: %s. %s%s\n", f.code.c_str(), f.text.c_str(), placesOf(f).c_str(),
-                  f.action.c_str());
+          f.action.c_str());
     }
     for (const Choice& c : s.choices) {
       say("          %s\n", c.question.c_str());
@@ -53,7 +53,7 @@ void printReport(const ImportReport& report) {
         const std::string more =
             n < c.on_screen.size() && !c.on_screen[n].empty() ? " (" + c.on_screen[n] + ")" : "";
         say("            --choice %s=%s  %s%s\n", c.code.c_str(), c.options[n].c_str(),
-                    c.words[n].c_str(), more.c_str());
+            c.words[n].c_str(), more.c_str());
       }
     }
   }

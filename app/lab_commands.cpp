@@ -56,7 +56,7 @@ template <class Draw>
 Result<Json> drawnFiles(const char* what, Draw&& draw) {
   auto drawn = draw();
   if (!drawn && drawn.error().code == "CANNOT_DRAW") {
-    spdlog::warn("No {}: {}", what, drawn.error().sentence());
+    spdlog::warn("No {}: {}", what, drawn.error().what);
     return Json(nullptr);
   }
   if (!drawn) return drawn.error();

@@ -9,6 +9,7 @@
 #include "base/file.h"
 #include "base/log.h"
 #include "lab/exercise/exercise_picture.h"
+#include "library/name_words.h"
 #include "scene/arms_file.h"
 #include "scene/names.h"
 #include "scene/scene_numbers.h"
@@ -158,8 +159,8 @@ Result<RunOutcome> runExercise(const RunArguments& arguments, const Policy& poli
   if (Status may = checkScene(policy, *scene, arguments.scene); !may) return may.error();
   if (scene->names_devices) {
     spdlog::warn(
-        "{}: it names devices, as exercises did before; they are used unless --arms is given",
-        arguments.scene);
+        "The exercise names devices, as exercises did before; they are used unless --arms is "
+        "given");
   }
   if (Status chosen = applyChoices(arguments, policy, *scene); !chosen) return chosen.error();
   SessionOptions options;
@@ -187,7 +188,7 @@ Result<RunOutcome> runExercise(const RunArguments& arguments, const Policy& poli
   options.recording = freshFile(out, "session", ".h5");
   if (Status can = checkRunTargets(arguments, options.recording); !can) return can.error();
 
-  Result<Case> of = openCase(*scene, progress);
+  Result<Case> of = openCase(*scene, progress, hideNamesOf);
   if (!of) return of.error();
   Result<std::unique_ptr<Session>> session = Session::create(*scene, *of, options);
   // Another run may have taken the name meanwhile.

@@ -76,8 +76,7 @@ int shareStorageCommand(const std::string& folder, bool json) {
         "storage-share",
         {{"storage", shared->string()}, {"readers", groups.readers}, {"writers", groups.writers}});
   } else {
-    say(
-        "%s: the group %s may look at cases and exercises, the group %s may change them, and each\n"
+    say("%s: the group %s may look at cases and exercises, the group %s may change them, and each\n"
         "keeps recordings of his own. Accounts that make cases belong to both groups.\n"
         "Name the folder as \"storage\" in /etc/trephine/settings.json.\n",
         shared->c_str(), groups.readers.c_str(), groups.writers.c_str());

@@ -185,11 +185,10 @@ int growCommand(const GrowArguments& arguments, bool json, const Progress& progr
                         {"steps", growth->steps}});
     return 0;
   }
-  say("%s: %.1f mL, %zu voxels of about %.0f to %.0f HU, in %.2f s\n", name.c_str(),
-              growth->ml, growth->voxels, growth->hu.low, growth->hu.high, seconds);
+  say("%s: %.1f mL, %zu voxels of about %.0f to %.0f HU, in %.2f s\n", name.c_str(), growth->ml,
+      growth->voxels, growth->hu.low, growth->hu.high, seconds);
   if (growth->leaked) {
-    say(
-        "It reaches the border of the scan or fills much of it: look whether it is %s alone. "
+    say("It reaches the border of the scan or fills much of it: look whether it is %s alone. "
         "--box, --hu or a larger --open hold it back.\n",
         name.c_str());
   }
@@ -300,8 +299,7 @@ Status checkThreshold(const std::optional<double>& threshold) {
 void print(const StructureFit& fit) {
   for (const StructureCard& card : fit.structures) {
     say("%-24s %9.1f mL", card.name.c_str(), card.ml);
-    if (card.hu)
-      say("  %5.0f HU (%.0f to %.0f)", (*card.hu)[1], (*card.hu)[0], (*card.hu)[2]);
+    if (card.hu) say("  %5.0f HU (%.0f to %.0f)", (*card.hu)[1], (*card.hu)[0], (*card.hu)[2]);
     say("\n");
     for (const Finding& f : card.findings) {
       say("    %s: %s\n", f.code.c_str(), sentencesOf(f).c_str());

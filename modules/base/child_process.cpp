@@ -52,15 +52,16 @@ struct Report {
   int error = 0;
 };
 
-// In the child, between fork and exec: nothing but system calls.
+// In the child, which has this program's memory until its exec: nothing but system calls.
 [[noreturn]] void becomeProgram(char* const* arguments, char* const* environment, int output,
-                                int nothing, int reports) {
+                                int nothing, int reports, const sigset_t& signals) {
   Report report;
   ::setpgid(0, 0);  // Ctrl-C is told to us, and we ask it once
   if (::dup2(output, STDOUT_FILENO) >= 0 && ::dup2(nothing, STDERR_FILENO) >= 0 &&
       ::dup2(nothing, STDIN_FILENO) >= 0 && ::prctl(PR_SET_PDEATHSIG, SIGTERM) == 0) {
     report.start_ns = now_ns();
     if (::write(reports, &report, sizeof report) == sizeof report) {
+      ::sigprocmask(SIG_SETMASK, &signals, nullptr);
       ::execve(arguments[0], arguments, environment);
     }
   }
@@ -103,12 +104,20 @@ Result<ChildRun> runChild(const ChildCommand& command, const Progress& progress)
   const std::vector<char*> arguments = pointersTo(words);
   const std::vector<char*> environment = pointersTo(variables);
 
-  const pid_t child = ::fork();
-  if (child < 0) return cannotRun(command, errno);
+  // Not fork(): all memory would be shared until it is written, a page fault for each page that the
+  // haptic thread touches. This thread waits for the exec; no signal's handler runs in the child
+  // before it.
+  sigset_t all, before;
+  ::sigfillset(&all);
+  ::pthread_sigmask(SIG_SETMASK, &all, &before);
+  const pid_t child = ::vfork();
   if (child == 0) {
     becomeProgram(arguments.data(), environment.data(), output.get(), nothing.get(),
-                  reporting.get());
+                  reporting.get(), before);
   }
+  const int refused = errno;
+  ::pthread_sigmask(SIG_SETMASK, &before, nullptr);
+  if (child < 0) return cannotRun(command, refused);
   reporting.close();
   Report report;
   for (Report next; ::read(reports.get(), &next, sizeof next) == sizeof next;) report = next;

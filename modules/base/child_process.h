@@ -23,8 +23,7 @@ struct ChildRun {
   int exit_code = 0;       // 128 + the signal's number where one ended it
   bool timed_out = false;  // then it was ended
   double seconds = 0.0;    // wall time from just before exec to its end
-  // Resident memory at its peak, MB of 2^20 bytes. What a child inherits until its exec counts too:
-  // the writable memory that this process has touched, so let go of large blocks first.
+  // Resident memory at its peak, MB of 2^20 bytes.
   double peak_rss_mb = 0.0;
 };
 

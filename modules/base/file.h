@@ -29,9 +29,9 @@ Error writeError(const std::filesystem::path& target, int error);
 // short.
 std::string afterFailedWrite(int error);
 
-// All bytes of a regular file; a link to one counts. A pipe or a device is not opened: it could keep
-// its reader waiting for ever, or have no end. Errors: MISSING_FILE, NO_FILE (a folder, a pipe or a
-// device), TOO_LARGE (more than `most_bytes`), CANNOT_READ.
+// All bytes of a regular file; a link to one counts. A pipe or a device is not opened: it could
+// keep its reader waiting for ever, or have no end. Errors: MISSING_FILE, NO_FILE (a folder, a pipe
+// or a device), TOO_LARGE (more than `most_bytes`), CANNOT_READ.
 Result<std::string> readWholeFile(const std::filesystem::path& file, std::size_t most_bytes);
 
 Status writeTextFile(const std::filesystem::path& target, std::string_view text);

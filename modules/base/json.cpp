@@ -58,7 +58,7 @@ std::string shorten(const Json& value) {
 // object for each new one, and lets pass a field given twice.
 class ValueMaker : public Json::json_sax_t {
  public:
-  explicit ValueMaker(const Progress& progress) : progress_(progress) {}
+  explicit ValueMaker(const Progress& progress) : progress_(progress) { levels_.reserve(kMaxDepth); }
 
   bool null() override { return add(nullptr); }
   bool boolean(bool value) override { return add(value); }
@@ -67,8 +67,8 @@ class ValueMaker : public Json::json_sax_t {
   bool number_float(double value, const std::string&) override { return add(value); }
   bool string(std::string& value) override { return add(std::move(value)); }
   bool binary(Json::binary_t&) override { return refuse("it is binary"); }
-  bool start_object(std::size_t) override { return open(Json::object()); }
-  bool start_array(std::size_t) override { return open(Json::array()); }
+  bool start_object(std::size_t) override { return open(false); }
+  bool start_array(std::size_t) override { return open(true); }
   bool end_object() override { return close(); }
   bool end_array() override { return close(); }
   bool key(std::string& name) override {
@@ -96,8 +96,11 @@ class ValueMaker : public Json::json_sax_t {
   const std::string& field() const { return field_; }
 
  private:
+  // What is open: a list, or an object of whose members one is being read.
   struct Level {
-    Json* value;
+    bool is_list;
+    Json::array_t items{};
+    std::vector<std::pair<std::string, Json>> members{};
     std::string key{};
     std::set<std::string> keys{};
   };
@@ -105,10 +108,8 @@ class ValueMaker : public Json::json_sax_t {
   bool refuse(const std::string& why) {
     reason_ = why;
     for (const Level& level : levels_) {
-      if (level.value->is_array()) {
-        // What is open stands in its list already, what is refused does not.
-        const bool open = &level != &levels_.back();
-        field_ += "[" + std::to_string(level.value->size() - (open ? 1 : 0)) + "]";
+      if (level.is_list) {
+        field_ += "[" + std::to_string(level.items.size()) + "]";
       } else if (!level.key.empty()) {
         field_ += (field_.empty() ? "" : ".") + level.key;
       }
@@ -116,42 +117,51 @@ class ValueMaker : public Json::json_sax_t {
     field_ = shorten(std::move(field_), 120);
     return false;
   }
-  Json* place(Json value) {
-    if (levels_.empty()) {
-      value_ = std::move(value);
-      return &value_;
-    }
-    Level& level = levels_.back();
-    if (level.value->is_array()) {
-      level.value->push_back(std::move(value));
-      return &level.value->back();
-    }
-    auto& members = level.value->get_ref<Json::object_t&>();
-    // The vector's own, which does not search: no two have one name.
-    members.Json::object_t::Container::emplace_back(level.key, std::move(value));
-    return &members.back().second;
-  }
-  // Null where it is refused.
-  Json* put(Json value) {
+  bool count() {
     constexpr std::size_t kLooks = 4096;  // values from one look at `cancelled` to the next
     if (++values_ > kMaxValues) {
-      refuse("it holds more than " + std::to_string(kMaxValues) + " values");
-      return nullptr;
+      return refuse("it holds more than " + std::to_string(kMaxValues) + " values");
     }
     cancelled_ = values_ % kLooks == 0 && progress_.cancelled();
-    return cancelled_ ? nullptr : place(std::move(value));
+    return !cancelled_;
   }
-  bool add(Json value) { return put(std::move(value)) != nullptr; }
-  bool open(Json empty) {
+  void place(Json value) {
+    if (levels_.empty()) {
+      value_ = std::move(value);
+    } else if (levels_.back().is_list) {
+      levels_.back().items.push_back(std::move(value));
+    } else {
+      levels_.back().members.emplace_back(levels_.back().key, std::move(value));
+    }
+  }
+  bool add(Json value) {
+    if (!count()) return false;
+    place(std::move(value));
+    return true;
+  }
+  bool open(bool is_list) {
     if (levels_.size() >= kMaxDepth) {
       return refuse("it is nested deeper than " + std::to_string(kMaxDepth));
     }
-    Json* value = put(std::move(empty));
-    if (value) levels_.push_back({value});
-    return value != nullptr;
+    if (!count()) return false;
+    levels_.push_back({is_list});
+    return true;
   }
   bool close() {
+    Level done = std::move(levels_.back());
     levels_.pop_back();
+    if (done.is_list) {
+      place(Json(std::move(done.items)));
+      return true;
+    }
+    // The vector's own, which does not search for the key, and with room for all: its elements are
+    // copied where it grows.
+    Json::object_t object;
+    object.reserve(done.members.size());
+    for (auto& [key, value] : done.members) {
+      object.Json::object_t::Container::emplace_back(std::move(key), std::move(value));
+    }
+    place(Json(std::move(object)));
     return true;
   }
 

@@ -24,9 +24,9 @@ using Json = nlohmann::ordered_json;
 // 4,000,000 values, and nesting deeper than 64. Errors: BAD_JSON, CANCELLED.
 Result<Json> parseJson(std::string_view text, const std::string& file,
                        const Progress& progress = Progress());
-// A file of at most 64 MB: no file of ours is larger. What is read on the window's thread has at most
-// kMostWrittenBytes. Errors: MISSING_FILE, also for what is no regular file (a pipe could keep its reader
-// waiting for ever), BAD_JSON for a larger one, and those of parseJson.
+// A file of at most 64 MB: no file of ours is larger. What is read on the window's thread has at
+// most kMostWrittenBytes. Errors: MISSING_FILE, also for what is no regular file (a pipe could keep
+// its reader waiting for ever), BAD_JSON for a larger one, and those of parseJson.
 constexpr std::size_t kMostJsonBytes = std::size_t{64} << 20;
 // Of a scene, a tool, a tissue set: what a person writes. Read in 0.1 s.
 constexpr std::size_t kMostWrittenBytes = std::size_t{4} << 20;

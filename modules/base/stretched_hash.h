@@ -1,5 +1,5 @@
-// Hashes of what a person could guess (a name, an ID, a PIN): slow on purpose, each with a salt, or by
-// a key that nobody has.
+// Hashes of what a person could guess (a name, an ID, a PIN): slow on purpose, each with a salt, or
+// by a key that nobody has.
 #pragma once
 
 #include <string>
@@ -17,8 +17,8 @@ constexpr int kStretchIterations = 50000;
 std::string stretchedHash(std::string_view text, std::string_view salt,
                           int iterations = kStretchIterations, int bytes = 16);
 
-// HMAC-SHA256 of a text by a key, of any bytes each: its first 16 bytes as hexadecimal digits. Fast:
-// the key is what cannot be guessed. Empty where it cannot be had.
+// HMAC-SHA256 of a text by a key, of any bytes each: its first 16 bytes as hexadecimal digits.
+// Fast: the key is what cannot be guessed. Empty where it cannot be had.
 std::string keyedHash(std::string_view text, std::string_view key);
 
 // Whether two texts are the same; how much of them is does not show in the time.

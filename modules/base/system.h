@@ -29,9 +29,10 @@ std::optional<std::filesystem::path> dataFolder();
 std::optional<std::filesystem::path> stateFolder();
 // From now on this process, and what it starts, loads code and settings of devices from where they
 // were installed: takes out of the environment TREPHINE_RESOURCES and TREPHINE_PLUGINS, and what
-// names other plugins, drivers, layers or tables to Qt, HDF5, OpenXR, OpenSSL, DCMTK, OpenGL and the
-// C library. LD_PRELOAD and its like have acted before any program runs: only what starts it can
-// keep them out. Before there are threads.
+// names other plugins, drivers, layers or tables to Qt, VTK, HDF5, OpenXR, OpenSSL, DCMTK, OpenGL
+// and the C library. LD_PRELOAD and its like have acted before any program runs: only what starts
+// it can keep them out. The loaders of OpenXR and Vulkan still read the user's own ~/.config and
+// ~/.local/share. Before there are threads.
 void keepToOwnFolders();
 
 // The memory of this process holds patients' names and voxels: no core of it is written, by no way

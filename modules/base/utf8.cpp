@@ -61,6 +61,12 @@ bool isControl(char32_t code) {
          (code >= 0x2066 && code <= 0x2069);
 }
 
+// Between letters of several scripts, of which they tell how these are joined.
+bool isJoiner(char32_t code) {
+  return code == 0x200C || code == 0x200D;
+}
+
+// Of a text's own line, or of lines for a terminal.
 std::string cleaned(std::string_view text, bool keep_lines) {
   std::string clean;
   while (!text.empty()) {
@@ -73,7 +79,7 @@ std::string cleaned(std::string_view text, bool keep_lines) {
     const char32_t code = codePoint(text, length);
     if (isControl(code) && !(keep_lines && (code == '\n' || code == '\t'))) {
       clean += ' ';
-    } else if (!isUnseen(code)) {
+    } else if (!isUnseen(code) || (!keep_lines && isJoiner(code))) {
       clean += text.substr(0, length);
     }
     text.remove_prefix(length);
@@ -103,7 +109,9 @@ std::string cleanUtf8(std::string_view text) {
   return begin == clean.npos ? "" : clean.substr(begin, end + 1 - begin);
 }
 
-std::string cleanLines(std::string_view text) { return cleaned(text, true); }
+std::string cleanLines(std::string_view text) {
+  return cleaned(text, true);
+}
 
 std::string cutUtf8(const std::string& text, std::size_t most_bytes) {
   if (text.size() <= most_bytes) return text;

@@ -13,7 +13,8 @@ bool isUtf8(std::string_view text);
 std::size_t charactersOf(std::string_view text);
 
 // `text` as valid UTF-8 in one line: bytes that are none become U+FFFD, control characters (C0, C1)
-// a space, characters without a width go, and so do spaces around it.
+// a space, characters without a width go but for those that join letters (U+200C, U+200D), and so
+// do spaces around it.
 std::string cleanUtf8(std::string_view text);
 
 // The same of several lines: newlines, tabs and spaces stay. What a terminal gets.

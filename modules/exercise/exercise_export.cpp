@@ -39,7 +39,7 @@ class Exporter {
   Exporter(const fs::path& scene_file, const Scene& scene, PartFolder& to)
       : from_(scene_file.parent_path()), scene_(scene), to_(to) {}
 
-  Status copyCase(Json& json, Scene scene, const std::string& case_source,
+  Status copyCase(Json& json, Scene scene, const std::string& case_source, const NameHider& hide,
                   const Progress& progress) {
     const CaseFiles given = caseFiles(case_source);
     if (!given.volume.empty() && given.volume != scene.case_source) {
@@ -61,7 +61,7 @@ class Exporter {
     json["case"] = scene.case_source;
     if (built_in && labels.empty()) return {};
     Result<Case> of = readCase(scene.case_source, Progress(progress, 0.0, 0.6));
-    if (of && !labels.empty()) of = withLabels(*of, labels, Progress(progress, 0.6, 0.7));
+    if (of && !labels.empty()) of = withLabels(*of, labels, Progress(progress, 0.6, 0.7), hide);
     if (!of) return of.error();
     if (!built_in) {
       json["case"] = "case/volume.mha";
@@ -212,7 +212,8 @@ Result<fs::path> saveExercise(const Scene& scene, const fs::path& folder, const 
 }
 
 Result<ExportedExercise> exportExercise(const fs::path& scene_file, const std::string& case_source,
-                                        const fs::path& folder, const Progress& progress) {
+                                        const fs::path& folder, const Progress& progress,
+                                        const NameHider& hide) {
   Result<Json> json = readJsonFile(scene_file);
   if (!json) return json.error();
   const Result<Scene> scene = parseScene(*json, scene_file);
@@ -224,7 +225,7 @@ Result<ExportedExercise> exportExercise(const fs::path& scene_file, const std::s
   Exporter exporter(scene_file, *scene, *part);
   progress.at(0.0, "Reading the case");
   if (Status copied =
-          exporter.copyCase(*json, *scene, case_source, Progress(progress, 0.0, kCaseShare));
+          exporter.copyCase(*json, *scene, case_source, hide, Progress(progress, 0.0, kCaseShare));
       !copied) {
     return copied.error();
   }

@@ -12,6 +12,7 @@
 #include "base/json.h"
 #include "base/progress.h"
 #include "base/result.h"
+#include "session/case.h"
 
 namespace trephine {
 
@@ -47,11 +48,12 @@ struct ExportedExercise {
 // Writes the folder, whole or not at all. The case is read as `run` reads it and written as a
 // volume and a label map; `case_source`, also a folder of the library, instead of the scene's own
 // where it is not empty. Errors: those of readScene, readCase and of writing; CANNOT_WRITE where
-// `folder` is there and not empty; CANCELLED.
+// `folder` is there and not empty; CANCELLED. `hide` as of withLabels() (session/case.h).
 Result<ExportedExercise> exportExercise(const std::filesystem::path& scene,
                                         const std::string& case_source,
                                         const std::filesystem::path& folder,
-                                        const Progress& progress = Progress());
+                                        const Progress& progress = Progress(),
+                                        const NameHider& hide = {});
 
 // What of a folder is not there or not what was exported, by its path in the folder.
 struct ExerciseCheck {

@@ -182,9 +182,9 @@ Result<ImportedExercise> importExercise(const fs::path& folder, const fs::path& 
   if (!check) return check.error();
   ImportedExercise imported{{}, *std::move(check), false};
   if (!imported.check.verified()) return imported;
-  Result<Json> scene =
-      readJsonFile(folder / imported.check.scene, progress, kMostWrittenBytes);
+  Result<Json> scene = readJsonFile(folder / imported.check.scene, progress, kMostWrittenBytes);
   if (!scene) return scene.error();
+  const Json as_it_was = *scene;
   const LeftOut devices = leaveDevicesOut(*scene);
   imported.left_devices_out = devices.any;
   if (Status names = namesPartsAlone(folder, imported.check, *scene, progress); !names) {
@@ -206,6 +206,11 @@ Result<ImportedExercise> importExercise(const fs::path& folder, const fs::path& 
   Result<ExerciseCheck> copy = checkExercise(part->path(), Progress(progress, 0.5, 0.7));
   if (!copy) return copy.error();
   if (!copy->verified()) return ImportedExercise{{}, *std::move(copy), false};
+  const Result<Json> copied = readJsonFile(part->path() / imported.check.scene);
+  if (!copied || *copied != as_it_was) {
+    imported.check.changed.push_back(imported.check.scene);
+    return ImportedExercise{{}, std::move(imported.check), false};
+  }
   if (imported.left_devices_out) {
     std::error_code ec;
     fs::remove(part->path() / kListFile, ec);

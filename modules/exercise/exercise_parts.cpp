@@ -57,8 +57,7 @@ Json toJson(const ExercisePart& part) {
 }
 
 Result<ExercisePart> partOf(const fs::path& folder, const std::string& file,
-                            const Progress& progress,
-                            std::optional<std::uint64_t> expected_bytes) {
+                            const Progress& progress, std::optional<std::uint64_t> expected_bytes) {
   const fs::path path = folder / file;
   std::error_code ec;
   bool linked = false;  // a folder of it, out of here

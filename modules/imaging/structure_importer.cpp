@@ -36,7 +36,14 @@ bool liesOn(const GridGeometry& of, const GridGeometry& ct) {
 Status match(const DicomSegmentation& seg, const Volume& ct, const StructureRequest& request,
              std::optional<Choice>& asked) {
   const SourceIds &of = seg.of, &to = request.ct;
-  if (to.unreadable) return {};
+  if (to.unreadable) {
+    if (liesOn(seg.segmentation.geometry, ct.geometry)) return {};
+    return Error{
+        "OTHER_FRAME",
+        "Whether the segmentation was made from this CT cannot be checked by this account, "
+        "and it does not lie on it",
+        "the segmentation", "Choose the one that was made from this CT"};
+  }
   const bool frames = !of.frame_of_reference.empty() && !to.frame_of_reference.empty();
   if (to.standsFor(to.frame_of_reference, of.frame_of_reference)) return {};
   const bool other_study =
@@ -72,13 +79,14 @@ int hideNames(Segmentation& segmentation, const StructureRequest& request) {
 
 void sayHidden(StructureFit& fit, int hidden) {
   if (hidden == 0) return;
-  fit.findings.push_back({"RENAMED_STRUCTURE",
-                          "notice",
-                          hidden == 1 ? "The name of a structure told who the patient is"
-                                      : "The names of " + std::to_string(hidden) +
-                                            " structures told who the patient is",
-                          {},
-                          hidden == 1 ? "It is called by its label" : "They are called by their labels"});
+  fit.findings.push_back(
+      {"RENAMED_STRUCTURE",
+       "notice",
+       hidden == 1
+           ? "The name of a structure told who the patient is"
+           : "The names of " + std::to_string(hidden) + " structures told who the patient is",
+       {},
+       hidden == 1 ? "It is called by its label" : "They are called by their labels"});
 }
 
 }  // namespace
@@ -90,8 +98,7 @@ Result<StructureFit> importStructures(const std::filesystem::path& file, const V
     Result<Segmentation> read = readSegmentation(file, reading);
     if (!read) return read.error();
     const int hidden = hideNames(*read, request);
-    Result<StructureFit> fit =
-        fitStructures(*read, ct, request.answers, request.ask_all, fitting);
+    Result<StructureFit> fit = fitStructures(*read, ct, request.answers, request.ask_all, fitting);
     if (fit) sayHidden(*fit, hidden);
     return fit;
   }

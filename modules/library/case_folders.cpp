@@ -41,7 +41,7 @@ Result<fs::path> newPartName(const Folders& folders, const char* begin) {
 // Of the case.json in a folder: no reader of the whole, since it may be of another version. Nothing
 // where it cannot be read.
 std::optional<std::string> keyIn(const fs::path& folder) {
-  const Result<Json> json = readJsonFile(folder / kCaseFile);
+  const Result<Json> json = readJsonFile(folder / kCaseFile, Progress(), kMostWrittenBytes);
   if (!json || !json->is_object()) return {};
   const auto key = json->find("names_key");
   return key != json->end() && key->is_string() ? key->get<std::string>() : "";
@@ -55,7 +55,9 @@ bool isNamedByACase(const Folders& folders, const std::string& key) {
   std::error_code ec;
   for (fs::directory_iterator it(folders.cases(), ec), end; !ec && it != end; it.increment(ec)) {
     std::error_code unknown;
-    if (fs::is_directory(it->path(), unknown) && keyIn(it->path()).value_or(key) == key) return true;
+    if (it->path().filename().string().starts_with('.')) continue;
+    if (!fs::is_regular_file(it->path() / kCaseFile, unknown)) continue;
+    if (keyIn(it->path()).value_or(key) == key) return true;
   }
   return false;
 }
@@ -102,6 +104,9 @@ Status Folders::make() const {
   }
   if (Status may = mayChange(); !may) return may;
   if (isEachOnesOwn(own)) return {};
+  struct stat of {};
+  const bool ours = ::stat(own.c_str(), &of) == 0 && of.st_uid == ::geteuid();
+  if (!ours || (of.st_mode & 0777) == 0700) return {};
   return ::chmod(own.c_str(), 0700) == 0 ? Status() : Status(writeError(own, errno));
 }
 
@@ -119,9 +124,9 @@ Result<FileLock> Folders::lock() const {
 }
 
 void Folders::putInOrder() const {
-  std::error_code ec;
-  // Who may only look makes nothing, and needs nothing made.
-  if (fs::is_directory(cases(), ec) && mayChange()) (void)make();
+  // Its owner's to do: what another made there, root above all, would be that one's.
+  struct stat of {};
+  if (::stat(cases().c_str(), &of) == 0 && of.st_uid == ::geteuid()) (void)make();
   sweep();
 }
 

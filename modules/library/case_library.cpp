@@ -1,6 +1,10 @@
 #include "library/case_library.h"
 
+#include <sys/stat.h>
+#include <unistd.h>
+
 #include <algorithm>
+#include <cerrno>
 #include <new>
 #include <tuple>
 #include <utility>
@@ -215,7 +219,7 @@ Result<CaseRecord> CaseLibrary::record(const std::string& id) const {
     return Error{"CASE_PART_MISSING", "The folder has no case.json, so it is no whole case", where,
                  "Put the file back, or delete the case"};
   }
-  Result<Json> json = readJsonFile(folder / kCaseFile);
+  Result<Json> json = readJsonFile(folder / kCaseFile, Progress(), kMostWrittenBytes);
   if (!json) {
     Error error = json.error();
     error.where = where;
@@ -450,6 +454,21 @@ Result<LoadedCase> CaseLibrary::load(const std::string& id, const Progress& prog
   return outOfMemory("for the case", id);
 }
 
+namespace {
+
+enum class Keeper { we, another, nobody };
+
+// Who has, or would have, what a case keeps for its importer.
+Keeper keeperOf(const CaseRecord& record, const Folders& folders) {
+  const fs::path file =
+      record.names_key.empty() ? record.folder / kCaseFile : folders.privateFile(record.names_key);
+  struct stat of {};
+  if (::stat(file.c_str(), &of) != 0) return errno == ENOENT ? Keeper::nobody : Keeper::another;
+  return of.st_uid == ::geteuid() ? Keeper::we : Keeper::another;
+}
+
+}  // namespace
+
 // Which CT a case is of, as far as this account may know.
 SourceIds CaseLibrary::idsOf(const CaseRecord& record, const Provenance& provenance) const {
   if (record.names_key.empty()) return {};
@@ -462,6 +481,14 @@ SourceIds CaseLibrary::idsOf(const CaseRecord& record, const Provenance& provena
 
 // First what is to stay is kept by a key; a program that ends in between begins again.
 Status CaseLibrary::takeIdsOut(const std::string& id) const {
+  // Whoever imported the case keeps which CT it is of; of others nothing is made for nothing.
+  const Result<CaseRecord> seen = record(id);
+  if (!seen) return seen.error();
+  const Keeper keeper = keeperOf(*seen, folders_);
+  if (keeper == Keeper::another) {
+    return Error{"CANNOT_READ", "Another account keeps which CT the case is of", id,
+                 "That account changes it when it lists its cases"};
+  }
   Result<Part> part = Part::make(folders_, Part::Of::someFiles);
   if (!part) return part.error();
   const Result<FileLock> list_lock = folders_.lock();
@@ -473,11 +500,12 @@ Status CaseLibrary::takeIdsOut(const std::string& id) const {
   const Result<Provenance> provenance = provenanceFrom(*json, id + "/" + kProvenanceFile);
   if (!provenance) return provenance.error();
 
+  // Of a copy whose guard is not here nobody can keep them any more: they go.
   const bool first = now->names_key.empty();
-  if (!provenance->source_ids.empty()) {
+  if (!provenance->source_ids.empty() && keeper == Keeper::we) {
     Result<NameGuard> guard =
         first ? NameGuard::of({}) : NameGuard::read(folders_.privateFile(now->names_key));
-    if (!guard) return guard.error();  // another account's, who will do it
+    if (!guard) return guard.error();
     const Result<std::string> key = randomHex(8);
     if (first && !key) return key.error();
     if (first) now->names_key = *key;

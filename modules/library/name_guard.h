@@ -1,6 +1,6 @@
 // What is kept of a case for its importer alone: whether a name tells of whom it is, also when its
-// source is gone (salted, stretched hashes of what it may not tell, and nothing from which that could
-// be read), and which CT it was made from, by a key.
+// source is gone (salted, stretched hashes of what it may not tell, and nothing from which that
+// could be read), and which CT it was made from, by a key.
 #pragma once
 
 #include <filesystem>

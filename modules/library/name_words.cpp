@@ -323,6 +323,10 @@ int hideNames(Segmentation& segmentation, const SourceKeys& source) {
   return hidden;
 }
 
+int hideNamesOf(Segmentation& segmentation, const SourceIdentity& source) {
+  return hideNames(segmentation, sourceKeys(source));
+}
+
 bool tellsPatient(IdentityKind kind) {
   return kind == IdentityKind::patient_name || kind == IdentityKind::patient_id ||
          kind == IdentityKind::accession;

@@ -42,6 +42,7 @@ std::set<std::string> nameKeys(std::string_view name, int most_words, const std:
 std::optional<IdentityKind> toldBy(std::string_view name, const SourceKeys& source);
 // Segments whose names tell who the patient is are called by their values, "label 7"; how many.
 int hideNames(Segmentation& segmentation, const SourceKeys& source);
+int hideNamesOf(Segmentation& segmentation, const SourceIdentity& source);
 // Name, ID or accession number; not what folders and files are called.
 bool tellsPatient(IdentityKind kind);
 // NAME_IS_IDENTITY: why a name that tells this is refused. It repeats nothing of it.

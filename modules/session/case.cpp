@@ -165,12 +165,18 @@ Status keepsCase(const std::filesystem::path& target, const std::string& source)
   return {};
 }
 
-Result<Case> withLabels(Case of, const std::string& file, const Progress& progress) {
+Result<Case> withLabels(Case of, const std::string& file, const Progress& progress,
+                        const NameHider& hide) {
   of = withStructures(std::move(of), nullptr);
   if (file.empty()) return of;
   StructureRequest request;
   request.ask_all = false;
   request.ct = sourceOf(of);
+  if (hide && of.identity) {
+    request.hide_names = [&](Segmentation& segmentation) {
+      return hide(segmentation, *of.identity);
+    };
+  }
   Result<StructureFit> fit = importStructures(file, *of.volume, request, progress);
   if (!fit) return fit.error();
   return withFit(std::move(of), *std::move(fit));
@@ -198,13 +204,13 @@ Case withStructures(Case of, std::shared_ptr<const LabelMap> structures) {
   return of;
 }
 
-Result<Case> placedIn(Scene& scene, Case of, const Progress& progress) {
+Result<Case> placedIn(Scene& scene, Case of, const Progress& progress, const NameHider& hide) {
   progress.at(0.0, "Finding landmarks");
   of.landmarks.clear();
   of.misfit.reset();
   of.warnings.clear();
   if (!scene.labels_file.empty() && (!of.structures || of.structures_built_in)) {
-    Result<Case> labelled = withLabels(of, scene.labels_file);
+    Result<Case> labelled = withLabels(of, scene.labels_file, Progress(), hide);
     if (!labelled) {
       of.misfit = labelled.error();
       return of;
@@ -232,10 +238,10 @@ Result<Case> placedIn(Scene& scene, Case of, const Progress& progress) {
   return of;
 }
 
-Result<Case> openCase(Scene& scene, const Progress& progress) {
+Result<Case> openCase(Scene& scene, const Progress& progress, const NameHider& hide) {
   Result<Case> read = readCase(scene.case_source, Progress(progress, 0.0, kReadShare));
   if (!read) return read;
-  return placedIn(scene, *std::move(read), Progress(progress, kReadShare, 1.0));
+  return placedIn(scene, *std::move(read), Progress(progress, kReadShare, 1.0), hide);
 }
 
 }  // namespace trephine

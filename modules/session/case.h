@@ -2,6 +2,7 @@
 // and nowhere else, and cheap to copy: the voxels are shared and never change.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -15,6 +16,7 @@
 #include "imaging/steps/anatomy.h"
 #include "scene/scene.h"
 #include "volume/label_map.h"
+#include "volume/segmentation.h"
 #include "volume/volume.h"
 
 namespace trephine {
@@ -60,9 +62,14 @@ Result<Case> readCase(const std::string& source, const Progress& progress = Prog
 // is in a folder of DICOM nor that folder itself. Error: CANNOT_WRITE. Reads a header at most.
 Status keepsCase(const std::filesystem::path& target, const std::string& source);
 
+// Gives other names to the segments that tell who it is of; how many there were (library/name_words.h).
+using NameHider = std::function<int(Segmentation&, const SourceIdentity&)>;
+
 // The structures of a file, instead of what it had; "" for none. What a person would be asked is
 // taken as it is and said in `structure_warnings`. Errors: those of importStructures.
-Result<Case> withLabels(Case of, const std::string& file, const Progress& progress = Progress());
+// With `hide` names that tell whom the case is of are hidden, where it knows that.
+Result<Case> withLabels(Case of, const std::string& file, const Progress& progress = Progress(),
+                        const NameHider& hide = {});
 // What it was read from, as far as it is known.
 SourceIds sourceOf(const Case& of);
 // Those that were put on its grid, with what is to be said of them.
@@ -75,9 +82,12 @@ Case withStructures(Case of, std::shared_ptr<const LabelMap> structures);
 // another anatomy is warned of (OTHER_ANATOMY, NO_VAULT). Where a landmark has no place in it, the
 // landmarks are where their rays meet the body, with the warning NO_LANDMARK. Error: CANCELLED; all
 // others are the case's `misfit`.
-Result<Case> placedIn(Scene& scene, Case of, const Progress& progress = Progress());
+// `hide` as of withLabels().
+Result<Case> placedIn(Scene& scene, Case of, const Progress& progress = Progress(),
+                      const NameHider& hide = {});
 
 // The scene's own case, placed in it.
-Result<Case> openCase(Scene& scene, const Progress& progress = Progress());
+Result<Case> openCase(Scene& scene, const Progress& progress = Progress(),
+                      const NameHider& hide = {});
 
 }  // namespace trephine

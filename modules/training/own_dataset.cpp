@@ -26,8 +26,8 @@ bool hasOwnFilters(hid_t properties) {
   for (int n = 0; n < count; ++n) {
     unsigned flags = 0, config = 0;
     std::size_t values = 0;
-    const H5Z_filter_t filter = H5Pget_filter2(properties, unsigned(n), &flags, &values, nullptr, 0,
-                                               nullptr, &config);
+    const H5Z_filter_t filter =
+        H5Pget_filter2(properties, unsigned(n), &flags, &values, nullptr, 0, nullptr, &config);
     if (filter != H5Z_FILTER_SHUFFLE && filter != H5Z_FILTER_DEFLATE) return false;
     deflates += filter == H5Z_FILTER_DEFLATE ? 1 : 0;
   }
@@ -78,6 +78,8 @@ bool isForeign(hid_t file, const char* name) {
   return foreign;
 }
 
-bool isOneElement(hid_t space) { return H5Sget_simple_extent_npoints(space) == 1; }
+bool isOneElement(hid_t space) {
+  return H5Sget_simple_extent_npoints(space) == 1;
+}
 
 }  // namespace trephine

@@ -9,8 +9,8 @@ namespace trephine {
 // A dataset in the file's root group. It has to be a hard link to data in the same file, stored in
 // one piece or in chunks, unfiltered or by shuffle and one deflate: no soft or external link, no
 // external raw storage, no virtual dataset, no filter that HDF5 would load from a plugin. One chunk
-// takes at most 16 MB of memory. Returns an identifier that the caller closes with H5Dclose, below 0
-// where there is none of that name or it is stored in another way.
+// says that it takes at most 16 MB of memory. Returns an identifier that the caller closes with
+// H5Dclose, below 0 where there is none of that name or it is stored in another way.
 hid_t openOwnDataset(hid_t file, const char* name);
 
 // Whether there is something of this name that may not be opened, other than by damage.

@@ -70,9 +70,15 @@ ListedRecording rowFrom(const Json& json, const std::filesystem::path& file) {
 
 // What one child read before it ended or its time was up.
 struct Pass {
+  enum class End { timed_out, crashed, ended };
   std::vector<ListedRecording> rows;
-  bool timed_out = false;
+  End end = End::ended;
 };
+
+Error cannotRun(const ReadApart& how) {
+  return {"CANNOT_RUN", "The recordings cannot be listed", how.program.filename().string(),
+          "See that there is room for temporary files and memory, else install Trephine anew"};
+}
 
 Result<Pass> readPass(const std::vector<std::filesystem::path>& files, std::size_t first,
                       const Progress& progress, const ReadApart& how) {
@@ -95,11 +101,10 @@ Result<Pass> readPass(const std::vector<std::filesystem::path>& files, std::size
   std::filesystem::remove(command.output, ec);
   if (!run) return run.error();
   constexpr int kNotRun = 100, kSignals = 128;  // by the loader, or by the command line
-  if (run->exit_code >= kNotRun && run->exit_code < kSignals) {
-    return Error{"CANNOT_RUN", "The recordings cannot be listed", how.program.filename().string(),
-                 "Install Trephine anew"};
-  }
-  pass.timed_out = run->timed_out;
+  if (run->exit_code >= kNotRun && run->exit_code < kSignals) return cannotRun(how);
+  pass.end = run->timed_out               ? Pass::End::timed_out
+             : run->exit_code >= kSignals ? Pass::End::crashed
+                                          : Pass::End::ended;
   for (std::string line; first + pass.rows.size() < end && std::getline(lines, line);) {
     const Result<Json> json = parseJson(line, "recordings");
     if (!json) break;  // half a line
@@ -108,13 +113,23 @@ Result<Pass> readPass(const std::vector<std::filesystem::path>& files, std::size
   return pass;
 }
 
-ListedRecording unread(const std::filesystem::path& file, bool timed_out) {
+ListedRecording unread(const std::filesystem::path& file, Pass::End end) {
   ListedRecording row;
   row.file = file;
-  row.problem = timed_out ? Error{"TAKES_TOO_LONG", "The recording takes too long to read",
-                                  file.string(), "Check its disk; delete it if it is no recording"}
-                          : Error{"BAD_RECORDING", "The recording is damaged", file.string(),
-                                  "It cannot be replayed"};
+  switch (end) {
+    case Pass::End::timed_out:
+      row.problem = Error{"TAKES_TOO_LONG", "The recording takes too long to read", file.string(),
+                          "Check its disk, then look again"};
+      break;
+    case Pass::End::crashed:
+      row.problem = Error{"BAD_RECORDING", "The recording is damaged", file.string(),
+                          "It cannot be replayed"};
+      break;
+    case Pass::End::ended:
+      row.problem = Error{"UNREADABLE", "The recording could not be read", file.string(),
+                          "See that there is memory and room for temporary files, then look again"};
+      break;
+  }
   return row;
 }
 
@@ -133,12 +148,9 @@ ListedRecording listRecording(const std::filesystem::path& file) {
 }
 
 Json toJson(const ListedRecording& row) {
-  Json json = {{"file", row.file.string()},
-               {"exercise", row.exercise},
-               {"case", row.case_source},
-               {"volume_sha256", row.volume_sha256},
-               {"seconds", row.seconds},
-               {"cut_short", row.cut_short}};
+  Json json = {{"file", row.file.string()}, {"exercise", row.exercise},
+               {"case", row.case_source},   {"volume_sha256", row.volume_sha256},
+               {"seconds", row.seconds},    {"cut_short", row.cut_short}};
   if (const auto& problem = row.problem) {
     json["problem"] = {{"code", problem->code},
                        {"what", problem->what},
@@ -151,11 +163,25 @@ Json toJson(const ListedRecording& row) {
 Result<std::vector<ListedRecording>> listFiles(const std::vector<std::filesystem::path>& files,
                                                const Progress& progress, const ReadApart& how) {
   std::vector<ListedRecording> rows;
+  constexpr double kLeast_s = 0.5;
+  constexpr int kMostEmpty = 3;  // of a reader that ends by itself without a word: it cannot work
+  ReadApart now = how;
+  int empty = 0;
   while (rows.size() < files.size()) {
-    Result<Pass> pass = readPass(files, rows.size(), progress, how);
+    Result<Pass> pass = readPass(files, rows.size(), progress, now);
     if (!pass) return pass.error();
     rows.insert(rows.end(), pass->rows.begin(), pass->rows.end());
-    if (pass->rows.empty()) rows.push_back(unread(files[rows.size()], pass->timed_out));
+    if (!pass->rows.empty()) {
+      empty = 0;
+      continue;
+    }
+    empty = pass->end == Pass::End::ended ? empty + 1 : 0;
+    if (empty == kMostEmpty) return cannotRun(how);
+    rows.push_back(unread(files[rows.size()], pass->end));
+    // A folder of many such files does not keep a person waiting for each.
+    if (pass->end == Pass::End::timed_out) {
+      now.patience_s = std::max(std::min(kLeast_s, how.patience_s), now.patience_s / 2.0);
+    }
   }
   for (ListedRecording& row : rows) {
     std::error_code ec;

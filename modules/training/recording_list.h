@@ -32,11 +32,12 @@ ListedRecording listRecording(const std::filesystem::path& file);
 Json toJson(const ListedRecording& row);  // a line of `trephine-lab recordings --json`
 
 // How files that may be anybody's are read: each is opened by a child process, `trephine-lab
-// recordings`. A file that takes longer than `patience_s`, or that ends the child, is a row with its
-// problem (TAKES_TOO_LONG, BAD_RECORDING), and the rest goes on.
+// recordings`. A file that takes longer than `patience_s`, or that ends the child, is a row with
+// its problem (TAKES_TOO_LONG, BAD_RECORDING, UNREADABLE), and the rest goes on; after each that
+// takes too long with half the patience.
 struct ReadApart {
   std::filesystem::path program = labProgram();
-  double patience_s = 5.0;
+  double patience_s = 10.0;
 };
 // One row for each file, in their order. Any thread; 50 ms and some milliseconds for each file.
 // Errors: CANCELLED, CANNOT_RUN, NO_TEMPORARY_FOLDER.

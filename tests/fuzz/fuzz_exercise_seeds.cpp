@@ -52,8 +52,8 @@ Status record(const fs::path& scene_file, const fs::path& file) {
   return Error{"DIFFERS", "A recording does not replay", scene_file.string(), ""};
 }
 
-// A recording whose ticks are a link to a pipe, and one whose events lie in another file: refused, and
-// opening nothing.
+// A recording whose ticks are a link to a pipe, and one whose events lie in another file: refused,
+// and opening nothing.
 Status writeForeign(const fs::path& folder, const fs::path& recording, const std::string& name) {
   const auto with = [&](const std::string& kind, const char* dataset, const auto& put) {
     const fs::path foreign = folder / "foreign.h5";
@@ -62,7 +62,8 @@ Status writeForeign(const fs::path& folder, const fs::path& recording, const std
     H5Ldelete(file, dataset, H5P_DEFAULT);
     put(file);
     H5Fclose(file);
-    if (SessionReader::open(foreign)) return Error{"TAKEN", "A foreign recording is taken", kind, ""};
+    if (SessionReader::open(foreign))
+      return Error{"TAKEN", "A foreign recording is taken", kind, ""};
     const Status written = writeSeed(folder, kRecording, kind + "-" + name, foreign);
     fs::remove(foreign);
     return written ? Error{} : written.error();
@@ -99,7 +100,8 @@ Status writeOfCases(const fs::path& folder) {
   record.verdict = Verdict::repaired;
   record.structures = {{"liver", 1500.0, Vec3(0.5)}};
   record.names_key = "0123456789abcdef";
-  if (Result<CaseRecord> again = caseRecordFrom(toJson(record), "case"); !again) return again.error();
+  if (Result<CaseRecord> again = caseRecordFrom(toJson(record), "case"); !again)
+    return again.error();
   if (Status s = writeTextFile(folder / "case", char(kCase) + toJson(record).dump()); !s) return s;
   Provenance of;
   of.source = "DICOM";

@@ -38,7 +38,9 @@ def wrong(element, file):
         place = place.parent
     for folder in (place, *place.parents):
         mode = folder.stat().st_mode
-        if mode & (stat.S_IWGRP | stat.S_IWOTH) and not mode & stat.S_ISVTX:
+        mine = folder.stat().st_gid in (os.getgid(), 0)  # a group of one's own, or root's
+        writable = mode & stat.S_IWOTH or (mode & stat.S_IWGRP and not mine)
+        if writable and not mode & stat.S_ISVTX:
             return f"'{element}', where others than its owner may write"
     return None
 

@@ -317,7 +317,8 @@ void CasesWorkspace::askToDelete(const CaseEntry& entry) {
 
 void CasesWorkspace::showReport(const CaseEntry& entry) {
   constexpr std::size_t kMostBytes = std::size_t{4} << 20;
-  const Result<std::string> page = readWholeFile(entry.record.folder / case_folders::kReportPage, kMostBytes);
+  const Result<std::string> page =
+      readWholeFile(entry.record.folder / case_folders::kReportPage, kMostBytes);
   if (!page) {
     return bench_.report({page.error().code, "The case's report cannot be read",
                           (entry.record.folder / case_folders::kReportPage).string(),

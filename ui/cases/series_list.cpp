@@ -137,8 +137,7 @@ void fill(QListWidgetItem& item, const SeriesReport& series, const Answers& answ
   item.setData(kLine, line);
   item.setData(kState, int(state));
   item.setData(Qt::AccessibleTextRole, QStringList{name, line, stateWord(state)}.join(", "));
-  item.setToolTip(
-      inLines(QStringList{name, line, verdictSentence(series, answers)}.join('\n')));
+  item.setToolTip(inLines(QStringList{name, line, verdictSentence(series, answers)}.join('\n')));
 }
 
 }  // namespace

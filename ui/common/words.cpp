@@ -182,13 +182,13 @@ QString forceChangeWords(const ArmRecord& arm, bool paused) {
 }
 
 QString forceChangeMeanings() {
-  QStringList rows{
-      tr("What is changed in the force that the tissue demands, before it is sent.")};
+  QStringList rows{tr("What is changed in the force that the tissue demands, before it is sent.")};
   for (const PartWords& part : kPartWords) {
     rows << QStringLiteral("%1: %2").arg(tr(part.words), tr(part.meaning));
   }
-  rows << tr("off: in a pause, a fault, and tissue that the tool did not come into, nothing is "
-             "sent.");
+  rows << tr(
+      "off: in a pause, a fault, and tissue that the tool did not come into, nothing is "
+      "sent.");
   return rows.join("\n\n");
 }
 

@@ -54,8 +54,8 @@ class MainWindow : public QMainWindow {
   void sayProblem();
   void startExercise(std::optional<OperatorScript> script = {},
                      double seconds = TrainWorkspace::kNoEnd_s);
-  // Shows the exercise that runs as it is now, all of it, without waiting for the next frame: whoever
-  // moves the session's time (Workstation::setStepped) shows it so.
+  // Shows the exercise that runs as it is now, all of it, without waiting for the next frame:
+  // whoever moves the session's time (Workstation::setStepped) shows it so.
   void showExercise() { train_->showAll(); }
   void savePicture(const QString& file) { bench_.savePicture(file); }
   void saveVolume(const QString& file) { bench_.saveVolume(file); }

@@ -38,9 +38,9 @@ Status prepareDisplay() {
   // A view that gets another window keeps its context, whose textures a headset and a second screen
   // show.
   QCoreApplication::setAttribute(Qt::AA_ShareOpenGLContexts);
-  // Qt's file dialogs keep where they have been for the next user to read, folders named for patients
-  // among them. Nothing can be kept within a device, and our own settings have a file of their own
-  // (windowSettings). A desktop's dialogs keep what they like.
+  // Qt's file dialogs keep where they have been for the next user to read, folders named for
+  // patients among them. Nothing can be kept within a device, and our own settings have a file of
+  // their own (windowSettings). A desktop's dialogs keep what they like.
   QSettings::setPath(QSettings::NativeFormat, QSettings::UserScope, "/dev/null");
   QCoreApplication::setAttribute(Qt::AA_DontUseNativeDialogs);
   return probeDisplay();

@@ -7,6 +7,7 @@
 
 #include "exercise/exercise_folder.h"
 #include "library/case_folders.h"
+#include "library/name_words.h"
 #include "session/operator_script.h"
 #include "ui/common/question.h"
 #include "ui/common/words.h"
@@ -310,7 +311,8 @@ void ExerciseTab::exportSaved() {
       [this, scene = workstation_.sceneFile()](const std::filesystem::path& folder) {
         workstation_.save(tr("The exercise is exported: one folder with all that it needs."),
                           [scene, folder](const Progress& progress) {
-                            const auto done = trephine::exportExercise(scene, "", folder, progress);
+                            const auto done =
+                                trephine::exportExercise(scene, "", folder, progress, hideNamesOf);
                             return done ? Status() : Status(done.error());
                           });
       });
@@ -326,8 +328,8 @@ void ExerciseTab::importIt() {
     auto without_devices = std::make_shared<bool>(false);
     workstation_.save(
         tr("The exercise is imported."),
-        [from = toPath(folder), storage = bench_.storage(),
-         scene, without_devices](const Progress& progress) -> Status {
+        [from = toPath(folder), storage = bench_.storage(), scene,
+         without_devices](const Progress& progress) -> Status {
           const auto imported = trephine::importExercise(from, storage, progress);
           if (!imported) return imported.error();
           if (!imported->check.verified()) return notVerified(imported->check);
@@ -337,8 +339,9 @@ void ExerciseTab::importIt() {
         },
         [this, scene, without_devices] {
           if (*without_devices) {
-            bench_.say(tr("The exercise is imported. It named devices and how they are set: those "
-                          "of this workstation are used instead."));
+            bench_.say(
+                tr("The exercise is imported. It named devices and how they are set: those "
+                   "of this workstation are used instead."));
           }
           bench_.tellExercises();
           bench_.unlessLost({Bench::Loss::structures, Bench::Loss::cuts, Bench::Loss::tissues},

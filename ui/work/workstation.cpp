@@ -7,6 +7,7 @@
 #include "base/file.h"
 #include "base/memory.h"
 #include "base/rt/thread.h"
+#include "library/name_words.h"
 #include "session/arm_devices.h"
 #include "ui/common/settings.h"
 #include "ui/common/words.h"
@@ -103,7 +104,7 @@ void Workstation::begin(const std::filesystem::path& recordings,
         if (Status had = armsAreFree(lock, scene, chosen); !had) return had.error();
         if (Status used = useArms(scene, chosen); !used) return used.error();
         if (Status made = poke ? Status() : makeFolder(recordings); !made) return made.error();
-        const Result<Case> placed = again ? placedIn(scene, of, progress) : of;
+        const Result<Case> placed = again ? placedIn(scene, of, progress, hideNamesOf) : of;
         if (!placed) return placed.error();
         const auto file = poke ? std::filesystem::path() : freshFile(recordings, stem, ".h5");
         return Session::create(scene, *placed, {file, script, true, poke});

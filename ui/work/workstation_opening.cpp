@@ -274,9 +274,10 @@ void Workstation::openInBackground(Opened opening) {
         const Progress progress(all, opening.load ? kLoaded : 0.0, 1.0);
         opening.load = nullptr;
         if (opening.of && !opening.labels_file.empty()) {
-          Result<Case> labelled = opening.structures_alone
-                                      ? withAnswered(*opening.of, opening, *asked, progress)
-                                      : withLabels(*opening.of, opening.labels_file, progress);
+          Result<Case> labelled =
+              opening.structures_alone
+                  ? withAnswered(*opening.of, opening, *asked, progress)
+                  : withLabels(*opening.of, opening.labels_file, progress, hideNamesOf);
           if (!labelled && opening.of->volume == shown) return labelled.error();
           if (labelled) {
             opening.of = *std::move(labelled);
@@ -298,8 +299,9 @@ void Workstation::openInBackground(Opened opening) {
             opening.same_scene = false;
           }
         }
-        Result<Case> placed = opening.of ? placedIn(opening.scene, *opening.of, progress)
-                                         : openCase(opening.scene, progress);
+        Result<Case> placed = opening.of
+                                  ? placedIn(opening.scene, *opening.of, progress, hideNamesOf)
+                                  : openCase(opening.scene, progress, hideNamesOf);
         if (!placed) return placed.error();
         opening.of = *std::move(placed);
         if (opening.of->volume == shown) return std::move(opening);

@@ -6,9 +6,9 @@
 
 namespace trephine {
 
-// Stands for a UID within a program: 32 hexadecimal digits, the same on every machine, with the "#2"
-// of a part of a series. From SHA-256 of the UID. Whoever has a list of UIDs finds the patient by
-// it: it is never written or printed.
+// Stands for a UID within a program: 32 hexadecimal digits, the same on every machine, with the
+// "#2" of a part of a series. From SHA-256 of the UID. Whoever has a list of UIDs finds the patient
+// by it: it is never written or printed.
 std::string seriesHash(const std::string& uid);
 // The same; empty where the UID is.
 std::string hashOrNone(const std::string& uid);

@@ -388,7 +388,7 @@ Result<std::vector<DicomHeader>> readDicomHeaders(const std::filesystem::path& f
                                                   const Progress& progress) {
   setUpDcmtk();
   if (file_bytes == 0) return skip("the file is empty");
-  DicomStream stream(file);
+  DicomStream stream(file, kSliceBounds, &progress);
   const std::string_view head = stream.beginning(1024);
   if (head.empty()) return Error{kUnreadableFile, "the file may not be read", "", ""};
   if (!looksLikeDicom(head)) {

@@ -13,6 +13,9 @@ namespace trephine {
 
 namespace {
 
+// Of a header: each takes some hundred bytes of memory, and eight of the file. Fragments of pixels
+// are none of them.
+constexpr std::size_t kMostItems = 1000000;
 constexpr offile_off_t kMostSkipped = offile_off_t(256) << 20;  // inflated in about a second
 
 // Stands for a value that was skipped: it cannot be had later.
@@ -105,7 +108,8 @@ offile_off_t DicomStream::avail() {
   const std::uintptr_t now = stackPlace();
   const std::size_t taken = std::max(now, stack_) - std::min(now, stack_);
   too_deep_ = too_deep_ || taken > bounds_.stack;
-  if (too_deep_ || read_ > bounds_.inflated || skipped_ > kMostSkipped) return 0;
+  const bool too_much = read_ > bounds_.inflated || items_ > kMostItems;
+  if (too_deep_ || too_much || skipped_ > kMostSkipped) return 0;
   return DcmInputStream::avail();
 }
 
@@ -118,6 +122,13 @@ offile_off_t DicomStream::read(void* to, offile_off_t bytes) {
   std::memmove(newest_.data(), newest_.data() + fresh, kept);
   std::memcpy(newest_.data() + kept,
               static_cast<const std::uint8_t*>(to) + (std::size_t(count) - fresh), fresh);
+  // A tag is read by itself, or with the length that follows it.
+  const auto is_item = [&](std::size_t from_end) {
+    const std::uint8_t* tag = newest_.data() + newest_.size() - from_end;
+    const bool little = tag[0] == 0xFE && tag[1] == 0xFF && tag[2] == 0x00 && tag[3] == 0xE0;
+    return little || (tag[0] == 0xFF && tag[1] == 0xFE && tag[2] == 0xE0 && tag[3] == 0x00);
+  };
+  if ((count <= 4 && is_item(4)) || (count == 8 && is_item(8))) ++items_;
   return count;
 }
 

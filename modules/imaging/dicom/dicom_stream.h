@@ -80,6 +80,7 @@ class DicomStream : public DcmInputStream {
   std::uintptr_t stack_;  // where it was made
   bool deflated_ = false, too_deep_ = false;
   offile_off_t read_ = 0, skipped_ = 0;  // of a deflated data set
+  std::size_t items_ = 0;                // that were read
   std::array<std::uint8_t, 12> newest_{};
 };
 

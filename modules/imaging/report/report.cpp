@@ -116,7 +116,7 @@ Json toJson(const ImportReport& report, Identity identity) {
     skipped.push_back({{"reason", cleanUtf8(files.reason)}, {"count", files.count}});
   }
   Json series = Json::array();
-  std::optional<std::string> chosen = report.chosen;
+  std::optional<std::string> chosen = shown ? report.chosen : std::optional<std::string>();
   for (const SeriesReport& one : report.series) {
     const std::size_t number = series.size() + 1;
     series.push_back(seriesJson(one, number, identity));

@@ -92,8 +92,8 @@ std::string seriesSection(const SeriesReport& series, std::size_t number, std::s
                      (chosen ? " (opened)" : "") + ": <font color=\"" +
                      verdictColour(series.verdict) + "\">" + verdictSentence(series.verdict) +
                      "</font></h3>\n<table cellpadding=\"2\">\n";
-  html += row("Kind", escaped(series.modality.empty() ? "unknown" : shownTerm(series.modality)) + ", " +
-                          escaped(series.source) +
+  html += row("Kind", escaped(series.modality.empty() ? "unknown" : shownTerm(series.modality)) +
+                          ", " + escaped(series.source) +
                           (series.transfer_syntax.empty()
                                ? ""
                                : ", " + escaped(transferSyntaxName(series.transfer_syntax))));

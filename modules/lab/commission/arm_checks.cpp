@@ -4,12 +4,12 @@
 #include <chrono>
 #include <thread>
 
+#include "base/child_process.h"
 #include "base/file.h"
 #include "base/formatted.h"
 #include "base/system.h"
 #include "device/find_arms.h"
 #include "lab/commission/commission.h"
-#include "base/child_process.h"
 #include "lab/common/temporary_folder.h"
 #include "session/arm_trial.h"
 

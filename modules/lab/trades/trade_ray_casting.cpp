@@ -25,7 +25,7 @@ TradeRows tradeRayCasting(const TradesOptions& options, const Progress& progress
   const auto figures = measureRaySettings(settings, of, progress);
   std::vector<TradeRow> rows;
   if (!figures && (figures.error().code == "NO_DISPLAY" || figures.error().code == "NO_OPENGL")) {
-    spdlog::warn("No ray casting: {}", figures.error().sentence());
+    spdlog::warn("No ray casting: {}", figures.error().what);
     return rows;
   }
   if (!figures) return figures.error();

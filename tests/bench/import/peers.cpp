@@ -1,4 +1,3 @@
-#include "base/child_process.h"
 #include "bench/import/peers.h"
 
 #include <unistd.h>
@@ -10,6 +9,7 @@
 #include <optional>
 #include <sstream>
 
+#include "base/child_process.h"
 #include "volume/volume_files.h"
 
 namespace trephine::bench {

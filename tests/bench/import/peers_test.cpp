@@ -1,4 +1,3 @@
-#include "base/child_process.h"
 #include "bench/import/peers.h"
 
 #include <gtest/gtest.h>
@@ -7,6 +6,7 @@
 #include <fstream>
 #include <iterator>
 
+#include "base/child_process.h"
 #include "support.h"
 #include "unit/lab/import_fixture.h"
 #include "volume/volume_files.h"

@@ -448,8 +448,7 @@ class ExerciseGuiTest : public test::WindowTest {
     QVERIFY(find<QLabel>("law:elastic:cost")->text().isEmpty());
     find<QToolButton>("measureCosts")->click();
     // A law that costs less than the machine scatters costs "under" that.
-    const QRegularExpression figure(
-        "^(\\d+\\.\\d\\d \u00b5s a tick|under \\d+\\.\\d\\d \u00b5s)$");
+    const QRegularExpression figure("^(\\d+\\.\\d\\d \u00b5s a tick|under \\d+\\.\\d\\d \u00b5s)$");
     QTRY_VERIFY2_WITH_TIMEOUT(figure.match(find<QLabel>("law:elastic:cost")->text()).hasMatch(),
                               qPrintable(find<QLabel>("law:elastic:cost")->text()), kLong_ms);
     QVERIFY(find<QLabel>("controllerCost")->text().contains("\u00b5s a tick"));

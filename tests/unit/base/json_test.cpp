@@ -84,6 +84,23 @@ TEST(ParseJson, ReadsAnObjectOfAThousandFieldsAndRefusesOneOfMore) {
   EXPECT_NE(more.error().what.find("more than 1024 fields"), std::string::npos);
 }
 
+// A value that grows is not copied each time: a thousand objects, each within the last one's first
+// field, beside a thousand others.
+TEST(ParseJson, ReadsAnObjectWithinManyOthers) {
+  std::string text = "0";
+  for (int depth = 0; depth < 60; ++depth) {
+    std::string level = "{\"a\": " + text;
+    for (int n = 0; n < 1000; ++n) level += ", \"f" + std::to_string(n) + "\": 0";
+    text = level + "}";
+  }
+  const Result<Json> json = parseJson(text, "f.json");
+  ASSERT_TRUE(json.ok()) << json.error().sentence();
+  const Json* at = &*json;
+  int depth = 0;
+  for (; at->is_object(); at = &(*at)["a"]) ++depth;
+  EXPECT_EQ(depth, 60);
+}
+
 std::string listOf(std::size_t values) {
   std::string text = "[";
   for (std::size_t n = 0; n < values; ++n) text += n ? ",0" : "0";

@@ -30,15 +30,14 @@ TEST(System, AHomeThatIsNotGivenFromTheRootIsNone) {
 TEST(System, WhatLoadsCodeIsTakenOutOfTheEnvironmentWhereItKeepsToItsOwnFolders) {
   const Environment hdf5("HDF5_PLUGIN_PATH", "/x"), qt("QT_PLUGIN_PATH", "/x"),
       platform("QT_QPA_PLATFORM_PLUGIN_PATH", "/x"), runtime("XR_RUNTIME_JSON", "/x"),
-      layers("XR_API_LAYER_PATH", "/x"), openssl("OPENSSL_CONF", "/x"), dictionary("DCMDICTPATH", "/x"),
-      drivers("LIBGL_DRIVERS_PATH", "/x"), plugins("TREPHINE_PLUGINS", "/x"),
-      resources("TREPHINE_RESOURCES", "/x"), display("DISPLAY", ":7"),
-      software("LIBGL_ALWAYS_SOFTWARE", "1");
+      layers("XR_API_LAYER_PATH", "/x"), openssl("OPENSSL_CONF", "/x"),
+      dictionary("DCMDICTPATH", "/x"), drivers("LIBGL_DRIVERS_PATH", "/x"),
+      plugins("TREPHINE_PLUGINS", "/x"), resources("TREPHINE_RESOURCES", "/x"),
+      display("DISPLAY", ":7"), software("LIBGL_ALWAYS_SOFTWARE", "1");
   keepToOwnFolders();
-  for (const char* name :
-       {"HDF5_PLUGIN_PATH", "QT_PLUGIN_PATH", "QT_QPA_PLATFORM_PLUGIN_PATH", "XR_RUNTIME_JSON",
-        "XR_API_LAYER_PATH", "OPENSSL_CONF", "DCMDICTPATH", "LIBGL_DRIVERS_PATH", "TREPHINE_PLUGINS",
-        "TREPHINE_RESOURCES"}) {
+  for (const char* name : {"HDF5_PLUGIN_PATH", "QT_PLUGIN_PATH", "QT_QPA_PLATFORM_PLUGIN_PATH",
+                           "XR_RUNTIME_JSON", "XR_API_LAYER_PATH", "OPENSSL_CONF", "DCMDICTPATH",
+                           "LIBGL_DRIVERS_PATH", "TREPHINE_PLUGINS", "TREPHINE_RESOURCES"}) {
     EXPECT_EQ(std::getenv(name), nullptr) << name;
   }
   EXPECT_STREQ(std::getenv("DISPLAY"), ":7");

@@ -211,8 +211,9 @@ void listAnew(const fs::path& folder) {
     const std::string name = entry.path().lexically_relative(folder).string();
     if (!entry.is_regular_file() || name == "exercise.json") continue;
     const std::string bytes = test::bytesOfFile(entry.path());
-    list["parts"].push_back(
-        {{"file", name}, {"sha256", sha256Hex(bytes.data(), bytes.size())}, {"bytes", bytes.size()}});
+    list["parts"].push_back({{"file", name},
+                             {"sha256", sha256Hex(bytes.data(), bytes.size())},
+                             {"bytes", bytes.size()}});
   }
   ASSERT_TRUE(writeTextFile(folder / "exercise.json", list.dump()));
 }
@@ -277,7 +278,8 @@ TEST_F(ExerciseFolder, ACaseThatCannotBeOpenedFromItsPartsAloneIsRefusedAndNothi
   const std::string beside = (folder_ / "voxels/v.raw").string();
   ASSERT_TRUE(writeTextFile(beside, std::string(1024, '\0')));
   for (const std::string& data : {beside, std::string("../../voxels/v.raw")}) {
-    ASSERT_TRUE(writeTextFile(stick / "case/volume.mhd", header + "ElementDataFile = " + data + "\n"));
+    ASSERT_TRUE(
+        writeTextFile(stick / "case/volume.mhd", header + "ElementDataFile = " + data + "\n"));
     scene["case"] = "case/volume.mhd";
     ASSERT_TRUE(writeTextFile(stick / "scene.json", scene.dump()));
     const Error error = refused();

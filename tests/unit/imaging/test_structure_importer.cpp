@@ -113,8 +113,8 @@ TEST(StructureImporter, WhereItIsNotKnownWhichCtTheCaseIsOfThatIsSaidAndThePlace
   const auto fit = importStructures(own.seg, own.volume, of(unknown));
   ASSERT_TRUE(fit) << fit.error().sentence();
   EXPECT_EQ(std::ranges::count(fit->findings, "SOURCE_UNCHECKED", &Finding::code), 1);
-  const Written other = write(belly(Vec3(1300.0, 2.0, 31.0), 7), folder / "b");
-  EXPECT_FALSE(importStructures(other.seg, own.volume, of(unknown)));
+  const Written other = write(belly(Vec3(13.0, 2.0, 31.0), 7), folder / "b");
+  EXPECT_EQ(importStructures(other.seg, own.volume, of(unknown)).error().code, "OTHER_FRAME");
 }
 
 TEST(StructureImporter, NamesThatAreHiddenAreNeitherSaidNorInTheMap) {

@@ -300,7 +300,8 @@ TEST_F(CaseLibraryTest, PutsAStorageFolderInOrderWhenItIsOpened) {
   ASSERT_TRUE(CaseLibrary(storage()).save(test::smallCase()));
   for (const char* folder : {".parts", "private"}) fs::remove_all(storage() / folder);
   const CaseLibrary again(storage());
-  for (const char* folder : {".parts", "private"}) EXPECT_TRUE(fs::is_directory(storage() / folder));
+  for (const char* folder : {".parts", "private"})
+    EXPECT_TRUE(fs::is_directory(storage() / folder));
 }
 
 TEST_F(CaseLibraryTest, SavesOtherStructuresOfACase) {

@@ -108,8 +108,8 @@ TEST_F(CaseOfJaneDoe, KeepsWhichCtItIsOfByAKeyThatOthersMayNotRead) {
   const std::string uid = case_.report->series.front().uid;
   const CaseRecord one = saved(), other = saved();
   const std::string all = allThatOthersMayRead(storage());
-  for (const std::string& told : {plain.study, plain.series, plain.frame_of_reference, uid,
-                                  seriesHash(uid)}) {
+  for (const std::string& told :
+       {plain.study, plain.series, plain.frame_of_reference, uid, seriesHash(uid)}) {
     EXPECT_EQ(all.find(told), std::string::npos);
   }
   const SourceIds kept = CaseLibrary(storage()).load(one.id)->provenance->source_ids;
@@ -135,9 +135,9 @@ TEST_F(CaseOfJaneDoe, AsItWasSavedBeforeLosesItsHashesAndIsKnownAllTheSame) {
     report["provenance"]["source_ids"] = provenance["source_ids"];
     ASSERT_TRUE(writeTextFile(record.folder / "report.json", report.dump(2)));
     std::string page = test::bytesOf(record.folder / "report.html");
-    page.insert(page.find("<tr><td><b>Slices"),
-                "<tr><td><b>Known as</b></td><td><font size=\"1\">" + plain.series +
-                    "</font></td></tr>\n");
+    page.insert(
+        page.find("<tr><td><b>Slices"),
+        "<tr><td><b>Known as</b></td><td><font size=\"1\">" + plain.series + "</font></td></tr>\n");
     ASSERT_TRUE(writeTextFile(record.folder / "report.html", page));
     // It had a guard without them.
     const fs::path guard = storage() / "private" / (record.names_key + ".json");

@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <thread>
 
 #include "recording_support.h"
 #include "support.h"
@@ -64,8 +65,8 @@ TEST_F(RecordingFolder, GoesOnPastAFileThatTakesLongOrEndsItsReader) {
     std::ofstream(folder_ / name) << "x";
   }
   // It would never end.
-  const auto rows = listed(by("case \"$f\" in *long*) exec sleep 600;; *bad*) kill -SEGV $$;; esac\n" +
-                              std::string(kRow)));
+  const auto rows = listed(by(
+      "case \"$f\" in *long*) exec sleep 600;; *bad*) kill -SEGV $$;; esac\n" + std::string(kRow)));
   ASSERT_EQ(rows.size(), 5u);
   for (const ListedRecording& row : rows) {
     const std::string name = row.file.filename().string();
@@ -82,11 +83,28 @@ TEST_F(RecordingFolder, GoesOnPastAFileThatTakesLongOrEndsItsReader) {
 TEST_F(RecordingFolder, IsCancelledWhileAFileTakesLong) {
   std::ofstream(folder_ / "a.h5") << "x";
   Progress progress;
-  progress.cancel();
-  // It would never end.
-  const auto rows = listRecordings(folder_.path(), progress, by("exec sleep 600"));
+  ReadApart how = by("touch '" + (folder_ / "begun").string() + "'; exec sleep 600");  // has no end
+  how.patience_s = 600.0;
+  std::thread person([&] {
+    EXPECT_TRUE(test::waitUntil([&] { return fs::exists(folder_ / "begun"); }));
+    progress.cancel();
+  });
+  const auto rows = listRecordings(folder_.path(), progress, how);
+  person.join();
   ASSERT_FALSE(rows);
   EXPECT_EQ(rows.error().code, "CANCELLED");
+}
+
+TEST_F(RecordingFolder, SaysThatTheReaderCannotWorkWhereItEndsWithoutAWordAgainAndAgain) {
+  for (const char* name : {"a.h5", "b.h5", "c.h5", "d.h5"}) std::ofstream(folder_ / name) << "x";
+  const auto rows = listRecordings(folder_.path(), Progress(), by("exit 1"));
+  ASSERT_FALSE(rows);
+  EXPECT_EQ(rows.error().code, "CANNOT_RUN");
+  // One such file is a row.
+  const auto others = listed(by("case \"$f\" in *b.h5) exit 1;; esac\n" + std::string(kRow)));
+  ASSERT_EQ(others.size(), 4u);
+  EXPECT_EQ(std::ranges::count_if(others, [](const auto& row) { return row.problem.has_value(); }),
+            1);
 }
 
 TEST_F(RecordingFolder, SaysThatTheReaderIsNotThere) {
