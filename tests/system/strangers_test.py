@@ -1,6 +1,7 @@
 """What a stranger's file can do to a terminal, to another file and to the memory of the programs."""
 
 import array
+import gzip
 import hashlib
 import json
 import os
@@ -62,11 +63,12 @@ class Terminal(LabTest):
     def test_names_of_structures_command_nothing(self):
         ct = self.folder / "ct.nii.gz"
         small_head(ct)
-        labels = self.folder / "labels.nii"
+        labels = self.folder / "labels.nii.gz"
         small_head(labels)
-        voxels = labels.read_bytes()
+        voxels = gzip.decompress(labels.read_bytes())
         of_bone = array.array("h", voxels[352:])
-        labels.write_bytes(voxels[:352] + array.array("h", [v > 200 for v in of_bone]).tobytes())
+        of_structure = array.array("h", [v > 200 for v in of_bone])
+        labels.write_bytes(gzip.compress(voxels[:352] + of_structure.tobytes()))
         (self.folder / "labels.structures.json").write_text(json.dumps({
             "format": "trephine.structures", "version": 1,
             "structures": [{"label": 1, "name": NAME, "colour": [1, 0, 0]}]}))

@@ -56,6 +56,8 @@ TEST_F(RecordingFolder, IsListedAsEachOfItsFilesIs) {
   EXPECT_TRUE(listRecordings(folder_ / "none")->empty());
 }
 
+const std::string kHangs = "exec sleep 600";  // a file that keeps its reader for ever
+
 constexpr const char* kRow =
     R"(echo '{"schema": "s", "build": "b", "file": "f", "exercise": "x", "case": "", )"
     R"("volume_sha256": "", "seconds": 1.5, "cut_short": false}')";
@@ -64,9 +66,8 @@ TEST_F(RecordingFolder, GoesOnPastAFileThatTakesLongOrEndsItsReader) {
   for (const char* name : {"a.h5", "long.h5", "c.h5", "bad.h5", "e.h5"}) {
     std::ofstream(folder_ / name) << "x";
   }
-  // It would never end.
-  const auto rows = listed(by(
-      "case \"$f\" in *long*) exec sleep 600;; *bad*) kill -SEGV $$;; esac\n" + std::string(kRow)));
+  const auto rows = listed(by("case \"$f\" in *long*) " + kHangs +
+                              ";; *bad*) kill -SEGV $$;; esac\n" + std::string(kRow)));
   ASSERT_EQ(rows.size(), 5u);
   for (const ListedRecording& row : rows) {
     const std::string name = row.file.filename().string();
@@ -83,7 +84,7 @@ TEST_F(RecordingFolder, GoesOnPastAFileThatTakesLongOrEndsItsReader) {
 TEST_F(RecordingFolder, IsCancelledWhileAFileTakesLong) {
   std::ofstream(folder_ / "a.h5") << "x";
   Progress progress;
-  ReadApart how = by("touch '" + (folder_ / "begun").string() + "'; exec sleep 600");  // has no end
+  ReadApart how = by("touch '" + (folder_ / "begun").string() + "'; " + kHangs + "");
   how.patience_s = 600.0;
   std::thread person([&] {
     EXPECT_TRUE(test::waitUntil([&] { return fs::exists(folder_ / "begun"); }));
