@@ -192,14 +192,10 @@ std::optional<std::string> withoutHeader(std::string stl) {
 }  // namespace
 
 Status PartFolder::copyMesh(const fs::path& from, const std::string& file) {
-  constexpr std::uintmax_t kMost = 256u << 20;
-  std::error_code ec;
-  const std::uintmax_t size = fs::file_size(from, ec);
-  if (ec || size > kMost) return copy(from, file);  // which says what is wrong with it
-  std::ifstream in(from, std::ios::binary);
-  const std::string stl{std::istreambuf_iterator<char>(in), {}};
-  if (in.bad()) return copy(from, file);
-  const std::optional<std::string> plain = withoutHeader(stl);
+  constexpr std::size_t kMost = std::size_t{256} << 20;
+  Result<std::string> stl = readWholeFile(from, kMost);
+  if (!stl) return copy(from, file);  // which says what is wrong with it
+  const std::optional<std::string> plain = withoutHeader(*std::move(stl));
   if (plain) return writeText(file, *plain);
   return Error{"NOT_STL", "A mesh of the exercise is not an STL file, or a damaged one",
                from.string(), "Choose another mesh, or none"};

@@ -264,12 +264,15 @@ std::vector<DicomHeader> splitFrames(const DicomItem& data, DicomHeader whole) {
                        data.find(DCM_PerFrameFunctionalGroupsSequence);
   const std::vector<DcmItem*> per_frame = data.items(DCM_PerFrameFunctionalGroupsSequence);
   const bool lost = !whole.pixels || (whole.pixels->encapsulated && whole.pixels->frames.empty());
-  // A claim of frames that are not there is refused once, not a hundred thousand times.
-  if ((whole.frames == 1 && !grouped) || whole.defect == Defect::size_mismatch ||
-      (lost && per_frame.size() < std::size_t(whole.frames))) {
+  const auto alone = [&whole] {
     std::vector<DicomHeader> one;
     one.push_back(std::move(whole));
     return one;
+  };
+  // A claim of frames that are not there is refused once, not a hundred thousand times.
+  if ((whole.frames == 1 && !grouped) || whole.defect == Defect::size_mismatch ||
+      (lost && per_frame.size() < std::size_t(whole.frames))) {
+    return alone();
   }
   // Without functional groups nothing says where a frame lies.
   if (!grouped) whole.position_mm.reset();
@@ -278,9 +281,7 @@ std::vector<DicomHeader> splitFrames(const DicomItem& data, DicomHeader whole) {
   if (textBytes(whole) * std::uint64_t(whole.frames) > kMostText) {
     whole.defect = Defect::size_mismatch;
     whole.defect_text = "its header says too much for so many frames";
-    std::vector<DicomHeader> one;
-    one.push_back(std::move(whole));
-    return one;
+    return alone();
   }
   std::vector<DicomHeader> frames(std::size_t(whole.frames), whole);
   for (int n = 0; n < whole.frames; ++n) {

@@ -33,13 +33,17 @@ class TrapSyntaxes : public SeriesFixture {
            std::to_string(form.allocated) + (form.is_signed ? " signed" : " unsigned");
   }
 
+  // The k-th of a stack, from 0.
+  static Image sliceOf(const Form& form, int k) {
+    Image slice = image(form);
+    slice.position_mm.z = 100.0 + k;
+    slice.instance = k + 1;
+    fillPattern(slice, k);
+    return slice;
+  }
   void addStack(const Form& form, const Packing& packing, int slices) {
     for (int k = 0; k < slices; ++k) {
-      Image slice = image(form);
-      slice.position_mm.z = 100.0 + k;
-      slice.instance = k + 1;
-      fillPattern(slice, k);
-      add(makeImage(slice), packing);
+      add(makeImage(sliceOf(form, k)), packing);
     }
   }
 
@@ -150,11 +154,7 @@ TEST_F(TrapSyntaxes, ThreeHundredThousandFragmentsOfASingleFrame) {
   Packing packing{EXS_JPEGProcess14SV1};
   packing.fragments = 300000;
   for (int k = 0; k < 4; ++k) {
-    Image slice = image(kForms[1]);
-    slice.position_mm.z = 100.0 + k;
-    slice.instance = k + 1;
-    fillPattern(slice, k);
-    DcmDataset data = makeImage(slice);
+    DcmDataset data = makeImage(sliceOf(kForms[1], k));
     auto codestreams = encodeFrames(data, packing);
     // Before a marker JPEG may have any number of these.
     auto& bytes = codestreams.front();
@@ -172,11 +172,7 @@ TEST_F(TrapSyntaxes, CompressedPixelsOfAnotherSizeThanTheHeaderSays) {
                    std::to_string(rows));
       fs::remove_all(folder());
       for (int k = 0; k < 4; ++k) {
-        Image slice = image(kForms[1]);
-        slice.position_mm.z = 100.0 + k;
-        slice.instance = k + 1;
-        fillPattern(slice, k);
-        DcmDataset data = makeImage(slice);
+        DcmDataset data = makeImage(sliceOf(kForms[1], k));
         const auto codestreams = encodeFrames(data, {syntax});
         data.putAndInsertUint16(DCM_Rows, Uint16(rows));
         data.putAndInsertUint16(DCM_Columns, Uint16(columns));
@@ -194,11 +190,7 @@ TEST_F(TrapSyntaxes, PixelsThatAreClaimedToBeFourGigavoxelsAllocateNothing) {
   for (const E_TransferSyntax syntax : kCompressed) {
     fs::remove_all(folder());
     for (int k = 0; k < 4; ++k) {
-      Image slice = image(kForms[1]);
-      slice.position_mm.z = 100.0 + k;
-      slice.instance = k + 1;
-      fillPattern(slice, k);
-      DcmDataset data = makeImage(slice);
+      DcmDataset data = makeImage(sliceOf(kForms[1], k));
       const auto codestreams = encodeFrames(data, {syntax});
       data.putAndInsertUint16(DCM_Rows, 65535);
       data.putAndInsertUint16(DCM_Columns, 65535);
