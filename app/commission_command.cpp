@@ -8,6 +8,7 @@
 #include "base/file.h"
 #include "base/log.h"
 #include "base/system.h"
+#include "base/utf8.h"
 #include "lab/commission/arm_checks.h"
 #include "lab/commission/commission.h"
 #include "lab/commission/start_check.h"
@@ -68,7 +69,8 @@ int commissionCommand(const CommissionArguments& arguments, const Policy& policy
     answer["page"] = (out / "commission.html").string();
     printAnswer(name, answer);
   } else {
-    say("%s%s\n", toText(*made, changes).c_str(), (out / "commission.html").c_str());
+    say("%s%s\n", toText(*made, changes).c_str(),
+        cleanUtf8((out / "commission.html").string()).c_str());
   }
   return 0;
 }

@@ -4,6 +4,7 @@
 #include "app/answer.h"
 #include "app/lab_commands.h"
 #include "base/system.h"
+#include "base/utf8.h"
 #include "exercise/exercise_folder.h"
 #include "library/name_words.h"
 
@@ -27,7 +28,8 @@ constexpr const char* kLeftDevicesOut =
 
 std::string listed(const char* title, const std::vector<std::string>& files) {
   std::string text;
-  for (const std::string& file : files) text += "  " + std::string(title) + ": " + file + "\n";
+  for (const std::string& file : files)
+    text += "  " + std::string(title) + ": " + cleanUtf8(file) + "\n";
   return text;
 }
 
@@ -42,7 +44,7 @@ int exportExerciseCommand(const std::string& scene, const std::string& case_sour
   if (json) {
     printAnswer("exercise-export", {{"folder", exported->folder.string()}, {"parts", parts}});
   } else {
-    say("%s: %zu files\n", exported->folder.c_str(), exported->parts.size());
+    say("%s: %zu files\n", cleanUtf8(exported->folder.string()).c_str(), exported->parts.size());
   }
   return 0;
 }
@@ -61,7 +63,7 @@ int importExerciseCommand(const std::string& folder, const std::string& storage,
                                     {"changed", check.changed},
                                     {"left_devices_out", imported->left_devices_out}});
   } else if (check.verified()) {
-    say("%s\n", imported->scene.c_str());
+    say("%s\n", cleanUtf8(imported->scene.string()).c_str());
     if (imported->left_devices_out) sayError("%s\n", kLeftDevicesOut);
   } else {
     sayError("It is not the exercise that was exported; nothing was written.\n%s%s",

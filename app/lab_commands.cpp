@@ -6,6 +6,7 @@
 #include "base/file.h"
 #include "base/log.h"
 #include "base/system.h"
+#include "base/utf8.h"
 #include "imaging/dicom/ct_writer.h"
 #include "lab/devices/device_measurement.h"
 #include "lab/exercise/explain.h"
@@ -84,7 +85,7 @@ int phantomCommand(const std::string& name, const std::string& out, bool json,
                             {"spacing_mm", {g.spacing_mm.x, g.spacing_mm.y, g.spacing_mm.z}},
                             {"volume_sha256", volumeSha256(volume)}});
   } else {
-    say("%d slices of the %s phantom are in %s\n", g.size[2], name.c_str(), out.c_str());
+    say("%d slices of the %s phantom are in %s\n", g.size[2], name.c_str(), cleanUtf8(out).c_str());
   }
   return 0;
 }
@@ -155,7 +156,7 @@ int recordingsCommand(const std::vector<std::string>& files, bool json,
     } else if (row.problem) {
       say("%s\n", row.problem->sentence().c_str());
     } else {
-      say("%s: %s, %.1f s%s\n", file.c_str(), row.exercise.c_str(), row.seconds,
+      say("%s: %s, %.1f s%s\n", cleanUtf8(file).c_str(), row.exercise.c_str(), row.seconds,
           row.cut_short ? ", cut short" : "");
     }
     std::fflush(stdout);

@@ -3,6 +3,7 @@
 
 #include <cstdio>
 #include <filesystem>
+#include <optional>
 #include <system_error>
 
 #include "app/answer.h"
@@ -10,8 +11,23 @@
 #include "base/utf8.h"
 #include "library/case_library.h"
 #include "library/shared_storage.h"
+#include "tissue/tissue_set.h"
 
 namespace trephine {
+
+namespace {
+
+// Why not all of a case can be used.
+std::optional<Error> problemOf(const Result<LoadedCase>& loaded, const std::string& id) {
+  if (!loaded) return loaded.error();
+  if (loaded->structures_problem) return loaded->structures_problem;
+  if (loaded->tissues_problem) return loaded->tissues_problem;
+  if (loaded->tissues.empty()) return {};
+  const Result<TissueSet> set = parseTissueSet(loaded->tissues, id + "/tissues.json");
+  return set ? std::nullopt : std::optional(set.error());
+}
+
+}  // namespace
 
 int listStorageCommand(const std::string& storage, bool open, const Policy& policy, bool json,
                        const Progress& progress) {
@@ -41,10 +57,9 @@ int listStorageCommand(const std::string& storage, bool open, const Policy& poli
   for (std::size_t i = 0; i < all.size(); ++i) {
     std::optional<Error> problem = all[i].problem;
     if (open && !problem) {
-      const Result<LoadedCase> loaded = library.load(
-          all[i].id,
-          Progress(progress, double(i) / double(all.size()), double(i + 1) / double(all.size())));
-      if (!loaded) problem = loaded.error();
+      const Progress part(progress, double(i) / double(all.size()),
+                          double(i + 1) / double(all.size()));
+      problem = problemOf(library.load(all[i].id, part), all[i].id);
     }
     if (progress.cancelled()) {
       return printError("storage-list", {"CANCELLED", "The cases were not all opened", "", ""},
@@ -62,7 +77,7 @@ int listStorageCommand(const std::string& storage, bool open, const Policy& poli
     }
   }
   if (json) printAnswer("storage-list", {{"storage", at->string()}, {"cases", cases}});
-  if (!json && all.empty()) say("No case is kept in %s\n", at->c_str());
+  if (!json && all.empty()) say("No case is kept in %s\n", cleanUtf8(at->string()).c_str());
   return bad > 0 ? 1 : 0;
 }
 
@@ -79,7 +94,7 @@ int shareStorageCommand(const std::string& folder, bool json) {
     say("%s: the group %s may look at cases and exercises, the group %s may change them, and each\n"
         "keeps recordings of his own. Accounts that make cases belong to both groups.\n"
         "Name the folder as \"storage\" in /etc/trephine/settings.json.\n",
-        shared->c_str(), groups.readers.c_str(), groups.writers.c_str());
+        cleanUtf8(shared->string()).c_str(), groups.readers.c_str(), groups.writers.c_str());
   }
   return 0;
 }

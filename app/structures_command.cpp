@@ -279,13 +279,9 @@ Result<Answers> answersOf(const std::vector<std::string>& choices) {
 
 StructureRequest request(const std::optional<double>& threshold, const Answers& answers,
                          const Case& of) {
-  StructureRequest made{answers, true, sourceOf(of)};
+  StructureRequest made = requestOf(of, hideNamesOf);
+  made.answers = answers;
   made.threshold = threshold.value_or(made.threshold);
-  if (of.identity) {
-    made.hide_names = [keys = sourceKeys(*of.identity)](Segmentation& segmentation) {
-      return hideNames(segmentation, keys);
-    };
-  }
   return made;
 }
 

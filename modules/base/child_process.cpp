@@ -153,7 +153,7 @@ Result<ChildRun> runChild(const ChildCommand& command, const Progress& progress)
   rusage usage{};
   while (::wait4(child, &status, 0, &usage) < 0 && errno == EINTR) {
   }
-  if (progress.cancelled()) return Error{"CANCELLED", "The measurement was cancelled", "", ""};
+  if (progress.cancelled()) return Error{"CANCELLED", "It was cancelled", "", ""};
   if (report.error != 0) return cannotRun(command, report.error);
   if (process.get() < 0) return cannotRun(command, ENOSYS);
   run.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);

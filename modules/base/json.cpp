@@ -5,6 +5,7 @@
 #include <set>
 
 #include "base/file.h"
+#include "base/utf8.h"
 
 namespace trephine {
 
@@ -314,7 +315,14 @@ std::string JsonReader::text(const char* key) {
          "The text " + shorten(*value) + " is longer than " + std::to_string(kMaxText) + " bytes");
     return {};
   }
+  checkOneLine(*value, key);
   return value->get<std::string>();
+}
+
+void JsonReader::checkOneLine(const Json& text, const char* key) {
+  if (isOneLine(text.get_ref<const std::string&>())) return;
+  fail(key,
+       "The text " + shorten(text) + " is no plain line: it has line breaks or control characters");
 }
 
 std::string JsonReader::text(const char* key, std::string fallback) {
@@ -365,6 +373,7 @@ std::vector<std::string> JsonReader::texts(const char* key, std::size_t most) {
   if (!value) return out;
   for (const Json& item : *value) {
     if (item.is_string()) {
+      checkOneLine(item, key);
       out.push_back(item.get<std::string>());
     } else {
       fail(key, "Expected a list of texts, found " + shorten(item));

@@ -46,7 +46,8 @@ class JsonReader {
   std::int64_t integer(const char* key, const Range& range);
   std::int64_t integer(const char* key, const Range& range, std::int64_t fallback);
   bool boolean(const char* key, bool fallback);
-  // At most 4096 bytes.
+  // One line (isOneLine) of at most 4096 bytes: a line break in a name could forge a line of a
+  // list.
   std::string text(const char* key);
   std::string text(const char* key, std::string fallback);
   Vec3 vec3(const char* key, const Range& range);
@@ -85,6 +86,7 @@ class JsonReader {
   const Json* find(const char* key, bool required);
   // The list of that key; null after a problem.
   const Json* list(const char* key, std::size_t least, std::size_t most, const char* of);
+  void checkOneLine(const Json& text, const char* key);
   double asNumber(const Json& value, const char* key, const Range& range);
   std::int64_t asInteger(const Json& value, const char* key, const Range& range);
   void outOfRange(const Json& value, const char* key, const Range& range);

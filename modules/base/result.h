@@ -17,13 +17,8 @@ struct Error {
   std::string where;
   std::string next;
 
-  std::string sentence() const {
-    std::string text = what;
-    if (!where.empty()) text += " (" + where + ")";
-    text += ".";
-    if (!next.empty()) text += " " + next + ".";
-    return text;
-  }
+  // All of it in one line, also where a file's name or a file's own words hold line breaks.
+  std::string sentence() const;
 };
 
 template <class T>

@@ -98,6 +98,15 @@ bool isUtf8(std::string_view text) {
   return true;
 }
 
+bool isOneLine(std::string_view text) {
+  while (!text.empty()) {
+    const std::size_t length = sequenceLength(text);
+    if (length == 0 || isControl(codePoint(text, length))) return false;
+    text.remove_prefix(length);
+  }
+  return true;
+}
+
 std::size_t charactersOf(std::string_view text) {
   return std::size_t(
       std::ranges::count_if(text, [](char c) { return (std::uint8_t(c) & 0xC0) != 0x80; }));

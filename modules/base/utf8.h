@@ -9,6 +9,10 @@ namespace trephine {
 
 bool isUtf8(std::string_view text);
 
+// Valid UTF-8 without a character that a terminal obeys, that ends a line or that turns the
+// direction of what follows.
+bool isOneLine(std::string_view text);
+
 // Characters of valid UTF-8.
 std::size_t charactersOf(std::string_view text);
 

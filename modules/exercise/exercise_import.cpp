@@ -12,6 +12,7 @@
 #include "session/case.h"
 #include "session/operator_script.h"
 #include "volume/phantom.h"
+#include "volume/volume_files.h"
 
 namespace trephine {
 
@@ -24,7 +25,8 @@ constexpr std::size_t kMostParts = 4096;
 
 // Within the folder, wherever that lies: no way up, none from the root, none by another name.
 bool staysWithin(const fs::path& file) {
-  if (file.empty() || file.is_absolute() || file.lexically_normal() != file) return false;
+  if (file.empty() || file.is_absolute()) return false;
+  if (file.lexically_normal().native() != file.native()) return false;  // "tools//a.json" too
   return *file.begin() != ".." && *file.begin() != ".";
 }
 
@@ -33,28 +35,76 @@ Error namesOutside(const std::string& file, const std::string& name) {
           "Export the exercise anew"};
 }
 
-// Everything that the scene and its files name is among the parts. Each file is read once, however
-// often it is named.
+// "case/volume" of "case/volume.nii.gz".
+fs::path withoutEndings(const fs::path& file) {
+  const std::string name = file.filename().string();
+  return file.parent_path() / name.substr(0, name.find('.', 1));
+}
+
+// Whether a part belongs to one that is named: a list of names beside a label map, voxels beside
+// a header.
+bool liesBeside(const fs::path& folder, const fs::path& part, const fs::path& named) {
+  if (withoutEndings(part) == withoutEndings(named)) return true;
+  const auto header = readVolumeFileHeader(folder / named);
+  return header && header->data.file.lexically_normal() == (folder / part).lexically_normal();
+}
+
+// Everything that the scene and its files name is among the parts, and nothing else is. Each file
+// is read once, however often it is named.
 Status namesPartsAlone(const fs::path& folder, const ExerciseCheck& check, Json& scene,
-                       const Progress& progress) {
-  std::set<fs::path> parts, read;
+                       const std::set<fs::path>& left_out, const Progress& progress) {
+  std::set<fs::path> parts, read, named = left_out, volumes;
+  named.insert(check.scene);
   for (const ExercisePart& part : check.parts) parts.insert(part.file);
   const auto isPart = [&](const std::string& by, const std::string& name) {
     const fs::path file = (fs::path(by).parent_path() / name).lexically_normal();
+    named.insert(file);
     return parts.contains(file) ? Status() : Status(namesOutside(by, name));
   };
-  return eachNamedFile(scene, [&](NamedFile kind, const std::string&, Json& name) -> Status {
-    const std::string file = name.get<std::string>();
-    if (progress.cancelled()) return Error{"CANCELLED", "It was cancelled", "", ""};
-    if (Status is = isPart(check.scene, file); !is) return is;
-    if (kind != NamedFile::tissues && kind != NamedFile::tool) return {};
-    const fs::path path = (fs::path(check.scene).parent_path() / file).lexically_normal();
-    if (!read.insert(path).second) return {};
-    Result<Json> json = readJsonFile(folder / path, progress, kMostWrittenBytes);
-    if (!json) return json.error();
-    const Json* inner = kind == NamedFile::tool ? meshOf(*json) : elsewhereOf(*json);
-    return inner ? isPart(path.string(), inner->get<std::string>()) : Status();
-  });
+  const Status all =
+      eachNamedFile(scene, [&](NamedFile kind, const std::string&, Json& name) -> Status {
+        const std::string file = name.get<std::string>();
+        if (progress.cancelled()) return Error{"CANCELLED", "It was cancelled", "", ""};
+        if (Status is = isPart(check.scene, file); !is) return is;
+        const fs::path path = (fs::path(check.scene).parent_path() / file).lexically_normal();
+        if (kind == NamedFile::caseVolume || kind == NamedFile::labels) volumes.insert(path);
+        if (kind != NamedFile::tissues && kind != NamedFile::tool) return {};
+        if (!read.insert(path).second) return {};
+        Result<Json> json = readJsonFile(folder / path, progress, kMostWrittenBytes);
+        if (!json) return json.error();
+        const Json* inner = kind == NamedFile::tool ? meshOf(*json) : elsewhereOf(*json);
+        return inner ? isPart(path.string(), inner->get<std::string>()) : Status();
+      });
+  if (!all) return all;
+  for (const fs::path& part : parts) {
+    if (named.contains(part)) continue;
+    const bool beside = std::ranges::any_of(
+        volumes, [&](const fs::path& volume) { return liesBeside(folder, part, volume); });
+    if (!beside) {
+      return Error{"BAD_FIELD", "Nothing in the exercise names its part '" + part.string() + "'",
+                   kListFile, "Export the exercise anew"};
+    }
+  }
+  return {};
+}
+
+std::string mb(double bytes) {
+  return std::to_string(std::int64_t(bytes / 1e6) + 1) + " MB";
+}
+
+// Before any of it is read: a part may say any size, and have it without taking room.
+Status roomFor(const ExerciseCheck& check, const fs::path& storage) {
+  std::error_code ec;
+  fs::path there = fs::absolute(storage, ec);
+  while (!fs::exists(there, ec) && there.has_relative_path()) there = there.parent_path();
+  double bytes = 0;
+  for (const ExercisePart& part : check.parts) bytes += double(part.bytes);
+  const fs::space_info room = fs::space(there, ec);
+  if (ec || bytes <= double(room.available)) return {};
+  return Error{"CANNOT_WRITE",
+               "The disk has no room for the exercise: it needs " + mb(bytes) + ", and " +
+                   mb(double(room.available)) + " are free",
+               storage.string(), "Free some space, or choose another storage folder"};
 }
 
 // Reads all that the exercise of a folder consists of, to its end: what cannot be read here cannot
@@ -126,7 +176,15 @@ fs::path numbered(const fs::path& storage, const std::string& stem, int n) {
 
 }  // namespace
 
-Result<ExerciseCheck> checkExercise(const fs::path& folder, const Progress& progress) {
+namespace {
+
+// What a folder says that it holds; nothing of that is read.
+Result<ExerciseCheck> listOf(const fs::path& folder) {
+  std::error_code ec;
+  if (fs::is_symlink(folder / kListFile, ec)) {
+    return Error{"MISSING_FILE", "The exercise's list is a link to another file",
+                 (folder / kListFile).string(), "Give a folder that 'exercise export' wrote"};
+  }
   Result<Json> json = readJsonFile(folder / kListFile);
   if (!json) {
     Error error = json.error();
@@ -160,6 +218,11 @@ Result<ExerciseCheck> checkExercise(const fs::path& folder, const Progress& prog
   }
   if (reader.ok() && !scene_listed) reader.fail("scene", "It is not among the parts");
   if (Status read = reader.finish(); !read) return read.error();
+  return check;
+}
+
+// CANCELLED.
+Status verify(const fs::path& folder, ExerciseCheck& check, const Progress& progress) {
   std::uint64_t bytes = 0, done = 0;
   for (const ExercisePart& part : check.parts) bytes += part.bytes;
   for (const ExercisePart& part : check.parts) {
@@ -173,13 +236,26 @@ Result<ExerciseCheck> checkExercise(const fs::path& folder, const Progress& prog
       check.changed.push_back(part.file);
     }
   }
+  return {};
+}
+
+}  // namespace
+
+Result<ExerciseCheck> checkExercise(const fs::path& folder, const Progress& progress) {
+  Result<ExerciseCheck> check = listOf(folder);
+  if (!check) return check;
+  if (Status read = verify(folder, *check, progress); !read) return read.error();
   return check;
 }
 
 Result<ImportedExercise> importExercise(const fs::path& folder, const fs::path& storage,
                                         const Progress& progress) {
-  Result<ExerciseCheck> check = checkExercise(folder, Progress(progress, 0.0, 0.3));
+  Result<ExerciseCheck> check = listOf(folder);
   if (!check) return check.error();
+  if (Status room = roomFor(*check, storage); !room) return room.error();
+  if (Status read = verify(folder, *check, Progress(progress, 0.0, 0.3)); !read) {
+    return read.error();
+  }
   ImportedExercise imported{{}, *std::move(check), false};
   if (!imported.check.verified()) return imported;
   Result<Json> scene = readJsonFile(folder / imported.check.scene, progress, kMostWrittenBytes);
@@ -187,7 +263,8 @@ Result<ImportedExercise> importExercise(const fs::path& folder, const fs::path& 
   const Json as_it_was = *scene;
   const LeftOut devices = leaveDevicesOut(*scene);
   imported.left_devices_out = devices.any;
-  if (Status names = namesPartsAlone(folder, imported.check, *scene, progress); !names) {
+  if (Status names = namesPartsAlone(folder, imported.check, *scene, devices.files, progress);
+      !names) {
     return names.error();
   }
   const Result<Scene> parsed = parseScene(*scene, folder / imported.check.scene);

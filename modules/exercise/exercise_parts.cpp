@@ -1,6 +1,7 @@
 #include "exercise/exercise_parts.h"
 
 #include <fcntl.h>
+#include <sys/file.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -93,10 +94,27 @@ Result<ExercisePart> partOf(const fs::path& folder, const std::string& file,
 
 namespace {
 
-// Of programs that were killed: none works on one for a day.
-void removeLeftParts(const fs::path& folder) {
+Descriptor opened(const fs::path& folder) {
+  return Descriptor(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC));
+}
+
+// Of a program that has ended; it is locked meanwhile, so that none begins to write there. On a
+// disk that knows no locks of folders none works on one for a day.
+void removeIfLeft(const fs::path& part) {
   constexpr auto kOld = std::chrono::hours(24);
-  std::vector<fs::path> left;
+  const Descriptor folder = opened(part);
+  bool left = folder.ok() && ::flock(folder.get(), LOCK_EX | LOCK_NB) == 0;
+  std::error_code ec;
+  if (!left && errno != EWOULDBLOCK) {
+    const auto last = fs::last_write_time(part, ec);
+    left = !ec && fs::file_time_type::clock::now() - last > kOld;
+  }
+  if (left) fs::remove_all(part, ec);
+}
+
+// Of programs that were killed.
+void removeLeftParts(const fs::path& folder) {
+  std::vector<fs::path> parts;
   std::error_code ec;
   for (auto it = fs::directory_iterator(folder, ec); !ec && it != fs::end(it); it.increment(ec)) {
     const std::string name = it->path().filename().string();
@@ -105,10 +123,9 @@ void removeLeftParts(const fs::path& folder) {
     if (!name.starts_with('.') || part == std::string::npos) continue;
     if (name.size() != part + std::strlen(kPart) + std::strlen(kRandom)) continue;
     if (it->symlink_status(none).type() != fs::file_type::directory) continue;
-    const auto last = fs::last_write_time(it->path(), none);
-    if (!none && fs::file_time_type::clock::now() - last > kOld) left.push_back(it->path());
+    parts.push_back(it->path());
   }
-  for (const fs::path& part : left) fs::remove_all(part, ec);
+  for (const fs::path& part : parts) removeIfLeft(part);
 }
 
 }  // namespace
@@ -119,12 +136,23 @@ Result<PartFolder> PartFolder::make(const fs::path& target) {
   if (!to.has_filename()) to = to.parent_path();  // it ended with a slash
   if (Status made = makeFolder(to.parent_path()); !made) return made.error();
   removeLeftParts(to.parent_path());
-  std::string path = (to.parent_path() / ("." + to.filename().string() + kPart + kRandom)).string();
-  if (!::mkdtemp(path.data())) return writeError(target, errno);
+  const std::string pattern =
+      (to.parent_path() / ("." + to.filename().string() + kPart + kRandom)).string();
+  std::string path;
+  Descriptor lock;
+  // Another program may have taken it for one that was left, before it was locked.
+  for (int tries = 0; tries < 10 && !lock.ok(); ++tries) {
+    path = pattern;
+    if (!::mkdtemp(path.data())) return writeError(target, errno);
+    lock = opened(path);
+    if (lock.ok()) (void)::flock(lock.get(), LOCK_EX);  // where the disk knows it
+    if (!fs::is_directory(path, ec)) lock.close();
+  }
+  if (!lock.ok()) return writeError(target, EAGAIN);
   // mkdtemp's are for their owner alone.
   fs::permissions(path, fs::perms(0755), ec);
   giveToGroup(path);
-  return PartFolder(path, to);
+  return PartFolder(path, to, std::move(lock));
 }
 
 PartFolder::~PartFolder() {

@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/descriptor.h"
 #include "base/progress.h"
 #include "base/result.h"
 #include "exercise/exercise_folder.h"
@@ -31,12 +32,15 @@ Result<ExercisePart> partOf(const std::filesystem::path& folder, const std::stri
                             const Progress& progress,
                             std::optional<std::uint64_t> expected_bytes = {});
 
-// Beside the folder that it is to be; gone with this unless it became that.
+// Beside the folder that it is to be; gone with this unless it became that. It is locked (flock)
+// while its program lives: what one that was killed has left, the next one removes.
 class PartFolder {
  public:
   static Result<PartFolder> make(const std::filesystem::path& target);
   PartFolder(PartFolder&& other) noexcept
-      : path_(std::exchange(other.path_, {})), target_(std::move(other.target_)) {}
+      : path_(std::exchange(other.path_, {})),
+        target_(std::move(other.target_)),
+        lock_(std::move(other.lock_)) {}
   ~PartFolder();
 
   const std::filesystem::path& path() const { return path_; }
@@ -59,11 +63,12 @@ class PartFolder {
 
  private:
   Status keepOthers(const std::set<std::filesystem::path>& own);
-  PartFolder(std::filesystem::path path, std::filesystem::path target)
-      : path_(std::move(path)), target_(std::move(target)) {}
+  PartFolder(std::filesystem::path path, std::filesystem::path target, Descriptor lock)
+      : path_(std::move(path)), target_(std::move(target)), lock_(std::move(lock)) {}
 
   std::filesystem::path path_;  // empty: no longer a part
   std::filesystem::path target_;
+  Descriptor lock_;
 };
 
 }  // namespace trephine

@@ -94,7 +94,7 @@ void sayHidden(StructureFit& fit, int hidden) {
 Result<StructureFit> importStructures(const std::filesystem::path& file, const Volume& ct,
                                       const StructureRequest& request, const Progress& progress) {
   const Progress reading(progress, 0.0, 0.5), fitting(progress, 0.5, 1.0);
-  if (!isDicomSegmentation(file)) {
+  if (!isDicomSegmentation(file, reading)) {
     Result<Segmentation> read = readSegmentation(file, reading);
     if (!read) return read.error();
     const int hidden = hideNames(*read, request);

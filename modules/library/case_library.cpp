@@ -396,7 +396,10 @@ Result<LoadedCase> CaseLibrary::load(const std::string& id, const Progress& prog
   loaded.record = *std::move(read);
   const fs::path& folder = loaded.record.folder;
   std::error_code ec;
-  const auto has = [&](const char* file) { return fs::is_regular_file(folder / file, ec); };
+  // Whatever it is: what is no file, a pipe perhaps, is said when it is read.
+  const auto has = [&](const char* file) {
+    return fs::symlink_status(folder / file, ec).type() != fs::file_type::not_found;
+  };
   // Whatever went wrong, with the folder gone that is why; `where` is the case's own.
   const auto failed = [&](Error error, const char* file) {
     if (!fs::is_directory(folder, ec)) return noSuchCase(id);

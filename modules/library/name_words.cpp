@@ -7,6 +7,7 @@
 #include <array>
 
 #include "base/utf8.h"
+#include "volume/label_map.h"
 
 namespace trephine {
 
@@ -317,7 +318,14 @@ int hideNames(Segmentation& segmentation, const SourceKeys& source) {
   for (Segmentation::Segment& segment : segmentation.segments) {
     const auto told = toldBy(segment.name, source);
     if (!told || !tellsPatient(*told)) continue;
-    segment.name = "label " + std::to_string(int(segment.value));
+    const std::string label = "label " + std::to_string(int(segment.value));
+    segment.name = label;
+    const auto twice = [&](const Segmentation::Segment& other) {
+      return &other != &segment && sameName(other.name, segment.name);
+    };
+    for (int n = 2; std::ranges::any_of(segmentation.segments, twice); ++n) {
+      segment.name = label + " (" + std::to_string(n) + ")";
+    }
     ++hidden;
   }
   return hidden;

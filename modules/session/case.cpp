@@ -8,7 +8,6 @@
 
 #include "base/memory.h"
 #include "imaging/importer.h"
-#include "imaging/structure_importer.h"
 #include "scene/scene_structures.h"
 #include "volume/phantom_file.h"
 #include "volume/volume_files.h"
@@ -169,21 +168,22 @@ Result<Case> withLabels(Case of, const std::string& file, const Progress& progre
                         const NameHider& hide) {
   of = withStructures(std::move(of), nullptr);
   if (file.empty()) return of;
-  StructureRequest request;
+  StructureRequest request = requestOf(of, hide);
   request.ask_all = false;
-  request.ct = sourceOf(of);
-  if (hide && of.identity) {
-    request.hide_names = [&](Segmentation& segmentation) {
-      return hide(segmentation, *of.identity);
-    };
-  }
   Result<StructureFit> fit = importStructures(file, *of.volume, request, progress);
   if (!fit) return fit.error();
   return withFit(std::move(of), *std::move(fit));
 }
 
-SourceIds sourceOf(const Case& of) {
-  return of.provenance ? of.provenance->source_ids : SourceIds();
+StructureRequest requestOf(const Case& of, const NameHider& hide) {
+  StructureRequest request;
+  if (of.provenance) request.ct = of.provenance->source_ids;
+  if (hide && of.identity) {
+    request.hide_names = [hide, identity = of.identity](Segmentation& segmentation) {
+      return hide(segmentation, *identity);
+    };
+  }
+  return request;
 }
 
 Case withFit(Case of, StructureFit fit) {

@@ -12,8 +12,8 @@
 #include "base/result.h"
 #include "imaging/common/source_identity.h"
 #include "imaging/report/report.h"
-#include "imaging/segmentation/structure_fit.h"
 #include "imaging/steps/anatomy.h"
+#include "imaging/structure_importer.h"
 #include "scene/scene.h"
 #include "volume/label_map.h"
 #include "volume/segmentation.h"
@@ -70,8 +70,10 @@ using NameHider = std::function<int(Segmentation&, const SourceIdentity&)>;
 // With `hide` names that tell whom the case is of are hidden, where it knows that.
 Result<Case> withLabels(Case of, const std::string& file, const Progress& progress = Progress(),
                         const NameHider& hide = {});
-// What it was read from, as far as it is known.
-SourceIds sourceOf(const Case& of);
+// How structures are put on a case: they are compared with what it was read from, and with `hide`
+// names that tell whom it is of are hidden, where it knows that. Answers and thresholds are the
+// caller's to set.
+StructureRequest requestOf(const Case& of, const NameHider& hide);
 // Those that were put on its grid, with what is to be said of them.
 Case withFit(Case of, StructureFit fit);
 // These structures, which are on the volume's grid, instead of what it had; null for none.

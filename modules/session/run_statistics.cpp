@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "base/utf8.h"
+
 namespace trephine {
 
 void ArmStatistics::add(const ArmRecord& record) {
@@ -137,7 +139,7 @@ std::string toText(const RunReport& report) {
   add("  a tick took %.1f us (median), %.1f us (99 %%); %llu deadlines missed\n",
       report.tick_ns.median_ns / 1e3, report.tick_ns.p99_ns / 1e3,
       static_cast<unsigned long long>(report.missed_deadlines));
-  for (const Warning& warning : report.warnings) text += "  " + warning.text + "\n";
+  for (const Warning& warning : report.warnings) text += "  " + cleanUtf8(warning.text) + "\n";
   constexpr std::size_t kShown = 10;
   for (std::size_t i = 0; i < report.faults.size(); ++i) {
     if (i == kShown) {
@@ -152,15 +154,15 @@ std::string toText(const RunReport& report) {
     text += "  " + memoryNotLocked(report.memory_not_locked).sentence() + "\n";
   }
   if (!report.recording.empty()) {
-    text += "  session: " + report.recording + "\n";
+    text += "  session: " + cleanUtf8(report.recording) + "\n";
     constexpr double kUsual_ms = 500.0;  // it is written in slices of 0.25 s
     if (report.recorder_behind_ms > kUsual_ms) {
       add("  the recording was at most %.0f ms behind\n", report.recorder_behind_ms);
     }
   }
-  if (!report.picture.empty()) text += "  picture: " + report.picture + "\n";
-  if (!report.volume.empty()) text += "  volume: " + report.volume + "\n";
-  if (!report.table.empty()) text += "  table: " + report.table + "\n";
+  if (!report.picture.empty()) text += "  picture: " + cleanUtf8(report.picture) + "\n";
+  if (!report.volume.empty()) text += "  volume: " + cleanUtf8(report.volume) + "\n";
+  if (!report.table.empty()) text += "  table: " + cleanUtf8(report.table) + "\n";
   return text;
 }
 

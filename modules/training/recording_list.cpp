@@ -4,12 +4,15 @@
 
 #include <algorithm>
 #include <fstream>
+#include <functional>
 #include <string>
+#include <utility>
 
 #include "base/child_process.h"
 #include "base/file.h"
 #include "base/shared_folder.h"
 #include "base/stretched_hash.h"
+#include "base/utf8.h"
 #include "training/paused_ticks.h"
 #include "training/session_reader.h"
 
@@ -29,8 +32,8 @@ ListedRecording headOf(const std::filesystem::path& file) {
   }
   const RecordingHeader& header = (*reader)->header();
   const Json& scene = header.scene;
-  row.exercise = scene.value("name", "");
-  row.case_source = scene.value("case", "");
+  row.exercise = cleanUtf8(scene.value("name", ""));
+  row.case_source = cleanUtf8(scene.value("case", ""));
   row.volume_sha256 = header.volume_sha256;
   constexpr double kSlowest_hz = 1.0;  // no scene is slower
   const double rate_hz = std::max(kSlowest_hz, scene.value("rate_hz", 1000.0));
@@ -53,7 +56,7 @@ ListedRecording rowFrom(const Json& json, const std::filesystem::path& file) {
   JsonReader reader(json, "recordings");
   ListedRecording row;
   row.file = file;
-  for (const char* known : {"schema", "build", "file"}) (void)reader.text(known);
+  for (const char* known : {"schema", "build", "file"}) (void)reader.raw(known);
   row.exercise = reader.text("exercise");
   row.case_source = reader.text("case");
   row.volume_sha256 = reader.text("volume_sha256");
@@ -61,8 +64,9 @@ ListedRecording rowFrom(const Json& json, const std::filesystem::path& file) {
   row.cut_short = reader.boolean("cut_short", false);
   if (reader.has("problem")) {
     JsonReader problem = reader.object("problem");
-    row.problem = Error{problem.text("code"), problem.text("what"), problem.text("where"),
-                        problem.text("next")};
+    (void)problem.raw("where");
+    row.problem =
+        Error{problem.text("code"), problem.text("what"), file.string(), problem.text("next")};
   }
   if (const Status read = reader.finish(); !read) row.problem = read.error();
   return row;
@@ -80,16 +84,18 @@ Error cannotRun(const ReadApart& how) {
           "See that there is room for temporary files and memory, else install Trephine anew"};
 }
 
+// Files for one child: a command line holds no more than 2 MB.
+constexpr std::size_t kFirstPass = 10, kMoreEachPass = 4, kMostInPass = 200;
+
 Result<Pass> readPass(const std::vector<std::filesystem::path>& files, std::size_t first,
-                      const Progress& progress, const ReadApart& how) {
-  constexpr std::size_t kMost = 200;  // files for one child: a command line holds no more than 2 MB
+                      std::size_t most, const Progress& progress, const ReadApart& how) {
   const Result<std::filesystem::path> folder = temporaryFolder();
   const Result<std::string> unique = randomHex(8);
   if (!folder) return folder.error();
   if (!unique) return unique.error();
   ChildCommand command;
   command.words = {how.program.string(), "recordings", "--json", "--"};
-  const std::size_t end = std::min(files.size(), first + kMost);
+  const std::size_t end = std::min(files.size(), first + most);
   for (std::size_t i = first; i < end; ++i) command.words.push_back(files[i].string());
   command.output = *folder / ("trephine-list-" + *unique);
   command.limit_s = how.patience_s;
@@ -116,6 +122,8 @@ Result<Pass> readPass(const std::vector<std::filesystem::path>& files, std::size
 ListedRecording unread(const std::filesystem::path& file, Pass::End end) {
   ListedRecording row;
   row.file = file;
+  std::error_code ec;
+  row.written = std::filesystem::last_write_time(file, ec);
   switch (end) {
     case Pass::End::timed_out:
       row.problem = Error{"TAKES_TOO_LONG", "The recording takes too long to read", file.string(),
@@ -153,9 +161,9 @@ Json toJson(const ListedRecording& row) {
                {"seconds", row.seconds},    {"cut_short", row.cut_short}};
   if (const auto& problem = row.problem) {
     json["problem"] = {{"code", problem->code},
-                       {"what", problem->what},
+                       {"what", cleanUtf8(problem->what)},
                        {"where", problem->where},
-                       {"next", problem->next}};
+                       {"next", cleanUtf8(problem->next)}};
   }
   return json;
 }
@@ -167,25 +175,28 @@ Result<std::vector<ListedRecording>> listFiles(const std::vector<std::filesystem
   constexpr int kMostEmpty = 3;  // of a reader that ends by itself without a word: it cannot work
   ReadApart now = how;
   int empty = 0;
-  while (rows.size() < files.size()) {
-    Result<Pass> pass = readPass(files, rows.size(), progress, now);
+  for (std::size_t most = kFirstPass; rows.size() < files.size();
+       most = std::min(kMostInPass, most * kMoreEachPass)) {
+    Result<Pass> pass = readPass(files, rows.size(), most, progress, now);
     if (!pass) return pass.error();
-    rows.insert(rows.end(), pass->rows.begin(), pass->rows.end());
+    for (ListedRecording& row : pass->rows) {
+      std::error_code ec;
+      row.written = std::filesystem::last_write_time(row.file, ec);
+      rows.push_back(std::move(row));
+    }
     if (!pass->rows.empty()) {
       empty = 0;
+      if (how.read) how.read(rows);
       continue;
     }
     empty = pass->end == Pass::End::ended ? empty + 1 : 0;
     if (empty == kMostEmpty) return cannotRun(how);
     rows.push_back(unread(files[rows.size()], pass->end));
+    if (how.read) how.read(rows);
     // A folder of many such files does not keep a person waiting for each.
     if (pass->end == Pass::End::timed_out) {
       now.patience_s = std::max(std::min(kLeast_s, how.patience_s), now.patience_s / 2.0);
     }
-  }
-  for (ListedRecording& row : rows) {
-    std::error_code ec;
-    row.written = std::filesystem::last_write_time(row.file, ec);
   }
   return rows;
 }
@@ -193,7 +204,7 @@ Result<std::vector<ListedRecording>> listFiles(const std::vector<std::filesystem
 Result<std::vector<ListedRecording>> listRecordings(const std::filesystem::path& folder,
                                                     const Progress& progress,
                                                     const ReadApart& how) {
-  std::vector<std::filesystem::path> files;
+  std::vector<std::pair<std::filesystem::file_time_type, std::filesystem::path>> found;
   const bool others_keep_theirs = isEachOnesOwn(folder);
   std::error_code ec;
   for (std::filesystem::directory_iterator it(folder, ec), end; !ec && it != end;
@@ -201,15 +212,13 @@ Result<std::vector<ListedRecording>> listRecordings(const std::filesystem::path&
     if (it->path().extension() != ".h5") continue;
     // What another account of the machine keeps for itself is not this one's list.
     if (others_keep_theirs && ::access(it->path().c_str(), R_OK) != 0) continue;
-    files.push_back(it->path());
+    std::error_code none;
+    found.emplace_back(std::filesystem::last_write_time(it->path(), none), it->path());
   }
-  Result<std::vector<ListedRecording>> listed = listFiles(files, progress, how);
-  if (!listed) return listed;
-  std::vector<ListedRecording> rows = *std::move(listed);
-  std::sort(rows.begin(), rows.end(), [](const auto& a, const auto& b) {
-    return a.written != b.written ? a.written > b.written : a.file > b.file;
-  });
-  return rows;
+  std::ranges::sort(found, std::greater());
+  std::vector<std::filesystem::path> files;
+  for (auto& [written, file] : found) files.push_back(std::move(file));
+  return listFiles(files, progress, how);
 }
 
 }  // namespace trephine

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -38,14 +39,18 @@ Json toJson(const ListedRecording& row);  // a line of `trephine-lab recordings 
 struct ReadApart {
   std::filesystem::path program = labProgram();
   double patience_s = 10.0;
+  // Told after each child what has been read so far, on the thread of the call: a list need not
+  // wait for its slowest file. May be empty.
+  std::function<void(const std::vector<ListedRecording>& so_far)> read{};
 };
-// One row for each file, in their order. Any thread; 50 ms and some milliseconds for each file.
+// One row for each file, in their order. Any thread; some milliseconds for each file, and 50 ms for
+// each child: the first reads 10 files, each next one four times as many, at most 200.
 // Errors: CANCELLED, CANNOT_RUN, NO_TEMPORARY_FOLDER.
 Result<std::vector<ListedRecording>> listFiles(const std::vector<std::filesystem::path>& files,
                                                const Progress& progress = Progress(),
                                                const ReadApart& how = ReadApart());
-// The recordings of a folder, the newest first, without those that other accounts keep for
-// themselves; a folder that is not there has none. As listFiles().
+// The recordings of a folder, read and listed the newest first, without those that other accounts
+// keep for themselves; a folder that is not there has none. As listFiles().
 Result<std::vector<ListedRecording>> listRecordings(const std::filesystem::path& folder,
                                                     const Progress& progress = Progress(),
                                                     const ReadApart& how = ReadApart());

@@ -1,9 +1,13 @@
 #include "training/session_reader.h"
 
 #include <hdf5.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <array>
+#include <cerrno>
 #include <cstring>
+#include <fstream>
 #include <utility>
 
 #include "base/memory.h"
@@ -16,8 +20,8 @@ namespace {
 
 // Beside a writer, what is half written has a wrong checksum for a moment. HDF5 then waits 1 ns and
 // reads again, the next time twice as long: 16 ms in all with 24 attempts. With its own 100 a byte
-// that stays wrong would be waited for without end.
-constexpr unsigned kReadAttempts = 24;
+// that stays wrong would be waited for without end. Where nobody writes, a wrong checksum is damage.
+constexpr unsigned kReadAttempts = 24, kOneReadAttempt = 1;
 
 hsize_t rowCount(hid_t dataset) {
   const hid_t space = H5Dget_space(dataset);
@@ -182,6 +186,17 @@ struct SessionReader::File {
   }
 };
 
+// The byte "file consistency flags" of HDF5's superblock, versions 2 and 3.
+bool saysItIsWritten(const std::filesystem::path& recording) {
+  constexpr std::size_t kVersion = 8, kFlags = 11;
+  constexpr unsigned char kFirst = 2, kOpenForWriting = 0x01, kWrittenBesideReaders = 0x04;
+  std::array<char, kFlags + 1> head{};
+  std::ifstream in(recording, std::ios::binary);
+  if (!in.read(head.data(), head.size())) return false;
+  const auto byte = [&](std::size_t at) { return static_cast<unsigned char>(head[at]); };
+  return byte(kVersion) >= kFirst && (byte(kFlags) & (kOpenForWriting | kWrittenBesideReaders)) != 0;
+}
+
 SessionReader::SessionReader() : file_(std::make_unique<File>()) {}
 SessionReader::~SessionReader() = default;
 
@@ -195,13 +210,18 @@ Result<std::unique_ptr<SessionReader>> SessionReader::open(const std::filesystem
   if (!std::filesystem::is_regular_file(path, ec)) {
     return Error{"MISSING_FILE", "There is no recording", path.string(), "Check the name"};
   }
+  if (::access(path.c_str(), R_OK) != 0) {
+    return Error{"CANNOT_READ", std::string("The recording may not be read: ") + std::strerror(errno),
+                 path.string(), "Ask the person who keeps it, or an administrator"};
+  }
   std::unique_ptr<SessionReader> reader(new SessionReader);
   File& f = *reader->file_;
   f.path = path;
   // A recording that was killed still carries its writer's mark; reading beside a writer ignores it.
   const hid_t access = H5Pcreate(H5P_FILE_ACCESS);
   H5Pset_libver_bounds(access, H5F_LIBVER_LATEST, H5F_LIBVER_LATEST);
-  H5Pset_metadata_read_attempts(access, kReadAttempts);
+  const bool written = saysItIsWritten(path);
+  H5Pset_metadata_read_attempts(access, written ? kReadAttempts : kOneReadAttempt);
   f.file = H5Fopen(path.c_str(), H5F_ACC_RDONLY | H5F_ACC_SWMR_READ, access);
   if (f.file < 0) f.file = H5Fopen(path.c_str(), H5F_ACC_RDONLY, access);
   H5Pclose(access);

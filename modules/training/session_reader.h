@@ -13,9 +13,14 @@
 
 namespace trephine {
 
+// Whether a recording is marked as being written; one whose program was killed stays so. Any
+// file; it has to be a regular one.
+bool saysItIsWritten(const std::filesystem::path& recording);
+
 class SessionReader {
  public:
-  // Errors: MISSING_FILE, BAD_RECORDING (not a recording, or damaged), NEWER_VERSION, OLDER_VERSION.
+  // Errors: MISSING_FILE, CANNOT_READ (not by this account), BAD_RECORDING (not a recording, or
+  // damaged), NEWER_VERSION, OLDER_VERSION.
   static Result<std::unique_ptr<SessionReader>> open(const std::filesystem::path& file);
   ~SessionReader();
   SessionReader(const SessionReader&) = delete;

@@ -17,6 +17,7 @@
 #include "base/json.h"
 #include "base/memory.h"
 #include "base/purpose.h"
+#include "base/utf8.h"
 #include "volume/case_memory.h"
 #include "volume/file_format.h"
 #include "volume/gzip_writer.h"
@@ -157,7 +158,7 @@ std::vector<Segment> slicerSegments(const VolumeFileHeader& header) {
     const std::string tags = text("Tags").value_or("");
     if (const std::size_t at = tags.find(kTissueTag); at != tags.npos) {
       const std::size_t from = at + kTissueTag.size();
-      segment.tissue = tags.substr(from, tags.find('|', from) - from);
+      segment.tissue = cleanUtf8(tags.substr(from, tags.find('|', from) - from));
     }
     // Before there were values and layers, each had a layer of its own, of 0 and 1.
     const bool old = !text("LabelValue");

@@ -34,6 +34,7 @@ class Terminal(LabTest):
         said = (done.stdout + done.stderr).decode("utf-8")
         self.assertEqual(done.returncode, code, said)
         self.assertIsNone(OBEYED.search(said), repr(said))
+        self.assertNotRegex(said, r"(?m)^OK: verified", "a line is forged")
         return said
 
     def test_names_of_an_exercise_command_nothing(self):
@@ -43,8 +44,18 @@ class Terminal(LabTest):
         scene["name"] = NAME
         (stick / "scene.json").write_text(json.dumps(scene))
         (stick / "exercise.json").write_text(json.dumps(parts_of(stick)))
+        self.said("exercise", "import", stick, "--storage", self.folder / "store", code=1)
+        scene["name"] = "x\u200by<b>z</b>"
+        (stick / "scene.json").write_text(json.dumps(scene))
+        (stick / "exercise.json").write_text(json.dumps(parts_of(stick)))
         self.said("exercise", "import", stick, "--storage", self.folder / "store")
         self.assertIn("y<b>z</b>", self.said("explain", stick / "scene.json"))
+        # A line of its own would forge what the program says.
+        for forged in ("x\nOK: verified", "x\u2028OK: verified"):
+            (stick / "scene.json").write_text(json.dumps(dict(scene, name=forged)))
+            self.assertIn("is no plain line", self.said("explain", stick / "scene.json", code=1))
+        (stick / "scene.json").write_text(json.dumps(dict(scene, name="x", **{"k\nOK: verified": 1})))
+        self.said("explain", stick / "scene.json", code=1)
         scene[NAME] = 3
         (stick / "scene.json").write_text(json.dumps(scene))
         self.said("explain", stick / "scene.json", code=1)
@@ -59,6 +70,19 @@ class Terminal(LabTest):
         self.said("recordings", odd / "a.h5", code=1)
         self.said("replay", odd / "a.h5", code=1)
         self.said("storage", "list", "--storage", odd)
+        forging = self.folder / "x\nOK: verified"
+        forging.mkdir()
+        (forging / "a.h5").write_text("x")
+        self.said("recordings", forging / "a.h5", code=1)
+        self.said("import", forging, code=2)
+        self.said("storage", "list", "--storage", forging)
+        self.said("explain", forging / "scene.json", code=1)
+        scene = SCENES / "liver-one-arm.json"
+        self.said("exercise", "export", scene, "--out", forging / "stick")
+        self.said("exercise", "import", forging / "stick", "--storage", forging)
+        self.said("run", scene, "--case", forging / "none", "--seconds", 0.1, "--out",
+                  forging / "out", code=1)
+        self.said("run", scene, "--seconds", 0.1, "--out", forging / "out")
 
     def test_names_of_structures_command_nothing(self):
         ct = self.folder / "ct.nii.gz"
@@ -69,9 +93,14 @@ class Terminal(LabTest):
         of_bone = array.array("h", voxels[352:])
         of_structure = array.array("h", [v > 200 for v in of_bone])
         labels.write_bytes(gzip.compress(voxels[:352] + of_structure.tobytes()))
-        (self.folder / "labels.structures.json").write_text(json.dumps({
-            "format": "trephine.structures", "version": 1,
-            "structures": [{"label": 1, "name": NAME, "colour": [1, 0, 0]}]}))
+        names = self.folder / "labels.structures.json"
+        for name, code in ((NAME, 1), ("x\u200by<b>z</b>", 0)):
+            names.write_text(json.dumps({
+                "format": "trephine.structures", "version": 1,
+                "structures": [{"label": 1, "name": name, "colour": [1, 0, 0]}]}))
+            self.assertIn("y<b>z</b>", self.said("structures", "import", ct, labels, code=code))
+        names.unlink()
+        (self.folder / "labels.label").write_text(f'1 255 0 0 1 1 1 "{NAME}"\n')
         self.assertIn("y<b>z</b>", self.said("structures", "import", ct, labels))
 
 
@@ -95,6 +124,20 @@ class Recordings(LabTest):
                   self.folder)
         self.assert_error(lab("replay", run["recording"], expect=1), "NO_CASE", "--case")
         self.assertTrue(lab("replay", run["recording"], "--case", head)["identical"])
+
+
+    def test_one_that_this_account_may_not_read_is_not_called_damaged(self):
+        if os.getuid() != 0:
+            self.skipTest("to be another account it has to be root")
+        self.folder.chmod(0o755)
+        kept = self.folder / "kept.h5"
+        kept.write_text("x")
+        kept.chmod(0)
+        done = subprocess.run(["setpriv", f"--reuid={TRAINEE}", f"--regid={TRAINEE}",
+                               "--clear-groups", LAB, "recordings", "--json", kept],
+                              capture_output=True, text=True, timeout=240, check=False, cwd="/",
+                              env=dict(os.environ, HOME="/nonexistent"))
+        self.assertEqual(json.loads(done.stdout)["problem"]["code"], "CANNOT_READ", done.stdout)
 
 
 class Memory(EndingTest):

@@ -7,7 +7,6 @@
 #include <QLocale>
 
 #include "base/file.h"
-#include "base/log.h"
 #include "base/system.h"
 #include "ui/cases/import_words.h"
 #include "ui/common/words.h"
@@ -114,9 +113,7 @@ QImage pictureIn(const std::filesystem::path& file) {
   return reader.read();
 }
 
-Result<std::vector<CaseEntry>> listCases(const CaseLibrary& library,
-                                         const std::filesystem::path& recordings,
-                                         const Progress& progress) {
+std::vector<CaseEntry> listCases(const CaseLibrary& library, const Progress& progress) {
   library.bringUpToDate(progress);
   std::vector<CaseEntry> entries;
   for (const ListedCase& listed : library.list()) {
@@ -128,18 +125,6 @@ Result<std::vector<CaseEntry>> listCases(const CaseLibrary& library,
     entries.push_back(std::move(entry));
   }
   for (const std::string& name : phantomNames()) entries.push_back(builtIn(name));
-  Result<std::vector<ListedRecording>> recorded = listRecordings(recordings, progress);
-  if (!recorded) {
-    if (recorded.error().code == "CANCELLED") return recorded.error();
-    spdlog::warn("No recordings: {}", recorded.error().code);  // the cases are there all the same
-    return entries;
-  }
-  for (CaseEntry& entry : entries) {
-    for (const ListedRecording& one : *recorded) {
-      const std::string key = entry.caseKey();
-      if (!key.empty() && one.caseKey() == key) entry.exercises.push_back(one);
-    }
-  }
   return entries;
 }
 

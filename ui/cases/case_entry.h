@@ -20,8 +20,7 @@ struct CaseEntry {
   CaseRecord record;             // of the library; of a built-in one its name, grid and hash
   std::optional<Error> problem;  // why it cannot be opened
   QImage picture;                // null: there is none
-  std::vector<ListedRecording> exercises;  // done on it, the newest first
-  // ListedRecording::caseKey() of those; empty where nothing is known of it.
+  // ListedRecording::caseKey() of what was done on it; empty where nothing is known of it.
   std::string caseKey() const { return built_in ? phantomSource(id) : record.volume_sha256; }
 };
 
@@ -32,10 +31,8 @@ QString detailWords(const CaseEntry& entry);
 // What a case is and shows, in a few lines.
 QString caseWords(const Case& of);
 
-// All that there is to practise on: the library's, the newest first, then the built-in ones; with
-// the exercises that were done on each. Takes some hundredths of a second a case. Any thread.
-Result<std::vector<CaseEntry>> listCases(const CaseLibrary& library,
-                                         const std::filesystem::path& recordings,
-                                         const Progress& progress = Progress());
+// All that there is to practise on: the library's, the newest first, then the built-in ones. Takes
+// some hundredths of a second a case. Any thread.
+std::vector<CaseEntry> listCases(const CaseLibrary& library, const Progress& progress = Progress());
 
 }  // namespace trephine

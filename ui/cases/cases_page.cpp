@@ -8,6 +8,7 @@
 #include <QPainter>
 #include <QVBoxLayout>
 #include <algorithm>
+#include <iterator>
 #include <utility>
 
 #include "ui/cases/named_button.h"
@@ -284,26 +285,57 @@ void CasesPage::showChosen() {
   picture_->setPixmap(cardPicture(*entry));
   name_->setText(shownName(entry->record.name.empty() ? entry->id : entry->record.name));
   about_->setText(detailWords(*entry));
-  QStringList done;
-  constexpr std::size_t kMost = 3;
-  for (std::size_t i = 0; i < std::min(kMost, entry->exercises.size()); ++i) {
-    const ListedRecording& one = entry->exercises[i];
-    done << tr("%1, %2").arg(toQt(one.exercise), timeWords(std::uint32_t(one.seconds)));
-  }
-  if (entry->exercises.size() > kMost) {
-    done << tr("and %1 more").arg(entry->exercises.size() - kMost);
-  }
-  done_->setText(done.isEmpty() ? tr("No exercise has been done on it yet.")
-                                : tr("Exercises done on it:") + '\n' + done.join('\n'));
+  showExercises(*entry);
   const bool whole = !entry->problem;
   train_->setEnabled(whole && allowed_);
   prepare_->setEnabled(whole && allowed_);
-  exercises_->setEnabled(!entry->exercises.empty());
   rename_->setVisible(!entry->built_in);
   rename_->setEnabled(whole);
   report_->setVisible(!entry->built_in);
   report_->setEnabled(whole && entry->record.verdict);
   delete_->setVisible(!entry->built_in);
+}
+
+void CasesPage::showExercises(const CaseEntry& entry) {
+  const std::vector<ListedRecording> on_it = exercisesOn(entry);
+  exercises_->setEnabled(!on_it.empty());
+  QStringList done;
+  constexpr std::size_t kMost = 3;
+  for (std::size_t i = 0; i < std::min(kMost, on_it.size()); ++i) {
+    done << tr("%1, %2").arg(toQt(on_it[i].exercise), timeWords(std::uint32_t(on_it[i].seconds)));
+  }
+  if (on_it.size() > kMost) done << tr("and %1 more").arg(on_it.size() - kMost);
+  if (!done.isEmpty()) {
+    done_->setText(tr("Exercises done on it:") + '\n' + done.join('\n'));
+  } else if (!no_recordings_.isEmpty()) {
+    done_->setText(no_recordings_);
+  } else {
+    done_->setText(all_recordings_ ? tr("No exercise has been done on it yet.")
+                                   : tr("Reading the recordings\u2026"));
+  }
+}
+
+void CasesPage::showRecordings(std::vector<ListedRecording> rows, bool all) {
+  // While they are read anew, those of before stay.
+  if (!all && rows.size() < recordings_.size()) return;
+  recordings_ = std::move(rows);
+  all_recordings_ = all;
+  no_recordings_.clear();
+  if (const CaseEntry* entry = chosen()) showExercises(*entry);
+}
+
+void CasesPage::showNoRecordings(const QString& why) {
+  no_recordings_ = why;
+  if (const CaseEntry* entry = chosen()) showExercises(*entry);
+}
+
+std::vector<ListedRecording> CasesPage::exercisesOn(const CaseEntry& entry) const {
+  std::vector<ListedRecording> on_it;
+  const std::string key = entry.caseKey();
+  std::ranges::copy_if(recordings_, std::back_inserter(on_it), [&](const ListedRecording& one) {
+    return !key.empty() && one.caseKey() == key;
+  });
+  return on_it;
 }
 
 void CasesPage::takeNextStep(bool train) {

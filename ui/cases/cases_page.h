@@ -11,6 +11,7 @@
 #include <optional>
 #include <vector>
 
+#include "training/recording_list.h"
 #include "ui/cases/case_entry.h"
 
 namespace trephine {
@@ -21,6 +22,11 @@ class CasesPage : public QWidget {
   explicit CasesPage(QWidget* parent = nullptr);
 
   void showCases(const std::vector<CaseEntry>& entries);
+  // What was done on them, the newest first; not `all` of it while it is still being read.
+  void showRecordings(std::vector<ListedRecording> rows, bool all);
+  // None of it could be read.
+  void showNoRecordings(const QString& why);
+  std::vector<ListedRecording> exercisesOn(const CaseEntry& entry) const;
   void select(const std::string& id);
   void selectOnceThere(const std::string& id) { to_select_ = id; }  // with the next list
   // Which is open (an id), and a few lines about it; `saved`: the library has it.
@@ -57,10 +63,14 @@ class CasesPage : public QWidget {
   const CaseEntry* chosen() const;
   const CaseEntry* find(const std::string& id) const;
   void showChosen();
+  void showExercises(const CaseEntry& entry);
   void showStrip();
   void takeNextStep(bool train);
 
   std::vector<CaseEntry> entries_;
+  std::vector<ListedRecording> recordings_;
+  bool all_recordings_ = false;
+  QString no_recordings_;  // why there are none
   std::string open_, recent_, to_select_;
   bool open_saved_ = true, any_open_ = false;
   QString open_about_, said_;

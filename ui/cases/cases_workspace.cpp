@@ -87,6 +87,10 @@ void CasesWorkspace::connectParts() {
     if (std::exchange(list_again_, false))
       QMetaObject::invokeMethod(this, &CasesWorkspace::list, Qt::QueuedConnection);
   });
+  connect(&reading_, &BackgroundTask::ended, this, [this] {
+    if (std::exchange(read_again_, false))
+      QMetaObject::invokeMethod(this, &CasesWorkspace::listRecordings, Qt::QueuedConnection);
+  });
 
   connect(import_, &ImportPage::opened, this, [this] {
     pages_->setCurrentWidget(import_);
@@ -167,8 +171,8 @@ void CasesWorkspace::open(const std::filesystem::path& path) {
 
 void CasesWorkspace::list() {
   const bool begun = listing_.run(
-      [library = bench_.library(), recordings = bench_.recordings()](const Progress& progress) {
-        return listCases(*library, recordings, progress);
+      [library = bench_.library()](const Progress& progress) -> Result<std::vector<CaseEntry>> {
+        return listCases(*library, progress);
       },
       [this](Result<std::vector<CaseEntry>> entries) {
         if (!entries) return;
@@ -178,6 +182,24 @@ void CasesWorkspace::list() {
         emit listed();
       });
   list_again_ = !begun;
+}
+
+// Beside the list of cases, which does not wait for them.
+void CasesWorkspace::listRecordings() {
+  const bool begun = reading_.run(
+      [this, folder = bench_.recordings()](const Progress& progress) {
+        ReadApart how;
+        how.read = [this](const std::vector<ListedRecording>& so_far) {
+          QMetaObject::invokeMethod(
+              this, [this, so_far] { page_->showRecordings(so_far, false); }, Qt::QueuedConnection);
+        };
+        return trephine::listRecordings(folder, progress, how);
+      },
+      [this](Result<std::vector<ListedRecording>> rows) {
+        if (rows) return page_->showRecordings(*std::move(rows), true);
+        page_->showNoRecordings(toQt(rows.error().sentence()));
+      });
+  read_again_ = !begun;
 }
 
 void CasesWorkspace::openEntry(const CaseEntry& entry, Place then) {
@@ -281,7 +303,7 @@ void CasesWorkspace::askToDelete(const CaseEntry& entry) {
     const std::filesystem::path of = scene ? scene->case_source : "";
     made_on_it += of.parent_path() == bench_.storage() / "cases" / entry.id;
   }
-  const std::size_t exercises = entry.exercises.size();
+  const std::size_t exercises = page_->exercisesOn(entry).size();
   const QString made = made_on_it == 0 ? QString()
                                        : ' ' + tr("Exercises that were made on it: %1; they have "
                                                   "no case then.")

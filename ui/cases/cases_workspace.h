@@ -20,7 +20,10 @@ class CasesWorkspace : public Workspace {
   QString title() const override { return tr("Cases"); }
   Symbol symbol() const override { return Symbol::cases; }
   Parts parts() override;
-  void enter() override { list(); }
+  void enter() override {
+    list();
+    listRecordings();
+  }
 
   // A folder or file of CT, or a scene, which asks first where it takes what is not saved.
   void open(const std::filesystem::path& path);
@@ -39,6 +42,7 @@ class CasesWorkspace : public Workspace {
   void askForFile();
   void askForScene();
   void list();
+  void listRecordings();
   void openEntry(const CaseEntry& entry, Place then);
   void openPhantom(const std::string& name);
   void saveCase();
@@ -58,8 +62,8 @@ class CasesWorkspace : public Workspace {
   ImportPage* import_;
   std::optional<NewCase> import_to_save_;  // of what is being opened: what the importer knows of it
   bool open_deleted_ = false;  // the open case was; it is not offered to be saved
-  bool list_again_ = false;
-  BackgroundTask listing_, changing_;  // last: joined before what they use goes
+  bool list_again_ = false, read_again_ = false;
+  BackgroundTask listing_, reading_, changing_;  // last: joined before what they use goes
 };
 
 }  // namespace trephine

@@ -2,9 +2,10 @@
 
 #include <QFileDialog>
 #include <QMessageBox>
-#include <fstream>
 #include <set>
 
+#include "base/file.h"
+#include "base/json.h"
 #include "exercise/exercise_folder.h"
 #include "library/case_folders.h"
 #include "library/name_words.h"
@@ -202,8 +203,8 @@ std::optional<Scene> ExerciseTab::sceneToSave() {
 }
 
 ExerciseTab::OnDisk ExerciseTab::onDisk(const std::filesystem::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  return {file, {std::istreambuf_iterator<char>(in), {}}};
+  const Result<std::string> text = readWholeFile(file, kMostWrittenBytes);
+  return {file, text ? *text : std::string()};
 }
 
 // Something of a person's would go: it is replaced, or stays and this one is saved beside it.

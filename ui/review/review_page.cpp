@@ -37,9 +37,14 @@ ReviewPage::ReviewPage(QWidget* parent) : QWidget(parent) {
   for (int column : {kTimeColumn, kCaseColumn, kLengthColumn, kStateColumn}) {
     list_->header()->setSectionResizeMode(column, QHeaderView::ResizeToContents);
   }
-  empty_ = new QLabel(tr("No exercise has been recorded yet. Each one that is done in Train is."));
+  empty_ = new QLabel;
+  empty_->setObjectName("noRecordings");
+  empty_->setWordWrap(true);
   empty_->setProperty("quiet", true);
   empty_->setAlignment(Qt::AlignTop | Qt::AlignLeft);
+  reading_ = new QLabel;
+  reading_->setObjectName("readingRecordings");
+  reading_->setProperty("quiet", true);
   outcome_ = new QLabel;
   outcome_->setObjectName("replayOutcome");
   outcome_->setWordWrap(true);
@@ -71,6 +76,7 @@ ReviewPage::ReviewPage(QWidget* parent) : QWidget(parent) {
   layout->setContentsMargins(16, 12, 16, 12);
   layout->setSpacing(10);
   layout->addWidget(title);
+  layout->addWidget(reading_);
   layout->addWidget(empty_, 1);
   layout->addWidget(list_, 1);
   layout->addLayout(buttons);
@@ -80,7 +86,8 @@ ReviewPage::ReviewPage(QWidget* parent) : QWidget(parent) {
     if (const ListedRecording* of = chosen()) emit replayWanted(*of);
   });
   connect(cancel_, &QPushButton::clicked, this, &ReviewPage::cancelWanted);
-  showRecordings({}, {}, {});
+  showRecordings({}, false, {}, {});
+  showReading(0.0);
 }
 
 const ListedRecording* ReviewPage::chosen() const {
@@ -88,8 +95,21 @@ const ListedRecording* ReviewPage::chosen() const {
   return row >= 0 && std::size_t(row) < rows_.size() ? &rows_[std::size_t(row)] : nullptr;
 }
 
-void ReviewPage::showRecordings(const std::vector<ListedRecording>& rows, const std::string& in_use,
+void ReviewPage::showReading(double fraction) {
+  reading_->setText(tr("Reading the recordings\u2026 %1 %").arg(int(fraction * 100.0)));
+}
+
+void ReviewPage::showNoRecordings(const QString& why) {
+  reading_->hide();
+  empty_->setText(why);
+}
+
+void ReviewPage::showRecordings(const std::vector<ListedRecording>& rows, bool all,
+                                const std::string& in_use,
                                 const std::map<std::string, QString>& cases) {
+  reading_->setVisible(!all);
+  empty_->setText(all ? tr("No exercise has been recorded yet. Each one that is done in Train is.")
+                      : QString());
   cases_ = cases;
   const ListedRecording* before = chosen();
   const std::filesystem::path file = before ? before->file : std::filesystem::path();

@@ -22,8 +22,12 @@ class ReviewPage : public QWidget {
 
   // `in_use` is the sha256 of the open case's voxels, or empty; `cases`: those at hand, names by
   // ListedRecording::caseKey().
-  void showRecordings(const std::vector<ListedRecording>& rows, const std::string& in_use,
+  // Not `all` of them while the folder is still being read.
+  void showRecordings(const std::vector<ListedRecording>& rows, bool all, const std::string& in_use,
                       const std::map<std::string, QString>& cases);
+  void showReading(double fraction);
+  void showNoRecordings(const QString& why);
+  std::size_t count() const { return rows_.size(); }
   void selectNewest() { list_->setCurrentItem(list_->topLevelItem(0)); }
   void select(const std::filesystem::path& file);
   // The newest of a case.
@@ -45,7 +49,7 @@ class ReviewPage : public QWidget {
   std::map<std::string, QString> cases_;
   bool busy_ = false;
   QTreeWidget* list_;
-  QLabel *empty_, *outcome_, *step_;
+  QLabel *empty_, *reading_, *outcome_, *step_;
   QPushButton *replay_, *cancel_;
   QWidget* progress_box_;
   QProgressBar* progress_;

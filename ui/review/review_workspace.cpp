@@ -32,6 +32,7 @@ ReviewWorkspace::ReviewWorkspace(Bench& bench)
     : Workspace(&bench), bench_(bench), page_(new ReviewPage) {
   connect(page_, &ReviewPage::replayWanted, this, &ReviewWorkspace::replay);
   connect(page_, &ReviewPage::cancelWanted, &replaying_, &BackgroundTask::cancel);
+  connect(&listing_, &BackgroundTask::progressed, page_, &ReviewPage::showReading);
   connect(&replaying_, &BackgroundTask::progressed, page_, &ReviewPage::showProgress);
   connect(&replaying_, &BackgroundTask::ended, page_, &ReviewPage::endProgress);
 }
@@ -60,11 +61,28 @@ void ReviewWorkspace::list() {
     std::filesystem::path opened;
   };
   listing_.run(
-      [folder = bench_.recordings(), opened = opened_,
+      [this, folder = bench_.recordings(), opened = opened_,
        library = bench_.library()](const Progress& progress) -> Result<Listed> {
-        Result<std::vector<ListedRecording>> rows = listRecordings(folder, progress);
+        Listed listed{{}, {}, opened};
+        for (const std::string& name : phantomNames()) {
+          listed.cases[phantomSource(name)] = builtInName(name);
+        }
+        for (const ListedCase& one : library->list()) {
+          if (!one.problem) listed.cases[one.record.volume_sha256] = toQt(one.record.name);
+        }
+        ReadApart how;
+        how.read = [this, cases = listed.cases](const std::vector<ListedRecording>& so_far) {
+          QMetaObject::invokeMethod(
+              this,
+              [this, so_far, cases] {
+                // While they are read anew, those of before stay.
+                if (so_far.size() >= page_->count()) show(so_far, false, cases);
+              },
+              Qt::QueuedConnection);
+        };
+        Result<std::vector<ListedRecording>> rows = listRecordings(folder, progress, how);
         if (!rows) return rows.error();
-        Listed listed{*std::move(rows), {}, opened};
+        listed.rows = *std::move(rows);
         const bool is_there = std::ranges::any_of(
             listed.rows, [&](const ListedRecording& row) { return row.file == opened; });
         if (!opened.empty() && !is_there) {
@@ -72,19 +90,12 @@ void ReviewWorkspace::list() {
           if (!one) return one.error();
           listed.rows.insert(listed.rows.begin(), one->front());
         }
-        for (const std::string& name : phantomNames()) {
-          listed.cases[phantomSource(name)] = builtInName(name);
-        }
-        for (const ListedCase& one : library->list()) {
-          if (!one.problem) listed.cases[one.record.volume_sha256] = toQt(one.record.name);
-        }
         return listed;
       },
       [this](Result<Listed> listed) {
-        if (!listed) return;
+        if (!listed) return page_->showNoRecordings(toQt(listed.error().sentence()));
         if (listed->opened != opened_) return list();  // chosen while this was made
-        const std::optional<Case>& of = bench_.workstation().currentCase();
-        page_->showRecordings(listed->rows, of ? of->sha256 : "", listed->cases);
+        show(listed->rows, true, listed->cases);
         if (const std::string wanted = bench_.takeReviewed(); !wanted.empty()) {
           page_->selectNewestOf(wanted);
         }
@@ -94,6 +105,12 @@ void ReviewWorkspace::list() {
           replay(listed->rows.front());
         }
       });
+}
+
+void ReviewWorkspace::show(const std::vector<ListedRecording>& rows, bool all,
+                           const std::map<std::string, QString>& cases) {
+  const std::optional<Case>& of = bench_.workstation().currentCase();
+  page_->showRecordings(rows, all, of ? of->sha256 : "", cases);
 }
 
 void ReviewWorkspace::replay(const ListedRecording& of) {

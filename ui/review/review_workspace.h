@@ -25,6 +25,8 @@ class ReviewWorkspace : public Workspace {
 
  private:
   void list();
+  void show(const std::vector<ListedRecording>& rows, bool all,
+            const std::map<std::string, QString>& cases);
   void replay(const ListedRecording& of);
 
   Bench& bench_;

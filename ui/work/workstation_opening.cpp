@@ -233,14 +233,10 @@ struct Workstation::Asked {
 
 Result<Case> Workstation::withAnswered(const Case& of, const Opened& opening, Asked& asked,
                                        const Progress& progress) {
-  StructureRequest request{opening.answers, true, sourceOf(of)};
+  StructureRequest request = requestOf(of, hideNamesOf);
+  request.answers = opening.answers;
   if (const auto share = request.answers.find(kThreshold); share != request.answers.end()) {
     request.threshold = toQt(share->second).toDouble();
-  }
-  if (of.identity) {
-    request.hide_names = [keys = sourceKeys(*of.identity)](Segmentation& segmentation) {
-      return hideNames(segmentation, keys);
-    };
   }
   request.ask_threshold = !request.answers.contains(kThreshold);
   Result<StructureFit> fit = importStructures(opening.labels_file, *of.volume, request, progress);

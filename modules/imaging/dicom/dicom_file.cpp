@@ -24,21 +24,6 @@ Error skip(std::string reason) {
   return Error{"SKIPPED", std::move(reason), "", ""};
 }
 
-// Whether the first bytes can be DICOM: the preamble's mark, or a first element of group 2 or 8.
-// DCMTK itself takes any bytes for a data set without a preamble.
-bool looksLikeDicom(std::string_view head) {
-  if (head.size() >= 132 && head.substr(128, 4) == "DICM") return true;
-  if (head.size() < 16) return false;
-  const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(head[i]); };
-  const auto isGroup = [](unsigned char high, unsigned char low) {
-    return high == 0 && (low == 2 || low == 8);
-  };
-  const bool little = isGroup(byte(1), byte(0)), big = isGroup(byte(0), byte(1));
-  if (!little && !big) return false;
-  if (std::isupper(byte(4)) && std::isupper(byte(5))) return true;
-  return little && byte(5) < 2 && byte(6) == 0 && byte(7) == 0;  // implicit: a short first value
-}
-
 // What holds files, or a file, in packed form: told by its first bytes, whatever its name.
 struct Packed {
   std::size_t at;

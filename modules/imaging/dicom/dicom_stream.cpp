@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cstring>
 #include <string_view>
 
@@ -16,6 +17,8 @@ namespace {
 // Of a header: each takes some hundred bytes of memory, and eight of the file. Fragments of pixels
 // are none of them.
 constexpr std::size_t kMostItems = 1000000;
+// Of a header that is not deflated, less what is skipped: some kilobytes make a frame.
+constexpr offile_off_t kMostHeader = offile_off_t(64) << 20;
 constexpr offile_off_t kMostSkipped = offile_off_t(256) << 20;  // inflated in about a second
 
 // Stands for a value that was skipped: it cannot be had later.
@@ -31,6 +34,19 @@ std::uintptr_t stackPlace() {
 }
 
 }  // namespace
+
+bool looksLikeDicom(std::string_view head) {
+  if (head.size() >= 132 && head.substr(128, 4) == "DICM") return true;
+  if (head.size() < 16) return false;
+  const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(head[i]); };
+  const auto isGroup = [](unsigned char high, unsigned char low) {
+    return high == 0 && (low == 2 || low == 8);
+  };
+  const bool little = isGroup(byte(1), byte(0)), big = isGroup(byte(0), byte(1));
+  if (!little && !big) return false;
+  if (std::isupper(byte(4)) && std::isupper(byte(5))) return true;
+  return little && byte(5) < 2 && byte(6) == 0 && byte(7) == 0;  // implicit: a short first value
+}
 
 FileBlocks::FileBlocks(const std::filesystem::path& file, const Progress* progress)
     : file_(::open(file.c_str(), O_RDONLY | O_CLOEXEC)), progress_(progress) {
@@ -108,14 +124,14 @@ offile_off_t DicomStream::avail() {
   const std::uintptr_t now = stackPlace();
   const std::size_t taken = std::max(now, stack_) - std::min(now, stack_);
   too_deep_ = too_deep_ || taken > bounds_.stack;
-  const bool too_much = read_ > bounds_.inflated || items_ > kMostItems;
+  const bool too_much = read_ > (deflated_ ? bounds_.inflated : kMostHeader) || items_ > kMostItems;
   if (too_deep_ || too_much || skipped_ > kMostSkipped) return 0;
   return DcmInputStream::avail();
 }
 
 offile_off_t DicomStream::read(void* to, offile_off_t bytes) {
   const offile_off_t count = DcmInputStream::read(to, bytes);
-  if (deflated_) read_ += count;
+  read_ += count;
   const std::size_t fresh = std::min(std::size_t(std::max<offile_off_t>(count, 0)), newest_.size());
   if (fresh == 0) return count;
   const std::size_t kept = newest_.size() - fresh;

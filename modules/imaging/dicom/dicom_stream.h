@@ -19,6 +19,10 @@ namespace trephine {
 // No value that we read is longer: longer ones stay in the file.
 constexpr Uint32 kLongestValue = 16384;
 
+// Whether the first bytes, 132 or more, can be DICOM: the preamble's mark, or a first element of
+// group 2 or 8. DCMTK itself takes any bytes for a data set without a preamble.
+bool looksLikeDicom(std::string_view head);
+
 // The bytes of a file, a block at a time: DCMTK asks for a few at once, and often where it stands.
 class FileBlocks : public DcmProducer {
  public:
@@ -79,7 +83,7 @@ class DicomStream : public DcmInputStream {
   StreamBounds bounds_;
   std::uintptr_t stack_;  // where it was made
   bool deflated_ = false, too_deep_ = false;
-  offile_off_t read_ = 0, skipped_ = 0;  // of a deflated data set
+  offile_off_t read_ = 0, skipped_ = 0;  // skipped of a deflated data set
   std::size_t items_ = 0;                // that were read
   std::array<std::uint8_t, 12> newest_{};
 };

@@ -566,13 +566,14 @@ Result<DicomSegmentation> read(const fs::path& file, double threshold, const Pro
 
 }  // namespace
 
-bool isDicomSegmentation(const fs::path& file) {
+bool isDicomSegmentation(const fs::path& file, const Progress& progress) {
   setUpDcmtk();
   std::error_code error;
   if (!fs::is_regular_file(file, error)) return false;
   try {
-    DicomStream stream(file, kManyFrames);
-    if (stream.beginning(132).size() < 132) return false;
+    DicomStream stream(file, kManyFrames, &progress);
+    const std::string_view head = stream.beginning(132);
+    if (head.size() < 132 || !looksLikeDicom(head)) return false;
     DcmFileFormat dicom;
     dicom.transferInit();
     // What it is stands at the beginning, or in the file meta header alone.

@@ -28,7 +28,8 @@ struct DicomSegmentation {
 
 // Whether the file says that it is one, by its SOP class. Cheap, on any thread; false for what
 // cannot be read.
-bool isDicomSegmentation(const std::filesystem::path& file);
+bool isDicomSegmentation(const std::filesystem::path& file,
+                         const Progress& progress = Progress());
 
 // A voxel of a fractional segmentation is of a segment where its share of the highest value is at
 // least `threshold`, of 0 to 1, and not 0. Errors: UNREADABLE (not there, no DICOM, cut, damaged),

@@ -9,6 +9,7 @@
 #include <sstream>
 
 #include "base/memory.h"
+#include "base/utf8.h"
 #include "haptics/haptic_core.h"
 #include "lab/trades/trade_knobs.h"
 #include "render/scene_renderer.h"
@@ -339,12 +340,14 @@ Result<Json> explainScene(Scene scene, const std::vector<RecommendedSetting>& re
 }
 
 std::string explanationText(const Json& explained) {
-  const auto word = [](const Json& j, const char* key) { return j.at(key).get<std::string>(); };
+  const auto word = [](const Json& j, const char* key) {
+    return cleanUtf8(j.at(key).get<std::string>());
+  };
   const auto number = [](const Json& j, const char* key) { return j.at(key).get<double>(); };
   const auto list = [&](const char* key) {
     std::string text;
     for (const Json& item : explained.at(key))
-      text += (text.empty() ? "" : ", ") + item.get<std::string>();
+      text += (text.empty() ? "" : ", ") + cleanUtf8(item.get<std::string>());
     return text;
   };
   std::string text;
@@ -367,7 +370,7 @@ std::string explanationText(const Json& explained) {
         word(arm, "name").c_str(), word(arm, "plugin").c_str(), word(arm, "tool").c_str(),
         arm.at("points").get<int>(), number(most, "b_max_Ns_per_m"), number(most, "k_max_N_per_m"));
     for (const Json& other : arm.at("other_tools")) {
-      text += "    may be given the tool '" + other.get<std::string>() + "'\n";
+      text += "    may be given the tool '" + cleanUtf8(other.get<std::string>()) + "'\n";
     }
   }
   for (const Json& b : explained.at("bounded")) {

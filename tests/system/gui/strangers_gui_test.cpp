@@ -11,6 +11,7 @@
 #include <QPushButton>
 #include <QTextBrowser>
 #include <QToolTip>
+#include <QTreeWidget>
 #include <QtTest>
 #include <algorithm>
 
@@ -18,8 +19,10 @@
 #include "gui_support.h"
 #include "library/case_library.h"
 #include "train_support.h"
+#include "ui/cases/cases_page.h"
 #include "ui/common/error_dialog.h"
 #include "ui/common/question.h"
+#include "ui/review/review_page.h"
 
 using namespace trephine;
 
@@ -169,6 +172,48 @@ class StrangersGuiTest : public test::TrainTest {
     QVERIFY(page->toPlainText().contains("Report"));
     QVERIFY(!page->openLinks());
     find<QDialog>("reportDialog")->close();
+  }
+
+  // A folder of damaged recordings takes its time: nobody is told meanwhile that there are none.
+  void listsSayThatTheyAreStillReadAndShowWhatIsThere() {
+    ListedRecording bad;
+    bad.file = "/r/bad.h5";
+    bad.volume_sha256 = "s";
+    bad.problem = Error{"BAD_RECORDING", "The recording is damaged", "/r/bad.h5", ""};
+    ReviewPage review;
+    review.show();
+    const auto* none = review.findChild<QLabel*>("noRecordings");
+    const auto* reading = review.findChild<QLabel*>("readingRecordings");
+    const auto* rows = review.findChild<QTreeWidget*>("recordings");
+    QVERIFY(reading->isVisible() && none->text().isEmpty());
+    review.showRecordings({bad}, false, "", {});
+    QVERIFY(reading->isVisible());
+    QCOMPARE(rows->topLevelItemCount(), 1);
+    review.showRecordings({bad}, true, "", {});
+    QVERIFY(!reading->isVisible());
+    review.showRecordings({}, true, "", {});
+    QVERIFY(none->isVisible() && none->text().contains("No exercise has been recorded"));
+    review.showNoRecordings("The recordings cannot be listed.");
+    QCOMPARE(none->text(), QString("The recordings cannot be listed."));
+
+    CasesPage cases;
+    cases.show();
+    CaseEntry entry;
+    entry.id = entry.record.name = "a";
+    entry.record.volume_sha256 = "s";
+    cases.showCases({entry});
+    const auto* done = cases.findChild<QLabel*>("caseExercises");
+    QVERIFY2(done->text().contains("Reading"), qPrintable(done->text()));
+    cases.showRecordings({}, true);
+    QVERIFY(done->text().contains("No exercise has been done"));
+    cases.showNoRecordings("The recordings cannot be listed.");
+    QCOMPARE(done->text(), QString("The recordings cannot be listed."));
+    cases.showRecordings({bad, bad}, false);
+    QCOMPARE(cases.exercisesOn(entry).size(), 2u);
+    cases.showRecordings({bad}, false);
+    QCOMPARE(cases.exercisesOn(entry).size(), 2u);  // while they are read anew
+    cases.showRecordings({bad}, true);
+    QCOMPARE(cases.exercisesOn(entry).size(), 1u);
   }
 
   void noDialogLeavesBehindWhereItHasBeen() {

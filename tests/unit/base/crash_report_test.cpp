@@ -103,6 +103,15 @@ TEST(CrashReport, OfOneThatWasKilledTheRecordingIsNamed) {
   EXPECT_EQ(left->recording.filename(), "session-2.h5");
 }
 
+TEST(CrashReport, ItsFolderIsOfThisAccountAlone) {
+  test::TemporaryFolder folder;
+  const fs::path state = folder / "state";
+  fs::create_directories(state);
+  fs::permissions(state, fs::perms(0755));
+  EXPECT_EQ(endedBy(state, [] { noteRecording("/case of Jane Doe/session-1.h5"); }), 0);
+  EXPECT_EQ(fs::status(state).permissions(), fs::perms::owner_all);
+}
+
 TEST(CrashReport, OneThatEndedAsItShouldOrStillRunsLeavesNothing) {
   test::TemporaryFolder folder;
   EXPECT_EQ(endedBy(folder.path(),

@@ -172,6 +172,19 @@ TEST(JsonReader, RefusesAListThatIsTooLongAndATextThatIsTooLong) {
   EXPECT_FALSE(reader.finish().ok());
 }
 
+TEST(JsonReader, RefusesATextThatIsNoPlainLine) {
+  for (const char* text : {"a\nOK: verified", "a\u2028b", "\x1b[2J", "a\u202E"}) {
+    SCOPED_TRACE(text);
+    const Json json = {{"name", text}, {"names", {"good", text}}};
+    JsonReader one(json, "f");
+    (void)one.text("name");
+    EXPECT_EQ(one.finish().error().where, "f: name");
+    JsonReader list(json, "f");
+    (void)list.texts("names", 2);
+    EXPECT_EQ(list.finish().error().where, "f: names");
+  }
+}
+
 TEST(JsonReader, NamesFieldAndValueThatNobodyReads) {
   const Error error =
       errorOf(R"({"damping": 1, "dampnig": 2})", [](JsonReader& r) { r.number("damping", kAny); });

@@ -18,6 +18,11 @@ TEST(Error, LeavesOutThePartsThatItDoesNotHave) {
   EXPECT_EQ((Error{"X", "It failed", "", "Try again"}).sentence(), "It failed. Try again.");
 }
 
+TEST(Error, IsOneLineWhateverNamesItHolds) {
+  const Error error{"X", "It failed", "a\nOK: whole\u2028b\x1b[2J.h5", "Try\ragain"};
+  EXPECT_EQ(error.sentence(), "It failed (a OK: whole b [2J.h5). Try again.");
+}
+
 TEST(Result, HoldsAValue) {
   Result<int> result = 7;
   ASSERT_TRUE(result.ok());

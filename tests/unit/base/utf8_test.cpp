@@ -35,6 +35,16 @@ TEST(CleanUtf8, KeepsWhatTellsHowLettersAreJoinedAndATerminalDoesNot) {
   EXPECT_EQ(cleanLines("a\u200Db"), "ab");
 }
 
+TEST(IsOneLine, IsNoTextThatATerminalObeysOrThatEndsALine) {
+  for (const char* text :
+       {"a\nb", "a\r", "\x1b[2J", "a\u009b2J", "a\u2028b", "a\u202Eb", "a\x9b", "\t"}) {
+    EXPECT_FALSE(isOneLine(text)) << text;
+  }
+  for (const char* text : {"", " a  b ", "Sch\u00E4del \u982D", "\u0645\u06CC\u200C\u062E"}) {
+    EXPECT_TRUE(isOneLine(text)) << text;
+  }
+}
+
 TEST(CleanLines, KeepsLinesTabsAndBlanks) {
   EXPECT_EQ(cleanLines("  a\tb\n\x1b]0;c\ad\r\n"), "  a\tb\n ]0;c d \n");
 }

@@ -1,11 +1,14 @@
 // An exercise that goes to another workstation and comes out there as it was.
 #include "exercise/exercise_folder.h"
 
+#include <fcntl.h>
 #include <gtest/gtest.h>
+#include <sys/file.h>
 
 #include <algorithm>
 #include <fstream>
 
+#include "base/descriptor.h"
 #include "base/file.h"
 #include "base/json.h"
 #include "base/sha256.h"
@@ -252,6 +255,51 @@ TEST_F(ExerciseFolder, APartThatIsListedTwiceOrHasAnUnseenLetterInItsNameIsRefus
   }
 }
 
+TEST_F(ExerciseFolder, APartThatNothingNamesOrIsNamedInTwoWaysAndAListThatIsALinkAreRefused) {
+  exported(ofAPatient());
+  const fs::path stick = folder_ / "stick";
+  const Json good = *readJsonFile(stick / "exercise.json");
+  ASSERT_TRUE(imported().check.verified()) << "what lies beside a label map is no stranger";
+  ASSERT_TRUE(writeTextFile(stick / "evil.sh", "#!/bin/sh"));
+  listAnew(stick);
+  const auto unnamed = importExercise(stick, folder_ / "elsewhere");
+  ASSERT_FALSE(unnamed);
+  EXPECT_NE(unnamed.error().what.find("evil.sh"), std::string::npos) << unnamed.error().what;
+  fs::remove(stick / "evil.sh");
+  Json twice = good;
+  const auto in_folder = std::ranges::find_if(good["parts"], [](const Json& part) {
+    return part["file"].get<std::string>().find('/') != std::string::npos;
+  });
+  ASSERT_NE(in_folder, good["parts"].end());
+  std::string other = (*in_folder)["file"];
+  other.insert(other.find('/'), "/");
+  twice["parts"].push_back(*in_folder);
+  twice["parts"].back()["file"] = other;
+  ASSERT_TRUE(writeTextFile(stick / "exercise.json", twice.dump()));
+  EXPECT_EQ(importExercise(stick, folder_ / "elsewhere").error().code, "BAD_FIELD") << other;
+  ASSERT_TRUE(writeTextFile(folder_ / "list.json", good.dump()));
+  fs::remove(stick / "exercise.json");
+  fs::create_symlink(folder_ / "list.json", stick / "exercise.json");
+  EXPECT_EQ(importExercise(stick, folder_ / "elsewhere").error().code, "MISSING_FILE");
+  EXPECT_TRUE(exercisesIn(folder_ / "elsewhere").empty());
+}
+
+TEST_F(ExerciseFolder, WhatTheDiskHasNoRoomForIsRefusedBeforeItIsRead) {
+  exported(shipped("liver"));
+  const fs::path stick = folder_ / "stick";
+  Json list = *readJsonFile(stick / "exercise.json");
+  constexpr std::uintmax_t kHuge = std::uintmax_t(1) << 42;  // 4 TB, of which none is stored
+  fs::resize_file(stick / "tissues.json", kHuge);
+  for (Json& part : list["parts"]) {
+    if (part["file"] == "tissues.json") part["bytes"] = kHuge;
+  }
+  ASSERT_TRUE(writeTextFile(stick / "exercise.json", list.dump()));
+  const auto refused = importExercise(stick, folder_ / "there");
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().code, "CANNOT_WRITE");
+  EXPECT_NE(refused.error().what.find("no room"), std::string::npos) << refused.error().what;
+}
+
 TEST_F(ExerciseFolder, ACaseThatCannotBeOpenedFromItsPartsAloneIsRefusedAndNothingIsKept) {
   const auto refused = [&] {
     listAnew(folder_ / "stick");
@@ -487,17 +535,18 @@ TEST_F(ExerciseFolder, AMeshGoesWithoutWhatItsHeaderSaysOfItsMaker) {
   }
 }
 
-TEST_F(ExerciseFolder, WhatAKilledProgramLeftIsTakenAwayADayLater) {
+TEST_F(ExerciseFolder, WhatAKilledProgramLeftIsTakenAwayAndWhatALivingOneWritesIsNot) {
   const fs::path storage = folder_ / "storage", exercises = storage / "exercises";
-  const fs::path old = exercises / ".mine.part-abcdef", young = exercises / ".mine.part-ghijkl";
-  for (const fs::path& part : {old, young}) {
+  const fs::path left = exercises / ".mine.part-abcdef", written = exercises / ".mine.part-ghijkl";
+  for (const fs::path& part : {left, written}) {
     fs::create_directories(part / "tools");
     ASSERT_TRUE(writeTextFile(part / "scene.json", "{").ok());
   }
-  fs::last_write_time(old, fs::file_time_type::clock::now() - std::chrono::hours(25));
+  const Descriptor other_program(::open(written.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+  ASSERT_EQ(::flock(other_program.get(), LOCK_EX), 0);
   ASSERT_TRUE(saveExercise(*readScene(shipped("liver")), exercises / "mine", storage).ok());
-  EXPECT_FALSE(fs::exists(old));
-  EXPECT_TRUE(fs::exists(young)) << "another program may be at it";
+  EXPECT_FALSE(fs::exists(left));
+  EXPECT_TRUE(fs::exists(written));
 }
 
 TEST_F(ExerciseFolder, ASavedOneNamesItsCaseFromWhereItLiesAndMovesWithTheStorage) {

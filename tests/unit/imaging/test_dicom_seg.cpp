@@ -770,6 +770,16 @@ TEST_F(DicomSeg, WhatIsNoSegmentationIsRefusedByName) {
   EXPECT_EQ(refused().code, "UNREADABLE");
 }
 
+TEST_F(DicomSeg, AFileOfATerabyteOfNothingIsNoneAndKeepsNobodyWaiting) {
+  constexpr std::uintmax_t kHuge = std::uintmax_t(1) << 40;  // of which nothing is stored
+  writeBytes(file(), "");
+  fs::resize_file(file(), kHuge);
+  EXPECT_FALSE(isDicomSegmentation(file()));
+  writeBytes(file(), std::string(128, '\0') + "DICM");
+  fs::resize_file(file(), kHuge);
+  EXPECT_FALSE(isDicomSegmentation(file()));
+}
+
 TEST_F(DicomSeg, ASegmentationIsToldFromOthersAndOtherKindsAreNamed) {
   SegFile seg;
   seg.frames = {frameOf(seg, 1, 0, pattern)};

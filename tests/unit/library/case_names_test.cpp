@@ -185,6 +185,17 @@ TEST(HideNames, CallsSegmentsByTheirValuesWhereTheyTellWhoThePatientIs) {
   EXPECT_EQ(segmentation.segments[2].name, "label 3");
 }
 
+TEST(HideNames, GivesTwoOfOneValueNamesOfTheirOwn) {
+  SourceIdentity jane;
+  jane.add(IdentityKind::patient_name, "DOE^JANE");
+  Segmentation segmentation;
+  segmentation.segments = {{"Jane's liver"}, {"Label 1"}, {"Doe's spleen"}};
+  EXPECT_EQ(hideNames(segmentation, sourceKeys(jane)), 2);
+  EXPECT_EQ(segmentation.segments[0].name, "label 1 (2)");
+  EXPECT_EQ(segmentation.segments[1].name, "Label 1");
+  EXPECT_EQ(segmentation.segments[2].name, "label 1 (3)");
+}
+
 TEST_F(CaseOfJaneDoe, CallsAStructureByItsLabelWhereItsNameTellsWhoSheIs) {
   const auto result = CaseLibrary(storage()).save(case_);
   ASSERT_TRUE(result);

@@ -29,6 +29,22 @@ void takeOut(const char* dataset, const std::filesystem::path& recording) {
   H5Fclose(file);
 }
 
+TEST(RecordingMark, StandsWhileItIsWrittenAndStaysWhereItsProgramWasKilled) {
+  test::TemporaryFolder folder;
+  recordRun(folder / "whole.h5", 500);
+  EXPECT_FALSE(saysItIsWritten(folder / "whole.h5"));
+  auto recorder = SessionRecorder::create(
+      folder / "now.h5", {toJson(test::sceneWithOneArm()), volumeSha256(slab()), {}, "test"}, 1);
+  ASSERT_TRUE(recorder.ok());
+  EXPECT_TRUE(saysItIsWritten(folder / "now.h5"));
+  std::filesystem::copy_file(folder / "now.h5", folder / "killed.h5");
+  EXPECT_TRUE(saysItIsWritten(folder / "killed.h5"));
+  std::ofstream(folder / "letter.h5") << "Dear Sir, I hope that you are well";
+  EXPECT_FALSE(saysItIsWritten(folder / "letter.h5"));
+  std::ofstream(folder / "short.h5") << "\x89HDF";
+  EXPECT_FALSE(saysItIsWritten(folder / "short.h5"));
+}
+
 // A recording that points elsewhere is refused before anything else is opened: `change` is given
 // the file, in which `dataset` is not there any more.
 void isForeignWhere(const char* dataset, const std::function<void(hid_t)>& change) {

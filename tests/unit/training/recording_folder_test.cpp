@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 
+#include <chrono>
 #include <filesystem>
 #include <fstream>
 #include <thread>
@@ -54,6 +55,35 @@ TEST_F(RecordingFolder, IsListedAsEachOfItsFilesIs) {
     EXPECT_EQ(row.written, fs::last_write_time(row.file));
   }
   EXPECT_TRUE(listRecordings(folder_ / "none")->empty());
+}
+
+TEST_F(RecordingFolder, IsReadTheNewestFirstAndToldAsItIsRead) {
+  for (int n = 0; n < 60; ++n) {
+    const fs::path file = folder_ / (std::to_string(n) + ".h5");
+    std::ofstream(file) << "x";
+    fs::last_write_time(file, fs::file_time_type::clock::now() - std::chrono::minutes(n));
+  }
+  std::vector<std::size_t> told;
+  ReadApart how;
+  how.read = [&](const std::vector<ListedRecording>& so_far) {
+    told.push_back(so_far.size());
+    EXPECT_EQ(so_far.front().file.filename(), "0.h5");
+    EXPECT_EQ(so_far.back().written, fs::last_write_time(so_far.back().file));
+  };
+  const auto rows = listed(how);
+  ASSERT_EQ(rows.size(), 60u);
+  EXPECT_EQ(told, (std::vector<std::size_t>{10, 50, 60}));
+  for (std::size_t n = 0; n < rows.size(); ++n) {
+    EXPECT_EQ(rows[n].file.filename(), std::to_string(n) + ".h5");
+  }
+}
+
+TEST_F(RecordingFolder, HasARowForANameThatIsNoPlainLine) {
+  record("a\nb.h5");
+  const auto rows = listed();
+  ASSERT_EQ(rows.size(), 1u);
+  EXPECT_FALSE(rows[0].problem) << rows[0].problem->sentence();
+  EXPECT_EQ(rows[0].file.filename(), "a\nb.h5");
 }
 
 const std::string kHangs = "exec sleep 600";  // a file that keeps its reader for ever
