@@ -22,7 +22,7 @@ std::optional<Error> problemOf(const Result<LoadedCase>& loaded, const std::stri
   if (!loaded) return loaded.error();
   if (loaded->structures_problem) return loaded->structures_problem;
   if (loaded->tissues_problem) return loaded->tissues_problem;
-  if (loaded->tissues.empty()) return {};
+  if (loaded->tissues.is_object() && loaded->tissues.empty()) return {};
   const Result<TissueSet> set = parseTissueSet(loaded->tissues, id + "/tissues.json");
   return set ? std::nullopt : std::optional(set.error());
 }

@@ -14,6 +14,7 @@
 #include "base/log.h"
 #include "base/utf8.h"
 #include "imaging/dicom/seg_writer.h"
+#include "imaging/report/answers.h"
 #include "imaging/source_uids.h"
 #include "imaging/structure_importer.h"
 #include "library/name_words.h"
@@ -256,9 +257,14 @@ int compareCommand(const std::string& a, const std::string& b, bool json, const 
 
 namespace {
 
+// To what the segmentation asks, and to what its CT does.
+struct GivenAnswers {
+  Answers structures, ct;
+};
+
 // "CODE=OPTION" each.
-Result<Answers> answersOf(const std::vector<std::string>& choices) {
-  Answers answers;
+Result<GivenAnswers> answersOf(const std::vector<std::string>& choices) {
+  GivenAnswers answers;
   for (const std::string& choice : choices) {
     const std::size_t equals = choice.find('=');
     if (equals == std::string::npos || equals == 0) {
@@ -266,13 +272,16 @@ Result<Answers> answersOf(const std::vector<std::string>& choices) {
                    ""};
     }
     const std::string code = choice.substr(0, equals);
-    static const std::set<std::string> kCodes{"OVERLAP", "HU_NOT_TISSUE", "MIRRORED",
-                                              "OTHER_FRAME"};
-    if (!kCodes.contains(code)) {
+    static const std::set<std::string> kCodes{"OVERLAP",     "HU_NOT_TISSUE", "MIRRORED",
+                                              "OTHER_FRAME", "NO_AFFINE",     "FORMS_DIFFER"};
+    const bool of_structures = kCodes.contains(code), of_ct = isChoice(code);
+    if (!of_structures && !of_ct) {
       return Error{"BAD_CHOICE", "There is no choice '" + code + "'", "--choice",
-                   "Choose OVERLAP, HU_NOT_TISSUE, MIRRORED or OTHER_FRAME"};
+                   "Choose OVERLAP, HU_NOT_TISSUE, MIRRORED, OTHER_FRAME, NO_AFFINE, FORMS_DIFFER, "
+                   "or one that 'import' asks of the CT"};
     }
-    answers[code] = choice.substr(equals + 1);
+    if (of_structures) answers.structures[code] = choice.substr(equals + 1);
+    if (of_ct) answers.ct[code] = choice.substr(equals + 1);
   }
   return answers;
 }
@@ -320,11 +329,12 @@ int importStructuresCommand(const StructureImportArguments& arguments, bool json
       return failed(target.error());
     }
   }
-  const Result<Case> of = readCase(arguments.case_source, Progress(progress, 0.0, 0.5));
+  const Result<Case> of =
+      readCase(arguments.case_source, Progress(progress, 0.0, 0.5), answers->ct);
   if (!of) return failed(of.error());
-  const auto fit =
-      importStructures(arguments.file, *of->volume, request(arguments.threshold, *answers, *of),
-                       Progress(progress, 0.5, 0.9));
+  const auto fit = importStructures(arguments.file, *of->volume,
+                                    request(arguments.threshold, answers->structures, *of),
+                                    Progress(progress, 0.5, 0.9));
   if (!fit) return failed(fit.error());
   if (!arguments.write.empty()) {
     const Status written = writeSegmentation(
@@ -425,9 +435,10 @@ int exportStructuresCommand(const StructureExportArguments& arguments, bool json
       !target) {
     return failed(target.error());
   }
-  const Result<Case> of = readCase(arguments.case_source, Progress(progress, 0.0, 0.4));
+  const Result<Case> of =
+      readCase(arguments.case_source, Progress(progress, 0.0, 0.4), answers->ct);
   if (!of) return failed(of.error());
-  const auto all = structuresOf(arguments, *answers, *of, Progress(progress, 0.4, 0.6));
+  const auto all = structuresOf(arguments, answers->structures, *of, Progress(progress, 0.4, 0.6));
   if (!all) return failed(all.error());
   const Result<LabelMap> chosen = chosenOf(**all, arguments.names);
   if (!chosen) return failed(chosen.error());

@@ -11,6 +11,7 @@
 #include "base/purpose.h"
 #include "base/system.h"
 #include "base/time_left.h"
+#include "base/utf8.h"
 
 namespace {
 
@@ -327,10 +328,9 @@ int run(int argc, char** argv) {
     const auto word = std::find_if(words.begin(), words.end(),
                                    [](const std::string& w) { return !w.starts_with('-'); });
     const bool misnamed = missing && word != words.end();
-    const std::string what =
-        misnamed ? "There is no command '" + *word + "'" : std::string(error.what());
+    const std::string what = cleanUtf8(
+        misnamed ? "There is no command '" + *word + "'" : std::string(error.what()));
     if (!wantsJson(argc, argv)) {
-      if (!misnamed) return app.exit(error) == 0 ? 0 : 1;
       sayError("%s\nRun with --help for more information.\n", what.c_str());
       return 1;
     }

@@ -62,8 +62,8 @@ struct ExerciseCheck {
   std::vector<std::string> missing, changed;
   bool verified() const { return missing.empty() && changed.empty(); }
 };
-// Errors: MISSING_FILE (no exercise.json), BAD_JSON, BAD_FIELD (a newer version; a part outside of
-// the folder or listed twice), CANCELLED.
+// Errors: MISSING_FILE (no exercise.json, or a link in its place), BAD_JSON, BAD_FIELD (a newer
+// version; a part outside of the folder or listed twice), CANCELLED.
 Result<ExerciseCheck> checkExercise(const std::filesystem::path& folder,
                                     const Progress& progress = Progress());
 
@@ -77,7 +77,8 @@ struct ImportedExercise {
 // there already in the same words is taken as it is. Case, structures and script are read to their
 // end from the copy, which holds nothing but the parts. Nothing is kept of one that is not verified
 // or cannot be read. Errors: those of checkExercise, readScene, readCase and withLabels; BAD_FIELD
-// where a file of it names one outside of the folder; CANNOT_WRITE; CANCELLED.
+// where a file of it names one outside of the folder, or nothing names a part; CANNOT_WRITE, also
+// where the disk has no room for the parts, of which then none is read; CANCELLED.
 Result<ImportedExercise> importExercise(const std::filesystem::path& folder,
                                         const std::filesystem::path& storage,
                                         const Progress& progress = Progress());

@@ -1,5 +1,6 @@
 // A folder becomes an exercise of this workstation.
 #include <algorithm>
+#include <cmath>
 #include <set>
 
 #include "base/file.h"
@@ -35,22 +36,20 @@ Error namesOutside(const std::string& file, const std::string& name) {
           "Export the exercise anew"};
 }
 
-// "case/volume" of "case/volume.nii.gz".
-fs::path withoutEndings(const fs::path& file) {
-  const std::string name = file.filename().string();
-  return file.parent_path() / name.substr(0, name.find('.', 1));
-}
-
-// Whether a part belongs to one that is named: a list of names beside a label map, voxels beside
-// a header.
+// Whether a part belongs to a volume or label map that is named: its list of names or sidecar,
+// called as it is, or voxels that its header names.
 bool liesBeside(const fs::path& folder, const fs::path& part, const fs::path& named) {
-  if (withoutEndings(part) == withoutEndings(named)) return true;
+  const std::string name = named.filename().string();
+  const fs::path stem = named.parent_path() / name.substr(0, name.find('.', 1));
+  for (const char* ending : {".json", ".structures.json", ".label", ".txt"}) {
+    if (part == stem.string() + ending) return true;
+  }
   const auto header = readVolumeFileHeader(folder / named);
   return header && header->data.file.lexically_normal() == (folder / part).lexically_normal();
 }
 
 // Everything that the scene and its files name is among the parts, and nothing else is. Each file
-// is read once, however often it is named.
+// of JSON is read once, however often it is named.
 Status namesPartsAlone(const fs::path& folder, const ExerciseCheck& check, Json& scene,
                        const std::set<fs::path>& left_out, const Progress& progress) {
   std::set<fs::path> parts, read, named = left_out, volumes;
@@ -89,7 +88,7 @@ Status namesPartsAlone(const fs::path& folder, const ExerciseCheck& check, Json&
 }
 
 std::string mb(double bytes) {
-  return std::to_string(std::int64_t(bytes / 1e6) + 1) + " MB";
+  return std::to_string(std::int64_t(std::ceil(bytes / 1e6))) + " MB";
 }
 
 // Before any of it is read: a part may say any size, and have it without taking room.
@@ -174,10 +173,6 @@ fs::path numbered(const fs::path& storage, const std::string& stem, int n) {
   return storage / "exercises" / (n == 1 ? stem : stem + "-" + std::to_string(n));
 }
 
-}  // namespace
-
-namespace {
-
 // What a folder says that it holds; nothing of that is read.
 Result<ExerciseCheck> listOf(const fs::path& folder) {
   std::error_code ec;
@@ -252,6 +247,7 @@ Result<ImportedExercise> importExercise(const fs::path& folder, const fs::path& 
                                         const Progress& progress) {
   Result<ExerciseCheck> check = listOf(folder);
   if (!check) return check.error();
+  PartFolder::removeLeft(storage / "exercises");
   if (Status room = roomFor(*check, storage); !room) return room.error();
   if (Status read = verify(folder, *check, Progress(progress, 0.0, 0.3)); !read) {
     return read.error();
@@ -313,7 +309,10 @@ Result<ImportedExercise> importExercise(const fs::path& folder, const fs::path& 
       return imported;
     }
     Status done = part->becomeAt(target);
-    if (!done && fs::exists(target, ec)) continue;  // another import was faster
+    if (!done && fs::exists(target, ec)) {  // another import was faster: of the same, perhaps
+      --n;
+      continue;
+    }
     if (!done) return done.error();
     return imported;
   }

@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <sys/file.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -25,7 +26,7 @@ namespace trephine {
 namespace fs = std::filesystem;
 
 // Of folders that are being written: mkdtemp's pattern.
-constexpr const char *kPart = ".part-", *kRandom = "XXXXXX";
+constexpr const char *kPart = ".trephine-part-", *kRandom = "XXXXXX";
 constexpr int kMostNames = 1000;
 
 std::string plainName(const std::string& text, const std::string& otherwise) {
@@ -98,12 +99,14 @@ Descriptor opened(const fs::path& folder) {
   return Descriptor(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC));
 }
 
-// Of a program that has ended; it is locked meanwhile, so that none begins to write there. On a
+// One of this account, of a program that has ended; it is locked meanwhile, so that none begins to write there. On a
 // disk that knows no locks of folders none works on one for a day.
 void removeIfLeft(const fs::path& part) {
   constexpr auto kOld = std::chrono::hours(24);
   const Descriptor folder = opened(part);
-  bool left = folder.ok() && ::flock(folder.get(), LOCK_EX | LOCK_NB) == 0;
+  struct stat status {};
+  if (!folder.ok() || ::fstat(folder.get(), &status) != 0 || status.st_uid != ::geteuid()) return;
+  bool left = ::flock(folder.get(), LOCK_EX | LOCK_NB) == 0;
   std::error_code ec;
   if (!left && errno != EWOULDBLOCK) {
     const auto last = fs::last_write_time(part, ec);
@@ -112,8 +115,9 @@ void removeIfLeft(const fs::path& part) {
   if (left) fs::remove_all(part, ec);
 }
 
-// Of programs that were killed.
-void removeLeftParts(const fs::path& folder) {
+}  // namespace
+
+void PartFolder::removeLeft(const fs::path& folder) {
   std::vector<fs::path> parts;
   std::error_code ec;
   for (auto it = fs::directory_iterator(folder, ec); !ec && it != fs::end(it); it.increment(ec)) {
@@ -128,27 +132,30 @@ void removeLeftParts(const fs::path& folder) {
   for (const fs::path& part : parts) removeIfLeft(part);
 }
 
-}  // namespace
-
 Result<PartFolder> PartFolder::make(const fs::path& target) {
   std::error_code ec;
   fs::path to = fs::absolute(target, ec).lexically_normal();
   if (!to.has_filename()) to = to.parent_path();  // it ended with a slash
   if (Status made = makeFolder(to.parent_path()); !made) return made.error();
-  removeLeftParts(to.parent_path());
+  removeLeft(to.parent_path());
   const std::string pattern =
       (to.parent_path() / ("." + to.filename().string() + kPart + kRandom)).string();
   std::string path;
   Descriptor lock;
-  // Another program may have taken it for one that was left, before it was locked.
-  for (int tries = 0; tries < 10 && !lock.ok(); ++tries) {
+  constexpr int kMostTries = 10;
+  for (int tries = 0; tries < kMostTries; ++tries) {
     path = pattern;
     if (!::mkdtemp(path.data())) return writeError(target, errno);
     lock = opened(path);
-    if (lock.ok()) (void)::flock(lock.get(), LOCK_EX);  // where the disk knows it
-    if (!fs::is_directory(path, ec)) lock.close();
+    const int why = errno;
+    while (lock.ok() && ::flock(lock.get(), LOCK_EX) != 0 && errno == EINTR) {  // where it is known
+    }
+    if (lock.ok() && fs::is_directory(path, ec)) break;
+    // Another program may have taken it for one that was left, before it was locked.
+    fs::remove(path, ec);
+    if (why != ENOENT || tries + 1 == kMostTries) return writeError(target, why);
+    lock.close();
   }
-  if (!lock.ok()) return writeError(target, EAGAIN);
   // mkdtemp's are for their owner alone.
   fs::permissions(path, fs::perms(0755), ec);
   giveToGroup(path);

@@ -37,6 +37,8 @@ Result<ExercisePart> partOf(const std::filesystem::path& folder, const std::stri
 class PartFolder {
  public:
   static Result<PartFolder> make(const std::filesystem::path& target);
+  // What this account's programs that were killed have left in a folder; make() does it as well.
+  static void removeLeft(const std::filesystem::path& folder);
   PartFolder(PartFolder&& other) noexcept
       : path_(std::exchange(other.path_, {})),
         target_(std::move(other.target_)),

@@ -18,6 +18,7 @@
 #include "imaging/series/hu_checks.h"
 #include "imaging/series/scan.h"
 #include "imaging/series/series.h"
+#include "imaging/series/series_geometry.h"
 #include "imaging/steps/volume_steps.h"
 
 namespace trephine {
@@ -44,6 +45,14 @@ std::optional<Error> folderError(const ImportReport& report) {
     auto most = std::ranges::find_if(report.skipped, isPacked);
     const bool packed = most != report.skipped.end();
     if (!packed) most = std::ranges::max_element(report.skipped, {}, &SkippedFiles::count);
+    // A volume file that cannot be read says more than what was skipped.
+    const auto isFile = [](const SeriesReport& s) { return s.source == "file"; };
+    if (std::ranges::count_if(report.series, isFile) == 1) {
+      const SeriesReport& one = *std::ranges::find_if(report.series, isFile);
+      const Finding& why = *std::ranges::find(one.findings, "refusal", &Finding::severity);
+      return Error{"NO_CT", one.description + " cannot be used: " + why.text, report.path,
+                   why.action};
+    }
     if (most != report.skipped.end()) {
       what += "; " + std::to_string(most->count) +
               (most->count == 1 ? " was skipped: " : " were skipped: ") + most->reason;
@@ -78,6 +87,30 @@ void addValueFindings(const HuCounts& counts, SeriesReport& report) {
       "Rounded to the nearest");
   add("HU_CLAMPED", "repair", counts.clamped, " had HU outside -32768..32767",
       "Set to the nearest limit");
+}
+
+// Bits of compressed pixels above those that the header says are stored, where no overlay explains
+// them: values, or debris.
+void askAboutHighBits(const DicomHeader& slice, const Answers& answers, SeriesReport& report) {
+  const std::string bits = std::to_string(slice.format.bits_stored);
+  const std::string text = "The header says " + bits +
+                           " bits a pixel, and the pixels have more bits than that, which no "
+                           "overlay explains";
+  const std::string answer =
+      ask({"HIGH_BITS",
+           "The pixels have more bits than the header says. Are these a part of the values?",
+           {"refuse", "use", "mask"},
+           {"Do not use the series", "They are: take all bits",
+            "They are none: take " + bits + " bits, as the header says"}},
+          answers, report.choices);
+  report.findings.push_back(
+      {"HIGH_BITS",
+       answer == "refuse" ? "refusal" : "repair",
+       text,
+       {},
+       answer == "use"    ? "All bits were taken, as was chosen"
+       : answer == "mask" ? "The others were left out, as was chosen"
+                          : "Look at the slices: with the wrong answer bright tissue turns dark"});
 }
 
 Error refusalOf(const SeriesReport& series) {
@@ -194,6 +227,16 @@ struct Source {
   std::filesystem::path file;  // empty for DICOM
 };
 
+// What is said of it once these questions are answered; its voxels are not looked at.
+SeriesReport answeredReport(const Source& source, const Answers& answers) {
+  if (!source.file.empty()) {
+    return assessFile(source.file, source.series.report.description, answers);
+  }
+  Series answered = source.series;
+  assessSeries(answered, answers);
+  return answered.report;
+}
+
 }  // namespace
 
 struct CtFolder::Contents {
@@ -210,11 +253,12 @@ struct CtFolder::Contents {
     }
     return nullptr;
   }
-  // That can be read, or could be with answers.
-  bool hasDicomCt() const {
+  // That can be read, or could be with answers; a volume file that is named like a label map is
+  // none.
+  bool hasCt() const {
     return std::ranges::any_of(sources, [](const Source& source) {
       const SeriesReport& s = source.series.report;
-      return source.file.empty() && s.modality == "CT" &&
+      return s.modality == "CT" && !looksLikeLabels(s) &&
              (s.verdict != Verdict::refused || !s.choices.empty());
     });
   }
@@ -247,6 +291,13 @@ Result<Volume> CtFolder::Contents::readDicom(Series& series, const ImportRequest
       series.slices[lost.slice].defect_text = lost.why;
     }
     if (!assembly->unreadable.empty()) continue;
+    // Debris in uncompressed words is masked, as the standard has it; a compressor was given values.
+    const bool explained = std::ranges::any_of(series.slices, [](const DicomHeader& slice) {
+      return slice.overlay_bits || !slice.pixels || !slice.pixels->encapsulated;
+    });
+    if (plan.whole_words || (assembly->counts.high_bits && !explained)) {
+      askAboutHighBits(series.slices[plan.sources.front()], answers, series.report);
+    }
     addValueFindings(assembly->counts, series.report);
     series.report.hu_min = assembly->counts.hu_min;
     series.report.hu_max = assembly->counts.hu_max;
@@ -297,9 +348,11 @@ Result<CtFolder> CtFolder::scan(const std::filesystem::path& path, const Progres
     const auto name = one_file ? file.filename() : file.lexically_relative(path);
     Source source;
     source.series.report = assessFile(file, name.string());
-    if (contents.hasDicomCt()) sayWhatLabelsAreFor(source.series.report);
     source.file = file;
     contents.sources.push_back(std::move(source));
+  }
+  if (contents.hasCt()) {
+    for (Source& source : contents.sources) sayWhatLabelsAreFor(source.series.report);
   }
   for (const Source& source : contents.sources) report.series.push_back(source.series.report);
   report.error = folderError(report);
@@ -320,10 +373,7 @@ std::optional<std::string> CtFolder::bestSeries(const Answers& answers) const {
     if (listed.modality != "CT") continue;
     bool usable = listed.verdict != Verdict::refused;
     if (!usable && !listed.choices.empty() && !answers.empty()) {
-      Series answered = source.series;
-      // A file asks of its voxels alone.
-      if (source.file.empty()) assessSeries(answered, answers);
-      usable = (!source.file.empty() || answered.report.verdict != Verdict::refused) &&
+      usable = answeredReport(source, answers).verdict != Verdict::refused &&
                !refusedByHu(listed, answers);
     }
     if (usable && (!best || rank(*best) < rank(listed))) best = &listed;
@@ -346,10 +396,9 @@ Status CtFolder::checkAnswers(const Answers& answers) const {
   Options asked;
   for (const Source& source : contents_->sources) {
     if (source.series.report.choices.empty()) continue;
-    Series answered = source.series;
-    assessSeries(answered, answers);
+    const SeriesReport answered = answeredReport(source, answers);
     for (const SeriesReport* report :
-         std::initializer_list<const SeriesReport*>{&source.series.report, &answered.report}) {
+         std::initializer_list<const SeriesReport*>{&source.series.report, &answered}) {
       for (const auto& [code, options] : optionsOf(*report)) {
         for (const std::string& option : options) {
           if (std::ranges::find(asked[code], option) == asked[code].end()) {
@@ -385,7 +434,7 @@ SourceIdentity CtFolder::sourceIdentity(const std::string& uid) const {
 
 std::vector<CtFolder::LabelFile> CtFolder::labelFiles() const {
   std::vector<LabelFile> files;
-  if (!contents_->hasDicomCt()) return files;
+  if (!contents_->hasCt()) return files;
   for (const Source& source : contents_->sources) {
     const SeriesReport& series = source.series.report;
     if (!source.file.empty() && looksLikeLabels(series)) {
@@ -458,19 +507,23 @@ Result<Volume> CtFolder::read(const std::string& uid, const ImportRequest& reque
     std::error_code error;
     bytes = std::filesystem::file_size(source->file, error);
     if (isGone(source->file, 0)) return fail(refuseVanished(series));
-    series = assessFile(source->file, series.description);
-    if (contents_->hasDicomCt()) sayWhatLabelsAreFor(series);
-    if (series.verdict == Verdict::refused) return fail(refusalOf(series));
+    series = assessFile(source->file, series.description, request.answers);
+    if (contents_->hasCt()) sayWhatLabelsAreFor(series);
+    if (series.verdict == Verdict::refused) {
+      const Status valid = fits(optionsOf(series), request.answers);
+      return fail(valid ? refusalOf(series) : valid.error());
+    }
     if (Status enough = roomToRead(series, request); !enough) return fail(enough.error());
   }
-  Result<Volume> volume = source->file.empty()
-                              ? contents_->readDicom(source->series, request, progress, reading)
-                              : readFileSeries(source->file, progress, series, reading.look);
+  Result<Volume> volume =
+      source->file.empty()
+          ? contents_->readDicom(source->series, request, progress, reading)
+          : readFileSeries(source->file, request.answers, progress, series, reading.look);
   if (!volume && !source->file.empty() && volume.error().code != "CANCELLED" &&
       isGone(source->file, bytes)) {
     return fail(refuseVanished(series));
   }
-  if (!volume && volume.error().code == "LABEL_MAP" && contents_->hasDicomCt()) {
+  if (!volume && volume.error().code == "LABEL_MAP" && contents_->hasCt()) {
     sayWhatLabelsAreFor(series);
     return fail(refusalOf(series));
   }

@@ -1,10 +1,13 @@
 #include "imaging/structure_importer.h"
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
 
 #include "imaging/dicom/seg_reader.h"
+#include "volume/grid_place.h"
 #include "volume/segmentation.h"
+#include "volume/volume_files.h"
 
 namespace trephine {
 
@@ -73,8 +76,44 @@ Status match(const DicomSegmentation& seg, const Volume& ct, const StructureRequ
   return {};
 }
 
+// Of a label map that says in two ways how it lies in the patient (volume_files.h): what was
+// answered, else the one that puts it on the CT's voxels. Empty: none of them alone does.
+std::string formOf(const std::filesystem::path& file, const Volume& ct, const Answers& answers,
+                   std::optional<Finding>& said) {
+  constexpr const char* kCode = "FORMS_DIFFER";
+  constexpr double kSame = 0.1;  // of a voxel
+  const auto given = answers.find(kCode);
+  if (given != answers.end()) return given->second;
+  const Result<VolumeFileHeader> header = readVolumeFileHeader(file);
+  if (!header || header->forms.empty()) return "";
+  const Vec3& mm = ct.geometry.spacing_mm;
+  std::vector<std::string> on_ct;
+  for (const VolumeFileHeader::Form& form : header->forms) {
+    const double apart_mm = cornersApart_mm(form.geometry, ct.geometry);
+    if (apart_mm <= kSame * std::min({mm.x, mm.y, mm.z})) on_ct.push_back(form.name);
+  }
+  if (on_ct.size() != 1) return "";
+  said = Finding{kCode,
+                 "notice",
+                 header->contradiction,
+                 {},
+                 "The " + on_ct.front() + " puts it on the CT's voxels, and was taken"};
+  return on_ct.front();
+}
+
 int hideNames(Segmentation& segmentation, const StructureRequest& request) {
   return request.hide_names ? request.hide_names(segmentation) : 0;
+}
+
+// Of DICOM that holds something else.
+Error noSegmentation(const std::string& kind, const std::filesystem::path& file) {
+  constexpr const char* kContours = "1.2.840.10008.5.1.4.1.1.481.3";
+  if (kind == kContours) {
+    return {"CONTOURS", "The file holds contours (an RT Structure Set), which are not read yet",
+            file.string(), "Export the structures as a DICOM Segmentation or as a label map"};
+  }
+  return {"NOT_SEGMENTATION", "The file is DICOM, but no segmentation", file.string(),
+          "Choose a file of modality SEG, or a label map"};
 }
 
 void sayHidden(StructureFit& fit, int hidden) {
@@ -94,11 +133,19 @@ void sayHidden(StructureFit& fit, int hidden) {
 Result<StructureFit> importStructures(const std::filesystem::path& file, const Volume& ct,
                                       const StructureRequest& request, const Progress& progress) {
   const Progress reading(progress, 0.0, 0.5), fitting(progress, 0.5, 1.0);
-  if (!isDicomSegmentation(file, reading)) {
-    Result<Segmentation> read = readSegmentation(file, reading);
+  const std::string kind = dicomKind(file, reading);
+  if (reading.cancelled()) {
+    return Error{"CANCELLED", "Reading the segmentation was cancelled", "", ""};
+  }
+  if (!isSegmentation(kind)) {
+    if (!kind.empty()) return noSegmentation(kind, file);
+    std::optional<Finding> form;
+    Result<Segmentation> read =
+        readSegmentation(file, reading, formOf(file, ct, request.answers, form));
     if (!read) return read.error();
     const int hidden = hideNames(*read, request);
-    Result<StructureFit> fit = fitStructures(*read, ct, request.answers, request.ask_all, fitting);
+    Result<StructureFit> fit = fitStructures(*std::move(read), ct, request.answers, request.ask_all, fitting);
+    if (fit && form) fit->findings.push_back(*std::move(form));
     if (fit) sayHidden(*fit, hidden);
     return fit;
   }
@@ -112,7 +159,7 @@ Result<StructureFit> importStructures(const std::filesystem::path& file, const V
   std::optional<Choice> asked;
   if (Status of = match(*read, ct, request, asked); !of) return of.error();
   Result<StructureFit> fit =
-      fitStructures(read->segmentation, ct, request.answers, request.ask_all, fitting);
+      fitStructures(std::move(read->segmentation), ct, request.answers, request.ask_all, fitting);
   if (fit && read->fractional) {
     fit->fractional = true;
     fit->findings.push_back(

@@ -18,6 +18,7 @@
 #include "library/case_picture.h"
 #include "library/name_guard.h"
 #include "library/name_words.h"
+#include "volume/grid_place.h"
 #include "volume/segmentation.h"
 #include "volume/volume_files.h"
 
@@ -86,16 +87,8 @@ std::string neutralId(BodyRegion region, const std::string& day, int number) {
 }
 
 bool sameGrid(const GridGeometry& a, const GridGeometry& b) {
-  if (a.size != b.size) return false;
-  const Mat4 one = a.voxelToPatient(), other = b.voxelToPatient();
   constexpr double kSame_mm = 1e-6;  // a header's digits, over the whole of a scan
-  const Vec3 last(a.size[0] - 1, a.size[1] - 1, a.size[2] - 1);
-  for (int corner = 0; corner < 8; ++corner) {
-    const glm::dvec4 at(corner & 1 ? last.x : 0, corner & 2 ? last.y : 0, corner & 4 ? last.z : 0,
-                        1);
-    if (!(glm::length(Vec3(one * at) - Vec3(other * at)) < kSame_mm)) return false;
-  }
-  return true;
+  return cornersApart_mm(a, b) < kSame_mm;
 }
 
 Result<LabelMap> structuresOn(const GridGeometry& grid, const std::string& id, const fs::path& file,
@@ -432,6 +425,10 @@ Result<LoadedCase> CaseLibrary::load(const std::string& id, const Progress& prog
     if (file == kTissuesFile) {
       if (json) loaded.tissues = *std::move(json);
       if (!json) loaded.tissues_problem = failed(json.error(), file);
+      if (json && isNone(loaded.tissues)) {
+        loaded.tissues_problem = Error{"MISSING_FILE", "The file holds no tissues",
+                                       id + "/" + file, "Save the case's tissues again"};
+      }
       continue;
     }
     if (!json) return failed(json.error(), file);

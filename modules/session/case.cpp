@@ -19,16 +19,20 @@ namespace {
 constexpr double kReadShare = 0.9;  // of the work of opening; the rest is finding landmarks
 
 // The best series of a DICOM folder.
-Result<Case> importBest(const std::string& source, const Progress& progress) {
+Result<Case> importBest(const std::string& source, const Answers& answers,
+                        const Progress& progress) {
   Result<CtFolder> folder = CtFolder::scan(source, progress);
   if (!folder) return folder.error();
-  const std::optional<std::string> series = folder->bestSeries();
+  if (Status fit = folder->checkAnswers(answers); !fit) return fit.error();
+  const std::optional<std::string> series = folder->bestSeries(answers);
   if (!series) {
     if (folder->report().error) return *folder->report().error;
     return Error{"ALL_REFUSED", "No series in the folder can be used", source,
                  "The import report says why for each"};
   }
-  Result<Volume> volume = folder->read(*series, {}, progress);
+  ImportRequest request;
+  request.answers = answers;
+  Result<Volume> volume = folder->read(*series, request, progress);
   if (!volume) return volume.error();
   const std::optional<Provenance>& provenance = folder->report().provenance;
   Case read = caseOf(std::make_shared<const Volume>(*std::move(volume)),
@@ -38,11 +42,11 @@ Result<Case> importBest(const std::string& source, const Progress& progress) {
   return read;
 }
 
-Result<Case> read(const std::string& source, const Progress& progress) {
+Result<Case> read(const std::string& source, const Answers& answers, const Progress& progress) {
   const std::optional<std::string> phantom = phantomNamed(source);
   std::error_code ec;
   if (!phantom && (!isVolumeFile(source) || std::filesystem::is_directory(source, ec))) {
-    return importBest(source, progress);
+    return importBest(source, answers, progress);
   }
   if (phantom) {
     Result<Phantom> made = openPhantom(*phantom, progress);
@@ -56,7 +60,9 @@ Result<Case> read(const std::string& source, const Progress& progress) {
     }
     return built_in;
   }
-  Result<Volume> volume = readVolume(source, progress);
+  const auto form = answers.find("FORMS_DIFFER");
+  Result<Volume> volume =
+      readVolume(source, progress, form == answers.end() ? std::string() : form->second);
   if (!volume) return volume.error();
   return caseOf(std::make_shared<const Volume>(*std::move(volume)));
 }
@@ -130,13 +136,14 @@ const char* exerciseAnatomy(BodyRegion region) {
   return region == BodyRegion::head ? "cranium" : region == BodyRegion::abdomen ? "abdomen" : "";
 }
 
-Result<Case> readCase(const std::string& source, const Progress& progress) {
+Result<Case> readCase(const std::string& source, const Progress& progress,
+                      const Answers& answers) {
   if (source.empty()) {
     return Error{"NO_CASE", "The scene names no case and none was given", "--case",
                  "Give a folder of CT, or phantom:cranium or phantom:abdomen"};
   }
   try {
-    Result<Case> of = read(source, Progress(progress, 0.0, 0.9));
+    Result<Case> of = read(source, answers, Progress(progress, 0.0, 0.9));
     if (of) of->anatomy = anatomyOf(*of->volume, Progress(progress, 0.9, 1.0));
     return of;
   } catch (const std::bad_alloc&) {

@@ -55,7 +55,9 @@ Case caseOf(std::shared_ptr<const Volume> volume, std::string sha256 = "");
 // without structures but those of a built-in case.
 // Errors are those of the importer and the readers, OUT_OF_MEMORY, and NO_CASE for an empty source.
 // Any thread, as all of these; reports progress and can be cancelled.
-Result<Case> readCase(const std::string& source, const Progress& progress = Progress());
+// `answers`: to what the importer asks of the series, by its codes.
+Result<Case> readCase(const std::string& source, const Progress& progress = Progress(),
+                      const Answers& answers = {});
 
 // That writing `target`, a file or a folder, takes nothing of what the case was read from: it is
 // none of a volume's files (voxels beside a header, names beside voxels), and neither a file that

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "structures/work_grid.h"
+#include "volume/grid_place.h"
 
 namespace trephine {
 
@@ -51,14 +52,7 @@ double percentile95_mm(const std::vector<std::size_t>& from, const std::vector<s
 
 // A file's float affine and the CT's may differ in the last digits.
 bool sameGrid(const GridGeometry& a, const GridGeometry& b) {
-  if (a.size != b.size) return false;
-  const Vec3 corner(a.size[0] - 1, a.size[1] - 1, a.size[2] - 1);
-  const double within = 1e-3 * std::min({a.spacing_mm.x, a.spacing_mm.y, a.spacing_mm.z});
-  const auto near = [&](const Vec3& at) {
-    return glm::length(a.toPatient_mm(at) - b.toPatient_mm(at)) <= within;
-  };
-  return near(Vec3(0.0)) && near(Vec3(corner.x, 0, 0)) && near(Vec3(0, corner.y, 0)) &&
-         near(Vec3(0, 0, corner.z));
+  return cornersApart_mm(a, b) <= 1e-3 * std::min({a.spacing_mm.x, a.spacing_mm.y, a.spacing_mm.z});
 }
 
 // The same voxels, whose axes come in another order or run the other way.

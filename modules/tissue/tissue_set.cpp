@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "base/utf8.h"
+
 namespace trephine {
 
 namespace {
@@ -44,12 +46,20 @@ Status checkSourced(const std::string& file, const std::string& field, const Ran
   return {};
 }
 
+// A source may be pasted from anywhere: what ends its line, or what nobody sees, becomes a blank.
+std::string sourceIn(JsonReader& object, const char* key) {
+  constexpr std::size_t kMost = 4096;
+  const Json& text = object.raw(key);
+  const bool known = text.is_string() && text.get_ref<const std::string&>().size() <= kMost;
+  return known ? cleanUtf8(text.get_ref<const std::string&>()) : object.text(key);
+}
+
 void readMechanics(JsonReader mechanics, Tissue& tissue) {
   for (const TissueNumber& number : kTissueNumbers) {
     const NumberRow row = number.row();
     if (row.given == Given::may_be && !mechanics.has(row.key)) continue;
     JsonReader object = mechanics.object(row.key);
-    number.set(tissue, {object.number("value", row.range), object.text("source")});
+    number.set(tissue, {object.number("value", row.range), sourceIn(object, "source")});
   }
   tissue.cuttable = mechanics.boolean("cuttable", true);
   if (mechanics.has("solid")) tissue.solid = mechanics.boolean("solid", false);
@@ -155,7 +165,7 @@ Result<TissueSet> parseTissueSet(const Json& json, const std::string& file) {
     const std::vector<std::int64_t> hu = item.integers("hu", 2, kHuRange);
     t.hu_min = int(hu[0]);
     t.hu_max = int(hu[1]);
-    t.hu_source = item.text("hu_source");
+    t.hu_source = sourceIn(item, "hu_source");
     if (item.has("label")) t.label = int(item.integer("label", kLabelRange));
     t.structure = item.text("structure", "");
     if (item.has("shell")) {

@@ -3,6 +3,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <chrono>
 #include <fstream>
 #include <functional>
 #include <string>
@@ -175,6 +176,14 @@ Result<std::vector<ListedRecording>> listFiles(const std::vector<std::filesystem
   constexpr int kMostEmpty = 3;  // of a reader that ends by itself without a word: it cannot work
   ReadApart now = how;
   int empty = 0;
+  using Clock = std::chrono::steady_clock;
+  constexpr std::chrono::milliseconds kTellEvery{100};
+  std::optional<Clock::time_point> told;
+  const auto tell = [&] {
+    if (!how.read || (told && Clock::now() - *told < kTellEvery)) return;
+    told = Clock::now();
+    how.read(rows);
+  };
   for (std::size_t most = kFirstPass; rows.size() < files.size();
        most = std::min(kMostInPass, most * kMoreEachPass)) {
     Result<Pass> pass = readPass(files, rows.size(), most, progress, now);
@@ -186,13 +195,13 @@ Result<std::vector<ListedRecording>> listFiles(const std::vector<std::filesystem
     }
     if (!pass->rows.empty()) {
       empty = 0;
-      if (how.read) how.read(rows);
+      tell();
       continue;
     }
     empty = pass->end == Pass::End::ended ? empty + 1 : 0;
     if (empty == kMostEmpty) return cannotRun(how);
     rows.push_back(unread(files[rows.size()], pass->end));
-    if (how.read) how.read(rows);
+    tell();
     // A folder of many such files does not keep a person waiting for each.
     if (pass->end == Pass::End::timed_out) {
       now.patience_s = std::max(std::min(kLeast_s, how.patience_s), now.patience_s / 2.0);

@@ -6,11 +6,14 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
+#include <chrono>
 #include <cstring>
 #include <fstream>
+#include <string_view>
 #include <utility>
 
 #include "base/memory.h"
+#include "base/utf8.h"
 #include "training/own_dataset.h"
 #include "training/recording_layout.h"
 
@@ -141,6 +144,13 @@ Result<GridGeometry> readGeometry(JsonReader reader) {
   return g;
 }
 
+// A recording's scene may be older than the rule that texts are single lines.
+void makePlainLines(Json& json) {
+  if (json.is_string()) json = cleanUtf8(json.get_ref<const std::string&>());
+  if (!json.is_structured()) return;
+  for (Json& part : json) makePlainLines(part);
+}
+
 }  // namespace
 
 struct SessionReader::File {
@@ -186,15 +196,22 @@ struct SessionReader::File {
   }
 };
 
-// The byte "file consistency flags" of HDF5's superblock, versions 2 and 3.
-bool saysItIsWritten(const std::filesystem::path& recording) {
+// By the byte "file consistency flags" of HDF5's superblock, versions 2 and 3. A recorder writes
+// four times a second.
+bool isBeingWritten(const std::filesystem::path& recording) {
+  constexpr auto kLast = std::chrono::seconds(10);
+  std::error_code ec;
+  const auto written = std::filesystem::last_write_time(recording, ec);
+  if (ec || std::filesystem::file_time_type::clock::now() - written > kLast) return false;
   constexpr std::size_t kVersion = 8, kFlags = 11;
+  constexpr std::string_view kSignature = "\x89HDF\r\n\x1a\n";
   constexpr unsigned char kFirst = 2, kOpenForWriting = 0x01, kWrittenBesideReaders = 0x04;
   std::array<char, kFlags + 1> head{};
   std::ifstream in(recording, std::ios::binary);
   if (!in.read(head.data(), head.size())) return false;
   const auto byte = [&](std::size_t at) { return static_cast<unsigned char>(head[at]); };
-  return byte(kVersion) >= kFirst && (byte(kFlags) & (kOpenForWriting | kWrittenBesideReaders)) != 0;
+  return std::string_view(head.data(), kSignature.size()) == kSignature &&
+         byte(kVersion) >= kFirst && (byte(kFlags) & (kOpenForWriting | kWrittenBesideReaders)) != 0;
 }
 
 SessionReader::SessionReader() : file_(std::make_unique<File>()) {}
@@ -203,6 +220,10 @@ SessionReader::~SessionReader() = default;
 Result<std::unique_ptr<SessionReader>> SessionReader::open(const std::filesystem::path& path) {
   quietHdf5();
   std::error_code ec;
+  if (::access(path.c_str(), R_OK) != 0 && errno == EACCES) {
+    return Error{"CANNOT_READ", std::string("The recording may not be read: ") + std::strerror(errno),
+                 path.string(), "Ask the person who keeps it, or an administrator"};
+  }
   if (std::filesystem::exists(path, ec) && !std::filesystem::is_regular_file(path, ec)) {
     return Error{"BAD_RECORDING", "This is no file but a folder, a pipe or a device", path.string(),
                  "Give a recording's file"};
@@ -210,17 +231,13 @@ Result<std::unique_ptr<SessionReader>> SessionReader::open(const std::filesystem
   if (!std::filesystem::is_regular_file(path, ec)) {
     return Error{"MISSING_FILE", "There is no recording", path.string(), "Check the name"};
   }
-  if (::access(path.c_str(), R_OK) != 0) {
-    return Error{"CANNOT_READ", std::string("The recording may not be read: ") + std::strerror(errno),
-                 path.string(), "Ask the person who keeps it, or an administrator"};
-  }
   std::unique_ptr<SessionReader> reader(new SessionReader);
   File& f = *reader->file_;
   f.path = path;
   // A recording that was killed still carries its writer's mark; reading beside a writer ignores it.
   const hid_t access = H5Pcreate(H5P_FILE_ACCESS);
   H5Pset_libver_bounds(access, H5F_LIBVER_LATEST, H5F_LIBVER_LATEST);
-  const bool written = saysItIsWritten(path);
+  const bool written = isBeingWritten(path);
   H5Pset_metadata_read_attempts(access, written ? kReadAttempts : kOneReadAttempt);
   f.file = H5Fopen(path.c_str(), H5F_ACC_RDONLY | H5F_ACC_SWMR_READ, access);
   if (f.file < 0) f.file = H5Fopen(path.c_str(), H5F_ACC_RDONLY, access);
@@ -263,6 +280,7 @@ Result<std::unique_ptr<SessionReader>> SessionReader::open(const std::filesystem
   JsonReader volume_reader(*volume_json, path.string(), "volume");
   f.version = version;
   f.header.scene = *std::move(scene_json);
+  makePlainLines(f.header.scene);
   f.header.volume_sha256 = volume_reader.text("sha256");
   f.header.labels_sha256 = volume_reader.text("labels_sha256", "");
   Result<GridGeometry> geometry = readGeometry(volume_reader.object("geometry"));

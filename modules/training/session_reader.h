@@ -13,9 +13,9 @@
 
 namespace trephine {
 
-// Whether a recording is marked as being written; one whose program was killed stays so. Any
-// file; it has to be a regular one.
-bool saysItIsWritten(const std::filesystem::path& recording);
+// Whether a program writes a recording now: it is marked so, which one whose program was killed
+// stays, and it was written a moment ago. Any regular file.
+bool isBeingWritten(const std::filesystem::path& recording);
 
 class SessionReader {
  public:

@@ -189,6 +189,15 @@ Status placeVoxels(VolumeFileHeader& header, std::optional<std::uint64_t> offset
   if (most < double(stored) + double(header.data.skip)) {
     return unreadable("The file is cut short: its header promises more voxels than it holds", file);
   }
+  // Beside a header, what is too much stands in front as a rule: a header of its own, that is not
+  // skipped.
+  if (offset && !header.data.packed && header.data.file != file && bytes > stored) {
+    Error error = unreadable("The file with the voxels is " + std::to_string(bytes - stored) +
+                                 " bytes longer than its header says",
+                             header.data.file);
+    error.next = "Say in the header how many bytes to skip, or export it again";
+    return error;
+  }
   if (isMostlyHoles(header.data.file)) {
     return unreadable("The file is empty but for its beginning: it was not copied to its end",
                       file);

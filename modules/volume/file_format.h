@@ -61,7 +61,7 @@ Result<std::filesystem::path> fileBeside(const std::filesystem::path& header,
                                          const std::string& name);
 // Completes the header: `data.file`, `data.packed`, `data.skip`, type and geometry are set. Voxels
 // start at `offset`, or, with nothing there, end where the file ends. UNREADABLE where the file is
-// too short to hold them.
+// too short to hold them, or one beside the header longer than they are.
 Status placeVoxels(VolumeFileHeader& header, std::optional<std::uint64_t> offset,
                    const std::filesystem::path& file);
 // Checks the geometry as the file has it and makes it right-handed.

@@ -2,7 +2,8 @@
 // A header is 348 bytes, so both ways are ours; what they were compared with: README.md.
 //
 // NIfTI is RAS, we are LPS: x and y change sign here and nowhere else. The sform counts where there
-// is one, else the qform; its unit of length, slope and intercept are honoured.
+// is one, else the qform; where they contradict one another, or the sform the pixdim, a person
+// chooses. Its unit of length, slope and intercept are honoured.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -13,6 +14,7 @@
 
 #include "base/purpose.h"
 #include "volume/file_format.h"
+#include "volume/grid_place.h"
 #include "volume/gzip_writer.h"
 #include "volume/voxel_reader.h"
 
@@ -87,7 +89,13 @@ class Header {
   bool second_ = false;
 };
 
-Result<Mat4> voxelToRas(const Header& h, const fs::path& file) {
+// What a header says of its place: the affine of each form that it has, voxel to RAS in mm.
+struct Affines {
+  std::optional<Mat4> sform, qform;
+  Vec3 pixdim_mm{0.0};
+};
+
+Result<Affines> affinesOf(const Header& h, const fs::path& file) {
   double unit_mm = 1.0;
   switch (h.units() & 7) {
     case 0:  // unknown: by custom mm
@@ -102,14 +110,15 @@ Result<Mat4> voxelToRas(const Header& h, const fs::path& file) {
     default:
       return badGeometry("The unit of length is unknown", file);
   }
-  Mat4 affine(1.0);
+  Affines of;
+  of.pixdim_mm = Vec3(h.pixdim(1), h.pixdim(2), h.pixdim(3)) * unit_mm;
   if (h.sform() > 0) {
+    Mat4& affine = of.sform.emplace(1.0);
     for (int row = 0; row < 3; ++row) {
       for (int column = 0; column < 4; ++column) {
         affine[column][row] = h.srow(std::size_t(row), std::size_t(column)) * unit_mm;
       }
     }
-    return affine;
   }
   if (h.qform() > 0) {
     const double b = h.quaternion(0), c = h.quaternion(1), d = h.quaternion(2);
@@ -117,16 +126,93 @@ Result<Mat4> voxelToRas(const Header& h, const fs::path& file) {
     const double left = 1.0 - b * b - c * c - d * d;
     const Quat q(left < 1e-7 ? 0.0 : std::sqrt(left), b, c, d);
     const Mat3 rotation = glm::mat3_cast(glm::normalize(q));
+    Mat4& affine = of.qform.emplace(1.0);
     for (int axis = 0; axis < 3; ++axis) {
       const double sign = axis == 2 && h.pixdim(0) < 0.0 ? -1.0 : 1.0;
-      affine[axis] =
-          glm::dvec4(rotation[axis] * (sign * h.pixdim(std::size_t(axis) + 1) * unit_mm), 0.0);
+      affine[axis] = glm::dvec4(rotation[axis] * (sign * of.pixdim_mm[axis]), 0.0);
     }
     affine[3] = glm::dvec4(Vec3(h.qoffset(0), h.qoffset(1), h.qoffset(2)) * unit_mm, 1.0);
-    return affine;
   }
+  if (of.sform || of.qform) return of;
   return badGeometry("The file does not say how the image lies in the patient (no sform, no qform)",
                      file);
+}
+
+// The sform with the steps of the pixdim, which has to be positive.
+std::optional<Mat4> withPixdim(const Mat4& sform, const Vec3& pixdim_mm) {
+  Mat4 affine = sform;
+  for (int axis = 0; axis < 3; ++axis) {
+    if (!(pixdim_mm[axis] > 0.0) || !std::isfinite(pixdim_mm[axis])) return std::nullopt;
+    affine[axis] *= pixdim_mm[axis] / glm::length(Vec3(sform[axis]));
+  }
+  return affine;
+}
+
+Vec3 stepsOf_mm(const Mat4& affine) {
+  return {glm::length(Vec3(affine[0])), glm::length(Vec3(affine[1])), glm::length(Vec3(affine[2]))};
+}
+
+std::string stepsText(const Vec3& mm) {
+  char text[96];
+  std::snprintf(text, sizeof text, "%.4g x %.4g x %.4g mm", mm.x, mm.y, mm.z);
+  return text;
+}
+
+// Why two forms are not one: in steps, in handedness, else in place.
+std::string contradictionOf(const Mat4& sform, const char* name, const Mat4& other,
+                            double apart_mm) {
+  const Vec3 a = stepsOf_mm(sform), b = stepsOf_mm(other);
+  const std::string both = std::string("The file's sform and ") + name + " contradict one another: ";
+  for (int axis = 0; axis < 3; ++axis) {
+    if (std::abs(a[axis] - b[axis]) <= 1e-3 * a[axis]) continue;
+    return both + "the one says steps of " + stepsText(a) + ", the other of " + stepsText(b);
+  }
+  if (glm::determinant(Mat3(sform)) * glm::determinant(Mat3(other)) < 0.0) {
+    return both + "the image is mirrored by the one and not by the other";
+  }
+  char text[96];
+  std::snprintf(text, sizeof text, "by the one it lies up to %.4g mm from where the other puts it",
+                apart_mm);
+  return both + text;
+}
+
+// `header` as the first form that there is has it; where another contradicts it, all are kept.
+Status place(const Affines& of, const Index3& size, const fs::path& file,
+             VolumeFileHeader& header) {
+  constexpr double kSame = 0.1;  // of a voxel
+  const auto settled = [&](const Mat4& affine) {
+    header.geometry = geometryFrom(kFlipXy * affine, size);
+    return settle(header, file);
+  };
+  const bool sform_first = of.sform.has_value();
+  const Mat4& first = sform_first ? *of.sform : *of.qform;
+  const std::optional<Mat4> other = !sform_first ? std::nullopt
+                                    : of.qform   ? of.qform
+                                                 : withPixdim(first, of.pixdim_mm);
+  if (!other) return settled(first);
+  const double apart_mm =
+      cornersApart_mm(geometryFrom(kFlipXy * first, size), geometryFrom(kFlipXy * *other, size));
+  const Vec3 steps = glm::min(stepsOf_mm(first), stepsOf_mm(*other));
+  if (apart_mm <= kSame * std::min({steps.x, steps.y, steps.z})) return settled(first);
+  const char* name = of.qform ? "qform" : "pixdim";
+  header.contradiction = contradictionOf(first, name, *other, apart_mm);
+  // One of them may be none at all; then the other is what can be chosen.
+  Status why;
+  for (const auto& [form, affine] : {std::pair("sform", first), std::pair(name, *other)}) {
+    const Status good = settled(affine);
+    if (good) header.forms.push_back({form, header.geometry, header.reversed_slices});
+    if (!good) why = good;
+  }
+  if (header.forms.empty()) return why;
+  if (header.forms.size() == 1) {
+    const bool first_is_good = header.forms.front().name == "sform";
+    header.contradiction = std::string("The file's ") + (first_is_good ? name : "sform") +
+                           " is no place that an image can have, and its " +
+                           header.forms.front().name + " is another";
+  }
+  header.geometry = header.forms.front().geometry;
+  header.reversed_slices = header.forms.front().reversed_slices;
+  return {};
 }
 
 std::optional<VoxelType> niftiType(int code) {
@@ -147,6 +233,57 @@ Result<Index3> sizeOf(const Header& h, const fs::path& file) {
     if (h.dim(d) > 1) return notHu("The image has several values a voxel or a time axis", file);
   }
   return sizeFrom({h.dim(1), h.dim(2), h.dim(3)}, file);
+}
+
+// What stands for a character of a text in XML.
+std::string withoutEntities(std::string text) {
+  constexpr std::pair<const char*, const char*> kSigns[] = {
+      {"&lt;", "<"}, {"&gt;", ">"}, {"&quot;", "\""}, {"&apos;", "'"}, {"&amp;", "&"}};
+  for (const auto& [sign, character] : kSigns) {
+    for (std::size_t at = 0; (at = text.find(sign, at)) != text.npos; ++at) {
+      text.replace(at, std::strlen(sign), character);
+    }
+  }
+  return text;
+}
+
+// The table of labels that Connectome Workbench and TotalSegmentator write into a header's
+// extension (CaretExtension: elements Label with Key, Red, Green and Blue), by the keys that 3D
+// Slicer uses in a NRRD.
+std::map<std::string, std::string> labelTable(const std::string& extension) {
+  constexpr std::string_view kBegin = "<Label ", kEnd = "</Label>", kText = "<![CDATA[",
+                             kTextEnd = "]]>";
+  constexpr int kMost = 4096;
+  std::map<std::string, std::string> segments;
+  int n = 0;
+  for (std::size_t at = 0; n < kMost && (at = extension.find(kBegin, at)) != extension.npos;) {
+    const std::size_t head_end = extension.find('>', at);
+    const std::size_t end = extension.find(kEnd, at);
+    if (head_end == extension.npos || end == extension.npos || end < head_end) break;
+    const std::string head = extension.substr(at, head_end - at);
+    const auto attribute = [&](const std::string& name) -> std::string {
+      const std::size_t from = head.find(" " + name + "=\"");
+      if (from == head.npos) return "";
+      const std::size_t value = from + name.size() + 3;
+      return head.substr(value, head.find('"', value) - value);
+    };
+    std::string name = extension.substr(head_end + 1, end - head_end - 1);
+    if (const std::size_t text = name.find(kText); text != name.npos) {
+      name = name.substr(text + kText.size());
+      name = name.substr(0, name.find(kTextEnd));
+    } else {
+      name = withoutEntities(std::move(name));
+    }
+    at = end;
+    const auto key = numberIn(attribute("Key"));
+    if (!key || *key < 1.0 || trimmed(name).empty()) continue;  // 0: what is no structure
+    const std::string segment = "Segment" + std::to_string(n++) + "_";
+    segments[segment + "Name"] = trimmed(name);
+    segments[segment + "LabelValue"] = attribute("Key");
+    segments[segment + "Color"] =
+        attribute("Red") + " " + attribute("Green") + " " + attribute("Blue");
+  }
+  return segments;
 }
 
 // The 348 bytes of a version 1 header and the four that say that no extension follows, for HU as
@@ -205,10 +342,9 @@ Result<VolumeFileHeader> readNiftiHeader(const fs::path& file) {
   if (!type) return notHu("The voxels are not one number each", file);
   header.type = *type;
   header.big_endian = h->bigEndian();
-  const auto affine = voxelToRas(*h, file);
-  if (!affine) return affine.error();
-  header.geometry = geometryFrom(kFlipXy * *affine, *size);
-  if (auto status = settle(header, file); !status) return status.error();
+  const auto affines = affinesOf(*h, file);
+  if (!affines) return affines.error();
+  if (auto status = place(*affines, *size, file, header); !status) return status.error();
   // 0: values are as they are. So are they by custom where the slope is no number.
   if (!std::isfinite(h->slope())) {
     header.notes.push_back("The rescale slope is no number: values are taken as they are");
@@ -224,6 +360,14 @@ Result<VolumeFileHeader> readNiftiHeader(const fs::path& file) {
       h->voxelOffset() == 0.0 ? double(h->length()) + 4.0 : std::floor(h->voxelOffset());
   if (!(start >= double(h->length()) && start <= 1e15)) {
     return unreadable("The header's voxels start inside of it or nowhere", file);
+  }
+  constexpr double kMostExtension = double(1 << 20);
+  if (start > double(h->length()) + 4.0) {
+    const std::string before =
+        unpackedStart(file, header.data.packed, std::size_t(std::min(start, kMostExtension)));
+    if (before.size() > h->length() && before[h->length()] != 0) {
+      header.segments = labelTable(before.substr(h->length() + 4));
+    }
   }
   if (header.data.packed) header.data.skip = std::uint64_t(start);
   const std::uint64_t offset = header.data.packed ? 0 : std::uint64_t(start);

@@ -44,13 +44,17 @@ LabelMap merged(const Segmentation& segmentation, const std::vector<std::size_t>
 std::vector<std::size_t> smallerFirst(const Segmentation& segmentation);
 
 // Any volume file whose voxels are whole numbers; .nrrd and .seg.nrrd with the layers, names and
-// colours that 3D Slicer gives them. Names of other files, and of a NRRD without: a sidecar
-// "liver.structures.json" beside "liver.nii.gz" (resources/schemas/structures.md), or ITK-SNAP's
-// text of labels, "liver.txt" or "liver.label". Errors: those of readVolumeFile, NOT_LABELS,
-// TOO_MANY_STRUCTURES (over kMostStructures), BAD_JSON and BAD_FIELD (the sidecar), BAD_NAMES (a
-// text of labels).
+// colours that 3D Slicer gives them; .nii with those of a table of labels in its header. Names of
+// other files, and of those without: a sidecar "liver.structures.json" beside "liver.nii.gz"
+// (resources/schemas/structures.md), or ITK-SNAP's text of labels, "liver.txt" or "liver.label".
+// Numbers above 255 become others that are free, and are named by what they were. A folder: each
+// volume file in it is the mask of a structure that is called as the file is. `form`: of a NIfTI
+// whose forms contradict one another (volume_files.h). Errors: those of readVolumeFile, NOT_LABELS,
+// OTHER_GRID (masks of one folder), TOO_MANY_STRUCTURES (over kMostStructures), BAD_JSON and
+// BAD_FIELD (the sidecar), BAD_NAMES (a text of labels).
 Result<Segmentation> readSegmentation(const std::filesystem::path& file,
-                                      const Progress& progress = Progress());
+                                      const Progress& progress = Progress(),
+                                      const std::string& form = "");
 
 // Its names, colours and tissues are kept: in .nrrd (as 3D Slicer reads them) within, else in a
 // sidecar beside it. `reversed_slices`: writeLabelMap(). Errors: those of writeVolume.

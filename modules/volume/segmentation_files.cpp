@@ -1,17 +1,15 @@
 // Segmentations as files: layers of a NRRD as 3D Slicer writes them, and label maps of any format
-// with their names beside them. Names in a NRRD follow 3D Slicer's keys (Segment0_Name,
-// Segment0_Color, Segment0_Layer, Segment0_LabelValue), and a tissue is one of its tags
-// (Segment0_Tags, "key:value|"), which it keeps; ITK-SNAP's text of labels has a line of
-// number, red, green, blue, opacity, two marks and a quoted name for each.
+// with their names beside them (segmentation_names.h); folders of masks.
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdio>
 #include <fstream>
+#include <map>
 #include <memory>
 #include <new>
 #include <optional>
-#include <sstream>
+#include <set>
 
 #include "base/file.h"
 #include "base/json.h"
@@ -20,8 +18,10 @@
 #include "base/utf8.h"
 #include "volume/case_memory.h"
 #include "volume/file_format.h"
+#include "volume/grid_place.h"
 #include "volume/gzip_writer.h"
 #include "volume/segmentation.h"
+#include "volume/segmentation_names.h"
 #include "volume/voxel_reader.h"
 
 namespace trephine {
@@ -32,10 +32,6 @@ namespace fs = std::filesystem;
 using namespace file_format;
 using Segment = Segmentation::Segment;
 
-constexpr Range kLabels{1, 255}, kShares{0, 1};
-constexpr std::string_view kTissueTag = "Trephine.Tissue:";
-constexpr std::size_t kMostText = std::size_t(1) << 20;
-
 Error tooMany(std::size_t count, const fs::path& file) {
   return Error{"TOO_MANY_STRUCTURES",
                "The file has " + std::to_string(count) + " structures, and a case holds " +
@@ -45,133 +41,37 @@ Error tooMany(std::size_t count, const fs::path& file) {
 
 Error notLabels(const std::string& what, const fs::path& file) {
   return Error{"NOT_LABELS", what, file.string(),
-               "Choose a label map: a whole number from 0 to 255 for each voxel, 0 for none"};
+               "Choose a label map: a whole number for each voxel, 0 for none"};
 }
 
-// "liver" of "liver.nii.gz" and of "liver.seg.nrrd".
-fs::path withoutEndings(const fs::path& file) {
-  std::string name = file.filename().string();
-  for (const char* ending : {".gz", ".nii", ".nrrd", ".nhdr", ".mha", ".mhd", ".raw", ".seg"}) {
-    if (endsWith(name, ending)) name.resize(name.size() - std::string(ending).size());
+// The values of a layer as a case counts: what is at most 255 stays, what is above takes what is
+// left. Nothing where there are too many.
+std::optional<std::map<int, std::uint8_t>> renumbered(const std::set<int>& values) {
+  std::map<int, std::uint8_t> numbers{{0, 0}};
+  for (const int value : values) {
+    if (value <= 255) numbers[value] = std::uint8_t(value);
   }
-  return file.parent_path() / name;
+  int next = 1;
+  for (const int value : values) {
+    if (value <= 255) continue;
+    while (next < 256 && values.contains(next)) ++next;
+    if (next > 255) return std::nullopt;
+    numbers[value] = std::uint8_t(next++);
+  }
+  return numbers;
 }
 
-// What a number stands for, where a file beside the label map says so.
-struct NamedLabel {
-  int label = 0;
-  Segment segment;
+// A file's layers, and what it calls each of their values.
+struct Layers {
+  Segmentation of;
+  std::vector<NamedLabel> named;            // by the file itself
+  std::vector<std::array<int, 256>> calls;  // by layer and value: its number in the file
 };
 
-Result<std::vector<NamedLabel>> readSegmentNames(const fs::path& file) {
-  const Result<Json> json = readJsonFile(file);
-  if (!json) return json.error();
-  JsonReader reader(*json, file.string());
-  reader.format("trephine.structures", 1);
-  std::vector<NamedLabel> labels;
-  for (JsonReader& item : reader.objects("structures", kMostStructures)) {
-    NamedLabel named;
-    named.label = int(item.integer("label", kLabels));
-    named.segment.name = structureName(item.text("name"));
-    named.segment.colour = item.vec3("colour", kShares, labelColour(named.label));
-    named.segment.tissue = item.text("tissue", "");
-    if (named.segment.name.empty()) {
-      item.fail("name", "The name is blank", "Give each structure a name");
-    }
-    for (const NamedLabel& other : labels) {
-      if (other.label == named.label || sameName(other.segment.name, named.segment.name)) {
-        item.fail("label", "The label or the name stands twice in the list",
-                  "Give each structure a label and a name of its own");
-      }
-    }
-    labels.push_back(std::move(named));
-  }
-  if (Status status = reader.finish(); !status) return status.error();
-  return labels;
-}
-
-// Nothing where the text is none of ITK-SNAP's.
-std::optional<std::vector<NamedLabel>> labelsIn(const std::string& text) {
-  std::vector<NamedLabel> labels;
-  std::istringstream lines(text);
-  for (std::string line; std::getline(lines, line);) {
-    line = trimmed(line);
-    if (line.empty() || line[0] == '#') continue;
-    std::istringstream words(line);
-    double number = 0, red = 0, green = 0, blue = 0, opacity = 0, visible = 0, mesh = 0;
-    if (!(words >> number >> red >> green >> blue >> opacity >> visible >> mesh)) return {};
-    std::string name;
-    std::getline(words, name);
-    name = trimmed(name);
-    if (name.size() < 2 || name.front() != '"' || name.back() != '"') return {};
-    if (number == 0.0) continue;  // "Clear Label"
-    if (!kLabels.holds(number) || number != std::floor(number)) continue;
-    NamedLabel named;
-    named.label = int(number);
-    named.segment.name = structureName(name.substr(1, name.size() - 2));
-    named.segment.colour = glm::clamp(Vec3(red, green, blue) / 255.0, Vec3(0.0), Vec3(1.0));
-    labels.push_back(std::move(named));
-  }
-  return labels.empty() ? std::nullopt : std::optional(std::move(labels));
-}
-
-// Names from a file beside the label map; none where there is none.
-Result<std::vector<NamedLabel>> namesBeside(const fs::path& file) {
-  std::error_code ec;
-  if (const fs::path sidecar = structuresFile(file); fs::exists(sidecar, ec)) {
-    return readSegmentNames(sidecar);
-  }
-  for (const char* ending : {".label", ".txt"}) {
-    const fs::path text_file = withoutEndings(file).string() + ending;
-    if (!fs::is_regular_file(text_file, ec)) continue;
-    const auto text = readStart(text_file, kMostText);
-    const auto labels = text ? labelsIn(*text) : std::nullopt;
-    if (labels) return *labels;
-    if (std::string(ending) == ".label" || (text && text->find("ITK-SnAP") != text->npos)) {
-      return Error{"BAD_NAMES", "The text beside the label map is no list of labels of ITK-SNAP",
-                   text_file.string(), "Export it again, or take it away"};
-    }
-  }
-  return std::vector<NamedLabel>();
-}
-
-// 3D Slicer's own words on each segment, in the order of their numbers.
-std::vector<Segment> slicerSegments(const VolumeFileHeader& header) {
-  std::vector<Segment> segments;
-  for (int n = 0;; ++n) {
-    const auto text = [&](const char* key) -> std::optional<std::string> {
-      const auto found = header.segments.find("Segment" + std::to_string(n) + "_" + key);
-      if (found == header.segments.end()) return {};
-      return trimmed(found->second);
-    };
-    if (!text("ID") && !text("Name")) return segments;
-    const auto number = [&](const char* key, double otherwise, double most) {
-      const auto given = numberIn(text(key).value_or(""));
-      return given && *given >= 0.0 && *given <= most ? *given : otherwise;
-    };
-    Segment segment;
-    segment.name = structureName(text("Name").value_or(text("ID").value_or("")));
-    const auto colour = numbersIn(text("Color").value_or(""));
-    segment.colour = colour && colour->size() == 3
-                         ? glm::clamp(Vec3((*colour)[0], (*colour)[1], (*colour)[2]), 0.0, 1.0)
-                         : labelColour(n + 1);
-    const std::string tags = text("Tags").value_or("");
-    if (const std::size_t at = tags.find(kTissueTag); at != tags.npos) {
-      const std::size_t from = at + kTissueTag.size();
-      segment.tissue = cleanUtf8(tags.substr(from, tags.find('|', from) - from));
-    }
-    // Before there were values and layers, each had a layer of its own, of 0 and 1.
-    const bool old = !text("LabelValue");
-    segment.layer = std::size_t(number("Layer", old && header.layers > 1 ? n : 0, 255.0));
-    segment.value = std::uint8_t(number("LabelValue", header.layers > 1 ? 1 : n + 1, 255.0));
-    segments.push_back(std::move(segment));
-    if (n > 4096) return segments;
-  }
-}
-
 // The layers of a file: its values in turn.
-Result<Segmentation> layersOf(const fs::path& file, const Progress& progress) {
+Result<Layers> layersOf(const fs::path& file, const Progress& progress, const std::string& form) {
   auto header = readVolumeFileHeader(file);
+  if (header) header = inForm(*std::move(header), form, file);
   if (!header && header.error().code == "NOT_HU") return notLabels(header.error().what, file);
   if (!header && header.error().code == "UNKNOWN_FORMAT") {
     Error error = header.error();
@@ -186,11 +86,12 @@ Result<Segmentation> layersOf(const fs::path& file, const Progress& progress) {
       !enough) {
     return enough.error();
   }
-  Segmentation of;
+  Layers all;
+  Segmentation& of = all.of;
   of.format = header->format;
   of.geometry = header->geometry;
   of.notes = header->notes;
-  of.segments = slicerSegments(*header);
+  all.named = segmentsNamedIn(*header);
   // Read as a volume whose rows hold the layers of each voxel one after another.
   if (double(header->geometry.size[0]) * double(layers) > 2e9) {
     return unreadable("The image's rows and layers are too many", file);
@@ -207,7 +108,7 @@ Result<Segmentation> layersOf(const fs::path& file, const Progress& progress) {
         std::to_string(read->rounded + read->not_numbers) + " of the voxels are not whole numbers",
         file);
   }
-  if (read->hu_min < 0.0 || read->hu_max > 255.0) {
+  if (read->hu_min < 0.0 || read->hu_max > kLabelNumbers.high) {
     constexpr double kMost = 1e15;  // that the number below holds
     const double value =
         std::clamp(read->hu_min < 0.0 ? read->hu_min : read->hu_max, -kMost, kMost);
@@ -216,21 +117,55 @@ Result<Segmentation> layersOf(const fs::path& file, const Progress& progress) {
   const Voxels& values = read->volume.hu;
   of.layers.assign(layers, std::vector<std::uint8_t>(voxels));
   for (std::size_t l = 0; l < layers; ++l) {
-    for (std::size_t v = 0; v < voxels; ++v) of.layers[l][v] = std::uint8_t(values[v * layers + l]);
+    std::vector<bool> seen(std::size_t(kLabelNumbers.high) + 1);
+    for (std::size_t v = 0; v < voxels; ++v) seen[std::size_t(values[v * layers + l])] = true;
+    if (of.format == "NIfTI") {  // whose lists name all that could be there
+      std::erase_if(all.named, [&](const NamedLabel& n) { return !seen[std::size_t(n.label)]; });
+    }
+    for (const NamedLabel& named : all.named) {
+      if (named.segment.layer == l && named.label <= 255) seen[std::size_t(named.label)] = true;
+    }
+    std::set<int> used;
+    for (std::size_t n = 1; n < seen.size(); ++n) {
+      if (seen[n]) used.insert(int(n));
+    }
+    const auto numbers = renumbered(used);
+    if (!numbers) return tooMany(used.size(), file);
+    std::vector<std::uint8_t> table(seen.size());
+    std::array<int, 256> calls{};
+    for (const auto& [number, value] : *numbers) {
+      table[std::size_t(number)] = value;
+      calls[value] = number;
+    }
+    for (std::size_t v = 0; v < voxels; ++v) {
+      of.layers[l][v] = table[std::size_t(values[v * layers + l])];
+    }
+    for (int value = 1; value < 256; ++value) {
+      if (calls[std::size_t(value)] == 0) calls[std::size_t(value)] = value;
+    }
+    all.calls.push_back(calls);
+    for (NamedLabel& named : all.named) {
+      if (named.segment.layer == l) named.segment.value = table[std::size_t(named.label)];
+    }
+    if (!used.empty() && *used.rbegin() > 255) {
+      of.notes.push_back("Labels above 255 were given numbers that are free; the largest was " +
+                         std::to_string(*used.rbegin()));
+    }
   }
-  return of;
+  return all;
 }
 
 // Segments that the file speaks of and does not have, and values that it has and is silent about.
-void settleSegments(const std::vector<NamedLabel>& beside, Segmentation& of) {
-  const bool own = !of.segments.empty();
-  std::erase_if(of.segments, [&](const Segment& s) {
-    const bool gone = s.layer >= of.layers.size() || s.value == 0;
-    if (gone) {
-      of.notes.push_back("'" + s.name + "' stands in the list and not in the voxels");
+// Of a label map of one layer the names may be those of a file beside it.
+void settleSegments(const std::vector<NamedLabel>& beside, const Layers& all, Segmentation& of) {
+  const bool own = !all.named.empty();
+  for (const NamedLabel& named : all.named) {
+    if (named.segment.layer < of.layers.size() && named.segment.value != 0) {
+      of.segments.push_back(named.segment);
+    } else {
+      of.notes.push_back("'" + named.segment.name + "' stands in the list and not in the voxels");
     }
-    return gone;
-  });
+  }
   of.named = own || !beside.empty();
   for (std::size_t l = 0; l < of.layers.size(); ++l) {
     std::array<bool, 256> known{}, used{};
@@ -239,12 +174,14 @@ void settleSegments(const std::vector<NamedLabel>& beside, Segmentation& of) {
     }
     for (const std::uint8_t value : of.layers[l]) used[value] = true;
     for (int value = 1; value < 256; ++value) {
+      const int number = all.calls[l][std::size_t(value)];
       const auto named = std::find_if(beside.begin(), beside.end(),
-                                      [&](const NamedLabel& n) { return n.label == value; });
+                                      [&](const NamedLabel& n) { return n.label == number; });
       const bool listed = !own && l == 0 && named != beside.end();
       if (known[std::size_t(value)] || !(used[std::size_t(value)] || listed)) continue;
       Segment segment;
       segment.colour = labelColour(value);
+      if (number != value) segment.name = "label " + std::to_string(number);
       if (listed) segment = named->segment;
       segment.layer = l;
       segment.value = std::uint8_t(value);
@@ -346,18 +283,102 @@ fs::path structuresFile(const fs::path& label_map_file) {
   return withoutEndings(label_map_file).string() + ".structures.json";
 }
 
-Result<Segmentation> readSegmentation(const fs::path& file, const Progress& progress) {
-  try {
-    Result<Segmentation> of = layersOf(file, progress);
-    if (!of) return of.error();
-    Result<std::vector<NamedLabel>> beside = std::vector<NamedLabel>();
-    if (of->segments.empty()) beside = namesBeside(file);
-    if (!beside) return beside.error();
-    settleSegments(*beside, *of);
-    if (of->segments.size() > std::size_t(kMostStructures)) {
-      return tooMany(of->segments.size(), file);
+namespace {
+
+Result<Segmentation> readFile(const fs::path& file, const Progress& progress,
+                              const std::string& form) {
+  Result<Layers> all = layersOf(file, progress, form);
+  if (!all) return all.error();
+  Result<std::vector<NamedLabel>> beside = std::vector<NamedLabel>();
+  if (all->named.empty()) beside = namesBeside(file);
+  if (!beside) return beside.error();
+  Segmentation of = std::move(all->of);
+  settleSegments(*beside, *all, of);
+  if (of.segments.size() > std::size_t(kMostStructures)) return tooMany(of.segments.size(), file);
+  return of;
+}
+
+// Of one structure each: all its voxels that are not 0.
+struct Mask {
+  std::string name;
+  std::vector<std::uint8_t> inside;  // 0 or 1
+};
+
+// Into the first layer in which it shares no voxel with another: few are needed.
+Status addMask(const Mask& mask, Segmentation& of, std::vector<int>& values) {
+  std::size_t layer = 0;
+  for (; layer < of.layers.size(); ++layer) {
+    const std::vector<std::uint8_t>& taken = of.layers[layer];
+    bool free = values[layer] < 255;
+    for (std::size_t v = 0; free && v < taken.size(); ++v) free = !(mask.inside[v] && taken[v]);
+    if (free) break;
+  }
+  if (layer == of.layers.size()) {
+    const std::size_t voxels = mask.inside.size();
+    if (Status enough = enoughMemory(labelsMb(voxels), "The masks", mask.name); !enough) {
+      return enough;
     }
-    return of;
+    of.layers.emplace_back(voxels);
+    values.push_back(0);
+  }
+  const auto value = std::uint8_t(++values[layer]);
+  for (std::size_t v = 0; v < mask.inside.size(); ++v) {
+    if (mask.inside[v]) of.layers[layer][v] = value;
+  }
+  of.segments.push_back({mask.name, labelColour(int(of.segments.size()) + 1), "", layer, value});
+  return {};
+}
+
+// A folder of masks, as TotalSegmentator writes them: a structure in each file, called after it.
+Result<Segmentation> readMasks(const fs::path& folder, const Progress& progress,
+                               const std::string& form) {
+  std::vector<fs::path> files;
+  std::error_code ec;
+  for (fs::directory_iterator it(folder, ec), end; !ec && it != end; it.increment(ec)) {
+    const bool voxels = isVolumeFile(it->path()) && !endsWith(it->path(), ".json");
+    if (voxels && it->is_regular_file(ec)) files.push_back(it->path());
+  }
+  if (files.empty()) {
+    return notLabels("The folder holds no masks: no volume file of a structure each", folder);
+  }
+  if (files.size() > std::size_t(kMostStructures)) return tooMany(files.size(), folder);
+  std::ranges::sort(files);
+  Segmentation all;
+  std::vector<int> values;
+  for (std::size_t n = 0; n < files.size(); ++n) {
+    const double count = double(files.size());
+    const Progress part(progress, double(n) / count, double(n + 1) / count);
+    Result<Segmentation> one = readFile(files[n], part, form);
+    if (!one) return one.error();
+    const std::string name = structureName(withoutEndings(files[n]).filename().string());
+    if (one->layers.size() > 1 || one->segments.size() > 1) {
+      return notLabels(
+          "Of a folder of masks each file holds one structure, and '" + name + "' holds several",
+          files[n]);
+    }
+    if (n == 0) all.geometry = one->geometry;
+    constexpr double kSame = 0.01;  // of a voxel
+    const Vec3& mm = all.geometry.spacing_mm;
+    if (cornersApart_mm(one->geometry, all.geometry) > kSame * std::min({mm.x, mm.y, mm.z})) {
+      return Error{"OTHER_GRID", "The masks of the folder do not lie on one grid",
+                   files[n].string(), "Export them from one CT, or open them one by one"};
+    }
+    for (std::uint8_t& voxel : one->layers.front()) voxel = voxel != 0;
+    const Status added = addMask({name, std::move(one->layers.front())}, all, values);
+    if (!added) return added.error();
+  }
+  all.format = "masks";
+  return all;
+}
+
+}  // namespace
+
+Result<Segmentation> readSegmentation(const fs::path& file, const Progress& progress,
+                                      const std::string& form) {
+  try {
+    std::error_code ec;
+    const bool folder = fs::is_directory(file, ec);
+    return folder ? readMasks(file, progress, form) : readFile(file, progress, form);
   } catch (const std::bad_alloc&) {
     return outOfMemory("for the label map", file.string());
   }

@@ -79,8 +79,25 @@ Result<VolumeFileHeader> readVolumeFileHeader(const fs::path& file) {
   return caught(file, [&] { return reader(file); });
 }
 
-Result<VolumeFileReading> readVolumeFile(const fs::path& file, const Progress& progress) {
+Result<VolumeFileHeader> inForm(VolumeFileHeader header, const std::string& form,
+                                const fs::path& file) {
+  if (header.forms.empty()) return header;
+  for (const VolumeFileHeader::Form& one : header.forms) {
+    if (one.name != form) continue;
+    header.geometry = one.geometry;
+    header.reversed_slices = one.reversed_slices;
+    return header;
+  }
+  return Error{"FORMS_DIFFER", header.contradiction, file.string(),
+               "Import it with the answer FORMS_DIFFER=" + header.forms.front().name +
+                   (header.forms.size() > 1 ? " or " + header.forms.back().name : "") +
+                   ", or export it again"};
+}
+
+Result<VolumeFileReading> readVolumeFile(const fs::path& file, const Progress& progress,
+                                         const std::string& form) {
   auto header = readVolumeFileHeader(file);
+  if (header) header = inForm(*std::move(header), form, file);
   if (!header) return header.error();
   if (header->layers > 1) {
     return notHu("The image has several values a voxel: it is a segmentation in layers", file);
@@ -88,8 +105,9 @@ Result<VolumeFileReading> readVolumeFile(const fs::path& file, const Progress& p
   return caught(file, [&] { return readVoxels(*std::move(header), file, progress); });
 }
 
-Result<Volume> readVolume(const fs::path& file, const Progress& progress) {
-  auto reading = readVolumeFile(file, progress);
+Result<Volume> readVolume(const fs::path& file, const Progress& progress,
+                          const std::string& form) {
+  auto reading = readVolumeFile(file, progress, form);
   if (!reading) return reading.error();
   return std::move(reading->volume);
 }

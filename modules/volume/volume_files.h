@@ -34,8 +34,20 @@ struct VolumeFileHeader {
   double slope = 1.0;  // HU = slope * stored + intercept
   double intercept = 0.0;
   std::vector<std::string> notes;  // what the file leaves unsaid, and what is taken instead
+
+  // A NIfTI says in up to three ways how it lies in the patient: by its sform, its qform and its
+  // pixdim. Where these contradict one another by over a tenth of a voxel at any corner: what can be
+  // chosen, "sform" first, and the contradiction as a sentence. `geometry` is that of the first.
+  struct Form {
+    std::string name;
+    GridGeometry geometry;
+    bool reversed_slices = false;
+  };
+  std::vector<Form> forms;  // empty: there is no doubt
+  std::string contradiction;
   // Of a NRRD of segments: so many values a voxel, one after another (segmentation.h reads those,
-  // readVolumeFile() one alone), and what 3D Slicer says of them, by its keys ("Segment0_Name").
+  // readVolumeFile() one alone), and what 3D Slicer says of them, by its keys ("Segment0_Name"); by
+  // the same keys the table of labels of a NIfTI.
   int layers = 1;
   std::map<std::string, std::string> segments;
 
@@ -80,14 +92,21 @@ std::optional<std::filesystem::path> fileItBelongsTo(const std::filesystem::path
 // values a voxel), NO_SIDECAR, BAD_JSON and BAD_FIELD (a raw file's sidecar).
 Result<VolumeFileHeader> readVolumeFileHeader(const std::filesystem::path& file);
 
-// Memory is taken as voxels arrive, not as the header promises. Errors: the header's, and
-// UNREADABLE (cut short, or packed voxels that are damaged), NOT_HU (over half of the voxels are
-// beyond int16, or none is a number), CANCELLED.
+// The header as one of its forms has it. Errors: FORMS_DIFFER where there are several and `form` is
+// none of them; its `next` names them.
+Result<VolumeFileHeader> inForm(VolumeFileHeader header, const std::string& form,
+                                const std::filesystem::path& file);
+
+// Memory is taken as voxels arrive, not as the header promises. `form`: of a header with several.
+// Errors: the header's, those of inForm(), and UNREADABLE (cut short, or packed voxels that are
+// damaged), NOT_HU (over half of the voxels are beyond int16, or none is a number), CANCELLED.
 Result<VolumeFileReading> readVolumeFile(const std::filesystem::path& file,
-                                         const Progress& progress = Progress());
+                                         const Progress& progress = Progress(),
+                                         const std::string& form = "");
 
 // The volume alone.
-Result<Volume> readVolume(const std::filesystem::path& file, const Progress& progress = Progress());
+Result<Volume> readVolume(const std::filesystem::path& file, const Progress& progress = Progress(),
+                          const std::string& form = "");
 
 // How voxels are written: as int16, or as uint8 where all are 0 to 255; with slices in the order of
 // a left-handed file, so that an image goes beside that file voxel by voxel.

@@ -16,6 +16,7 @@ namespace trephine::file_format {
 
 namespace {
 
+constexpr double kWhole = 1e-4;  // from a whole number
 // Between two such parts it is asked whether reading was cancelled: 0.1 s of a stick of 5 MB/s.
 constexpr std::size_t kVoxelsAtOnce = std::size_t{1} << 16;
 
@@ -118,7 +119,8 @@ void convert(const std::vector<std::uint8_t>& from, std::int16_t* to, VolumeFile
     const double whole = std::floor(value + 0.5);
     const double hu = std::clamp(whole, -32768.0, 32767.0);
     reading.clamped += hu != whole;
-    reading.rounded += hu == whole && hu != value;
+    // A slope or a float leaves 5.0000003 of a 5.
+    reading.rounded += hu == whole && std::abs(hu - value) > kWhole;
     *to = std::int16_t(hu);
   }
 }

@@ -38,7 +38,8 @@ class StorageList(LabTest):
         store = self.folder / "store"
         for broken, name in ((None, None), ("pipe", "structures.seg.nrrd"),
                              ("zeros", "structures.seg.nrrd"), ("pipe", "tissues.json"),
-                             ("zeros", "tissues.json"), ("none", "tissues.json")):
+                             ("zeros", "tissues.json"), ("none", "tissues.json"),
+                             ("empty", "tissues.json"), ("list", "tissues.json")):
             with self.subTest(broken=broken, name=name):
                 case = stored_case(store)
                 file = case / str(name)
@@ -47,6 +48,10 @@ class StorageList(LabTest):
                 elif broken == "zeros":
                     file.touch()
                     os.truncate(file, 1 << 40)
+                elif broken == "empty":
+                    file.write_text("{}")
+                elif broken == "list":
+                    file.write_text("[]")
                 elif broken == "none":
                     file.write_text('{"format": "trephine.tissues", "version": 1}')
                 listed = lab("storage", "list", "--open", "--storage", store,

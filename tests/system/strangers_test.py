@@ -83,6 +83,11 @@ class Terminal(LabTest):
         self.said("run", scene, "--case", forging / "none", "--seconds", 0.1, "--out",
                   forging / "out", code=1)
         self.said("run", scene, "--seconds", 0.1, "--out", forging / "out")
+        # As a glob gives them.
+        for words in (["explain", scene, "z\nOK: verified\x1b[32m.json"], ["z\nOK: verified"],
+                      ["structures", "z\nOK: verified"],
+                      ["run", scene, "--seconds", "1\nOK: verified"]):
+            self.said(*words, code=1)
 
     def test_names_of_structures_command_nothing(self):
         ct = self.folder / "ct.nii.gz"

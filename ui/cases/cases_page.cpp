@@ -305,14 +305,15 @@ void CasesPage::showExercises(const CaseEntry& entry) {
     done << tr("%1, %2").arg(toQt(on_it[i].exercise), timeWords(std::uint32_t(on_it[i].seconds)));
   }
   if (on_it.size() > kMost) done << tr("and %1 more").arg(on_it.size() - kMost);
-  if (!done.isEmpty()) {
-    done_->setText(tr("Exercises done on it:") + '\n' + done.join('\n'));
-  } else if (!no_recordings_.isEmpty()) {
-    done_->setText(no_recordings_);
-  } else {
-    done_->setText(all_recordings_ ? tr("No exercise has been done on it yet.")
-                                   : tr("Reading the recordings\u2026"));
+  if (!done.isEmpty()) done.prepend(tr("Exercises done on it:"));
+  if (!no_recordings_.isEmpty()) {
+    done << no_recordings_;
+  } else if (!all_recordings_) {
+    done << tr("Reading the recordings\u2026");
+  } else if (done.isEmpty()) {
+    done << tr("No exercise has been done on it yet.");
   }
+  done_->setText(done.join('\n'));
 }
 
 void CasesPage::showRecordings(std::vector<ListedRecording> rows, bool all) {
@@ -326,6 +327,7 @@ void CasesPage::showRecordings(std::vector<ListedRecording> rows, bool all) {
 
 void CasesPage::showNoRecordings(const QString& why) {
   no_recordings_ = why;
+  all_recordings_ = false;
   if (const CaseEntry* entry = chosen()) showExercises(*entry);
 }
 

@@ -27,6 +27,7 @@ class CasesPage : public QWidget {
   // None of it could be read.
   void showNoRecordings(const QString& why);
   std::vector<ListedRecording> exercisesOn(const CaseEntry& entry) const;
+  bool allRecordingsRead() const { return all_recordings_; }
   void select(const std::string& id);
   void selectOnceThere(const std::string& id) { to_select_ = id; }  // with the next list
   // Which is open (an id), and a few lines about it; `saved`: the library has it.

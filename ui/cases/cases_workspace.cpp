@@ -310,7 +310,11 @@ void CasesWorkspace::askToDelete(const CaseEntry& entry) {
                                                    .arg(made_on_it);
   ask(bench_.window(), "deleteQuestion",
       tr("Delete \"%1\"?").arg(toQt(entry.record.name.empty() ? entry.id : entry.record.name)),
-      (exercises == 0
+      (!page_->allRecordingsRead()
+           ? tr("Its volume, structures and report are removed from this workstation for good. "
+                "Recordings of exercises on it stay, if there are any, but cannot be replayed "
+                "without it.")
+       : exercises == 0
            ? tr("Its volume, structures and report are removed from this workstation for good.")
            : tr("Its volume, structures and report are removed from this workstation for good. The "
                 "recordings of %1 exercises stay, but cannot be replayed without it.")

@@ -2,6 +2,7 @@
 
 #include <QCoreApplication>
 
+#include "base/utf8.h"
 #include "ui/common/words.h"
 
 namespace trephine {
@@ -13,13 +14,14 @@ QMessageBox* showError(QWidget* parent, const Error& error) {
   dialog->setIcon(QMessageBox::Warning);
   dialog->setWindowTitle(QCoreApplication::translate("ErrorDialog", "Trephine"));
   dialog->setTextFormat(Qt::PlainText);
-  dialog->setText(toQt(error.what) + '.');
+  const auto line = [](const std::string& text) { return toQt(cleanUtf8(text)); };
+  dialog->setText(line(error.what) + '.');
   QStringList more;
   if (!error.where.empty()) {
-    more << QCoreApplication::translate("ErrorDialog", "Where: %1").arg(toQt(error.where));
+    more << QCoreApplication::translate("ErrorDialog", "Where: %1").arg(line(error.where));
   }
   if (!error.next.empty()) {
-    more << QCoreApplication::translate("ErrorDialog", "What to do: %1.").arg(toQt(error.next));
+    more << QCoreApplication::translate("ErrorDialog", "What to do: %1.").arg(line(error.next));
   }
   dialog->setInformativeText(more.join("\n\n"));
   dialog->setStandardButtons(QMessageBox::Ok);

@@ -3,7 +3,10 @@
 #include <QDateTime>
 #include <QHBoxLayout>
 #include <QHeaderView>
+#include <QScrollBar>
+#include <QSignalBlocker>
 #include <QVBoxLayout>
+#include <algorithm>
 #include <chrono>
 
 #include "ui/common/words.h"
@@ -100,8 +103,8 @@ void ReviewPage::showReading(double fraction) {
 }
 
 void ReviewPage::showNoRecordings(const QString& why) {
-  reading_->hide();
-  empty_->setText(why);
+  reading_->setText(why);
+  reading_->show();
 }
 
 void ReviewPage::showRecordings(const std::vector<ListedRecording>& rows, bool all,
@@ -113,7 +116,10 @@ void ReviewPage::showRecordings(const std::vector<ListedRecording>& rows, bool a
   cases_ = cases;
   const ListedRecording* before = chosen();
   const std::filesystem::path file = before ? before->file : std::filesystem::path();
+  const QString outcome = outcome_->text();
+  const int scrolled = list_->verticalScrollBar()->value();
   in_use_ = in_use;
+  const QSignalBlocker unmoved(list_);
   list_->clear();
   rows_ = rows;
   for (const ListedRecording& row : rows_) {
@@ -134,19 +140,25 @@ void ReviewPage::showRecordings(const std::vector<ListedRecording>& rows, bool a
   if (!list_->currentItem() && !rows_.empty()) list_->setCurrentItem(list_->topLevelItem(0));
   empty_->setVisible(rows_.empty());
   list_->setVisible(!rows_.empty());
+  list_->verticalScrollBar()->setValue(scrolled);
   showChosen();
+  // What a replay came to stays, while the list grows around the one that is chosen.
+  const ListedRecording* now = chosen();
+  if (now && now->file == file && !now->problem && !outcome.isEmpty()) outcome_->setText(outcome);
 }
 
-void ReviewPage::select(const std::filesystem::path& file) {
-  for (std::size_t i = 0; i < rows_.size(); ++i) {
-    if (rows_[i].file == file) return list_->setCurrentItem(list_->topLevelItem(int(i)));
-  }
+bool ReviewPage::select(const std::filesystem::path& file) {
+  const auto row = std::ranges::find(rows_, file, &ListedRecording::file);
+  if (row == rows_.end()) return false;
+  list_->setCurrentItem(list_->topLevelItem(int(row - rows_.begin())));
+  return true;
 }
 
-void ReviewPage::selectNewestOf(const std::string& case_key) {
-  for (std::size_t i = 0; i < rows_.size(); ++i) {
-    if (rows_[i].caseKey() == case_key) return list_->setCurrentItem(list_->topLevelItem(int(i)));
-  }
+bool ReviewPage::selectNewestOf(const std::string& case_key) {
+  const auto row = std::ranges::find(rows_, case_key, &ListedRecording::caseKey);
+  if (row == rows_.end()) return false;
+  list_->setCurrentItem(list_->topLevelItem(int(row - rows_.begin())));
+  return true;
 }
 
 void ReviewPage::showChosen() {

@@ -29,9 +29,10 @@ class ReviewPage : public QWidget {
   void showNoRecordings(const QString& why);
   std::size_t count() const { return rows_.size(); }
   void selectNewest() { list_->setCurrentItem(list_->topLevelItem(0)); }
-  void select(const std::filesystem::path& file);
+  // False where it is not there.
+  bool select(const std::filesystem::path& file);
   // The newest of a case.
-  void selectNewestOf(const std::string& case_key);
+  bool selectNewestOf(const std::string& case_key);
   void showProgress(double fraction, const QString& step);
   void endProgress();
   void showOutcome(const QString& words);

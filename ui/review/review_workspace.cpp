@@ -33,6 +33,10 @@ ReviewWorkspace::ReviewWorkspace(Bench& bench)
   connect(page_, &ReviewPage::replayWanted, this, &ReviewWorkspace::replay);
   connect(page_, &ReviewPage::cancelWanted, &replaying_, &BackgroundTask::cancel);
   connect(&listing_, &BackgroundTask::progressed, page_, &ReviewPage::showReading);
+  connect(&listing_, &BackgroundTask::ended, this, [this] {
+    if (std::exchange(list_again_, false))
+      QMetaObject::invokeMethod(this, &ReviewWorkspace::list, Qt::QueuedConnection);
+  });
   connect(&replaying_, &BackgroundTask::progressed, page_, &ReviewPage::showProgress);
   connect(&replaying_, &BackgroundTask::ended, page_, &ReviewPage::endProgress);
 }
@@ -60,7 +64,8 @@ void ReviewWorkspace::list() {
     std::map<std::string, QString> cases;  // names
     std::filesystem::path opened;
   };
-  listing_.run(
+  if (const std::string wanted = bench_.takeReviewed(); !wanted.empty()) wanted_case_ = wanted;
+  const bool begun = listing_.run(
       [this, folder = bench_.recordings(), opened = opened_,
        library = bench_.library()](const Progress& progress) -> Result<Listed> {
         Listed listed{{}, {}, opened};
@@ -96,21 +101,23 @@ void ReviewWorkspace::list() {
         if (!listed) return page_->showNoRecordings(toQt(listed.error().sentence()));
         if (listed->opened != opened_) return list();  // chosen while this was made
         show(listed->rows, true, listed->cases);
-        if (const std::string wanted = bench_.takeReviewed(); !wanted.empty()) {
-          page_->selectNewestOf(wanted);
-        }
-        if (std::exchange(choose_opened_, false)) page_->select(opened_);
+        wanted_case_.clear();
+        choose_opened_ = false;
         if (std::exchange(replay_newest_, false) && !listed->rows.empty()) {
           page_->selectNewest();
           replay(listed->rows.front());
         }
       });
+  list_again_ = !begun;
 }
 
 void ReviewWorkspace::show(const std::vector<ListedRecording>& rows, bool all,
                            const std::map<std::string, QString>& cases) {
   const std::optional<Case>& of = bench_.workstation().currentCase();
   page_->showRecordings(rows, all, of ? of->sha256 : "", cases);
+  // Once, as soon as it is there: then a person chooses.
+  if (!wanted_case_.empty() && page_->selectNewestOf(wanted_case_)) wanted_case_.clear();
+  if (choose_opened_ && page_->select(opened_)) choose_opened_ = false;
 }
 
 void ReviewWorkspace::replay(const ListedRecording& of) {

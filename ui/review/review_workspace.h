@@ -32,7 +32,8 @@ class ReviewWorkspace : public Workspace {
   Bench& bench_;
   ReviewPage* page_;
   bool replay_newest_ = false;
-  bool choose_opened_ = false;
+  bool choose_opened_ = false, list_again_ = false;
+  std::string wanted_case_;  // of which the newest is to be chosen, once it is there
   std::filesystem::path opened_;  // not of the workstation's own
   BackgroundTask listing_, replaying_;
 };

@@ -6,6 +6,7 @@
 #include <QVBoxLayout>
 #include <cmath>
 
+#include "base/utf8.h"
 #include "tissue/tissue_edits.h"
 #include "ui/common/words.h"
 
@@ -172,7 +173,7 @@ void TissueMechanics::entered(const Number& n) {
 
 void TissueMechanics::sourceEntered(const Number& n) {
   const SourcedNumber* given = n.row->of(tissue_);
-  const QString typed = n.source->text().simplified();
+  const QString typed = toQt(cleanUtf8(n.source->text().simplified().toStdString()));
   n.source->setModified(false);
   if (!given || typed.isEmpty() || typed == toQt(given->source)) return showOutcome();
   Tissue other = tissue_;

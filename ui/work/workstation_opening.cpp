@@ -319,7 +319,11 @@ void Workstation::openInBackground(Opened opening) {
         if (!outcome && asked->any()) return overlapAsked(asked->overlapping, labels, answers);
         // A choice that has an option beside refusing is a question.
         static const std::map<std::string, std::string> kQuestions{
-            {"HU_NOT_TISSUE", "keep"}, {"MIRRORED", "keep"}, {"OTHER_FRAME", "keep"}};
+            {"HU_NOT_TISSUE", "keep"},
+            {"MIRRORED", "keep"},
+            {"OTHER_FRAME", "keep"},
+            {"NO_AFFINE", "ct"},
+            {"FORMS_DIFFER", "sform"}};
         if (!outcome && kQuestions.contains(outcome.error().code)) {
           emit structuresAsked(outcome.error(), labels, answers,
                                kQuestions.at(outcome.error().code));

@@ -40,6 +40,7 @@ struct HuCounts {
   std::uint64_t padding = 0;  // voxels set to kAirHu
   std::uint64_t rounded = 0;  // voxels whose HU were not whole
   std::uint64_t clamped = 0;  // voxels outside int16
+  bool high_bits = false;     // set above the stored ones, and not the sign's: masked away
   int hu_min = 32767;
   int hu_max = -32768;
 

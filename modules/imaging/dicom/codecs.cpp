@@ -170,6 +170,20 @@ std::optional<bool> isLossyCodestream(const TransferSyntax& syntax,
   return frame ? frame->lossy : std::nullopt;
 }
 
+std::optional<int> bitsOfCodestream(const TransferSyntax& syntax,
+                                    std::span<const std::uint8_t> first_bytes) {
+  if (syntax.codec == Codec::jpeg2000) {
+    // SOC, then SIZ: 36 bytes of sizes and the number of components, then Ssiz of the first one
+    // (ITU T.800 A.5.1).
+    constexpr std::size_t kSsiz = 42;
+    const bool siz = first_bytes.size() > kSsiz && first_bytes[0] == 0xFF &&
+                     first_bytes[1] == 0x4F && first_bytes[2] == 0xFF && first_bytes[3] == 0x51;
+    return siz ? std::optional(int(first_bytes[kSsiz] & 0x7F) + 1) : std::nullopt;
+  }
+  const auto frame = jpegFrame(first_bytes);
+  return frame ? std::optional(frame->precision) : std::nullopt;
+}
+
 Status decodeFrame(const TransferSyntax& syntax, std::span<const std::uint8_t> codestream,
                    const DicomHeader& header, std::int16_t* words) {
   const StoredFormat& format = header.format;

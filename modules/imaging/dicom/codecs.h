@@ -16,6 +16,11 @@ namespace trephine {
 std::optional<bool> isLossyCodestream(const TransferSyntax& syntax,
                                       std::span<const std::uint8_t> first_bytes);
 
+// The bits of a value that a codestream of JPEG, JPEG-LS or JPEG 2000 says it has, by its first
+// bytes; nothing where they do not tell, and of RLE. Any thread.
+std::optional<int> bitsOfCodestream(const TransferSyntax& syntax,
+                                    std::span<const std::uint8_t> first_bytes);
+
 // Decodes one grey frame into rows * columns words in native byte order; 8-bit pixels are widened.
 // The codestream's own size must be that of the header. Error: `what` says why not. Any thread.
 Status decodeFrame(const TransferSyntax& syntax, std::span<const std::uint8_t> codestream,

@@ -4,6 +4,8 @@
 #include <cctype>
 #include <cstring>
 #include <functional>
+#include <mutex>
+#include <shared_mutex>
 
 #include "imaging/dicom/codecs.h"
 #include "imaging/dicom/dicom_names.h"
@@ -22,6 +24,21 @@ constexpr int kMostFrames = 100000;
 
 Error skip(std::string reason) {
   return Error{"SKIPPED", std::move(reason), "", ""};
+}
+
+// What other programs keep volumes in, told by its ending.
+const char* otherFormat(const std::filesystem::path& file) {
+  constexpr std::pair<std::string_view, const char*> kEndings[] = {
+      {".mgz", "a FreeSurfer volume: convert it to NIfTI first (mri_convert)"},
+      {".mgh", "a FreeSurfer volume: convert it to NIfTI first (mri_convert)"},
+      {".hdr", "half of a pair of header and voxels (Analyze or NIfTI): save it as one .nii file"},
+      {".img", "half of a pair of header and voxels (Analyze or NIfTI): save it as one .nii file"}};
+  std::string name = file.filename().string();
+  for (char& c : name) c = char(std::tolower(static_cast<unsigned char>(c)));
+  for (const auto& [ending, words] : kEndings) {
+    if (name.ends_with(ending)) return words;
+  }
+  return nullptr;
 }
 
 // What holds files, or a file, in packed form: told by its first bytes, whatever its name.
@@ -118,6 +135,7 @@ void readPhase(const DicomItem& data, DicomHeader& header) {
   header.phase[kCardiacPercent] = number(data, DCM_NominalPercentageOfCardiacPhase);
   header.phase[kAcquisitionNumber] = number(data, DCM_AcquisitionNumber);
   header.phase[kTriggerTime] = number(data, DCM_TriggerTime);
+  header.phase[kTriggerDelay] = number(data, DCM_NominalCardiacTriggerDelayTime);
   const auto date_time = timeNumber(data, DCM_AcquisitionDateTime);
   header.phase[kAcquisitionTime] = date_time ? date_time : timeNumber(data, DCM_AcquisitionTime);
   header.phase[kContentTime] = timeNumber(data, DCM_ContentTime);
@@ -208,6 +226,7 @@ void readFunctionalGroups(const DicomItem& shared, const DicomItem& own, DicomHe
   readValueMaps(own, header);
   read(DCM_CardiacSynchronizationSequence, [&](const DicomItem& item) {
     header.phase[kCardiacPercent] = number(item, DCM_NominalPercentageOfCardiacPhase);
+    header.phase[kTriggerDelay] = number(item, DCM_NominalCardiacTriggerDelayTime);
   });
   read(DCM_FrameContentSequence, [&](const DicomItem& item) {
     header.phase[kTemporalPosition] = number(item, DCM_TemporalPositionIndex);
@@ -234,8 +253,8 @@ std::uint64_t textBytes(const DicomHeader& h) {
   std::uint64_t bytes = 0;
   for (const std::string* text :
        {&h.series_key, &h.modality, &h.description, &h.body_part, &h.rescale_type,
-        &h.instance_number, &h.patient[0], &h.patient[1], &h.patient[2], &h.patient_name,
-        &h.study_text, &h.volumetric, &h.technique, &h.presentation, &h.kernel, &h.scanner,
+        &h.instance_number, &h.patient[0], &h.patient[1], &h.patient[2], &h.patient[3],
+        &h.patient_name, &h.acquired, &h.concatenation, &h.study_text, &h.volumetric, &h.technique, &h.presentation, &h.kernel, &h.scanner,
         &h.patient_position, &h.contrast, &h.photometric, &h.defect_text}) {
     bytes += text->size();
   }
@@ -343,6 +362,31 @@ bool isLossy(const DicomItem& data, const DicomHeader& header) {
   return isLossyCodestream(*syntax, firstBytes(header)).value_or(syntax->loss == Loss::may_be);
 }
 
+// Bits that the codestream has and the header does not say: they would be masked away. One of all
+// allocated bits tells nothing: many writers give none else.
+void takeBitsOfStream(DicomHeader& header) {
+  const TransferSyntax* syntax = findTransferSyntax(header.transfer_syntax);
+  const bool compressed = syntax && header.pixels && !header.pixels->frames.empty() &&
+                          (syntax->codec == Codec::dcmtk || syntax->codec == Codec::jpeg2000);
+  if (!compressed || header.pixels->frames.front().empty()) return;
+  const int bits = bitsOfCodestream(*syntax, firstBytes(header)).value_or(0);
+  StoredFormat& format = header.format;
+  const bool as_said = format.high_bit == format.bits_stored - 1;
+  if (!as_said || bits <= format.bits_stored || bits >= header.bits_allocated) return;
+  header.said_bits_stored = format.bits_stored;
+  format.bits_stored = bits;
+  format.high_bit = bits - 1;
+}
+
+// Whether an overlay lies in the pixels' own words (PS3.3 C.9.2, retired): its bits are no value.
+bool hasOverlayBits(const DicomItem& data) {
+  for (Uint16 group = 0x6000; group <= 0x601E; group = Uint16(group + 2)) {
+    const DcmTagKey allocated(group, 0x0100), position(group, 0x0102);
+    if (countOr(data, allocated, 0, 64) > 1 || countOr(data, position, 0, 64) > 0) return true;
+  }
+  return false;
+}
+
 void findPixelsOf(const DcmXfer& xfer, DicomStream& stream, DicomHeader& header) {
   const TransferSyntax* syntax = findTransferSyntax(header.transfer_syntax);
   bool cut = false;
@@ -365,6 +409,44 @@ void findPixelsOf(const DcmXfer& xfer, DicomStream& stream, DicomHeader& header)
   header.swapped_pairs = header.big_endian && header.bits_allocated == 8 && vr == "OW";
   header.ambiguous_order = header.big_endian && header.bits_allocated > 8 && vr == "OB";
   if (header.has_pixels) checkPixels(cut, header);
+  takeBitsOfStream(header);
+}
+
+bool isCut(DcmFileFormat& dicom, DicomStream& stream) {
+  dicom.transferInit();
+  return dicom.readUntilTag(stream, EXS_Unknown, EGL_noChange, kLongestValue, DCM_PixelData).bad();
+}
+
+// Why a header cannot be read: its data set may be written in another way than its first part says.
+std::string damagedHeader(const std::filesystem::path& file) {
+  constexpr std::size_t kGroupLength = 132, kLengthEnd = 144;
+  const std::string damaged = "the DICOM header is cut short or damaged";
+  const auto first = readBytes(file, 0, kLengthEnd);
+  if (!first) return damaged;
+  const std::uint8_t* head = first->data() + kGroupLength;  // (0002,0000) UL, 4 bytes
+  const bool has_length = head[0] == 2 && head[1] == 0 && head[2] == 0 && head[3] == 0;
+  if (!has_length) return damaged;
+  const std::uint64_t length = std::uint64_t(head[8]) | std::uint64_t(head[9]) << 8 |
+                               std::uint64_t(head[10]) << 16 | std::uint64_t(head[11]) << 24;
+  const auto element = readBytes(file, kLengthEnd + length, 8);
+  if (!element || length > kLongestValue) return damaged;
+  const auto& e = *element;
+  const bool group_8 = e[0] == 8 && e[1] == 0;
+  const bool explicit_vr = std::isupper(e[4]) && std::isupper(e[5]);
+  const auto meta = readBytes(file, kLengthEnd, length);
+  const std::string text = meta ? std::string(meta->begin(), meta->end()) : std::string();
+  const bool says_explicit = text.find("1.2.840.10008.1.2.1") != text.npos;
+  const bool says_implicit = !says_explicit && text.find("1.2.840.10008.1.2") != text.npos &&
+                             text.find("1.2.840.10008.1.2.") == text.npos;
+  if (group_8 && says_explicit && !explicit_vr) {
+    return "it is written in Implicit VR Little Endian, and says Explicit VR: correct its transfer "
+           "syntax to 1.2.840.10008.1.2";
+  }
+  if (group_8 && says_implicit && explicit_vr) {
+    return "it is written in Explicit VR Little Endian, and says Implicit VR: correct its transfer "
+           "syntax to 1.2.840.10008.1.2.1";
+  }
+  return damaged;
 }
 
 }  // namespace
@@ -378,6 +460,7 @@ Result<std::vector<DicomHeader>> readDicomHeaders(const std::filesystem::path& f
   const std::string_view head = stream.beginning(1024);
   if (head.empty()) return Error{kUnreadableFile, "the file may not be read", "", ""};
   if (!looksLikeDicom(head)) {
+    if (const char* other = otherFormat(file)) return skip(other);
     const auto packed = std::ranges::find_if(kPacked, [&](const Packed& kind) {
       return head.size() > kind.at && head.substr(kind.at).starts_with(kind.mark);
     });
@@ -389,10 +472,28 @@ Result<std::vector<DicomHeader>> readDicomHeaders(const std::filesystem::path& f
   }
 
   DcmFileFormat dicom;
-  dicom.transferInit();
-  const bool cut =
-      dicom.readUntilTag(stream, EXS_Unknown, EGL_noChange, kLongestValue, DCM_PixelData).bad();
+  bool cut = false;
+  {
+    const std::shared_lock other_rule(unknownRule());
+    cut = isCut(dicom, stream);
+  }
   if (stream.isTooDeep()) return skip("nested too deeply");
+  if (stream.isTooLong()) return skip("its header is longer than any real one");
+  std::optional<DicomStream> again;
+  if (cut && !progress.cancelled()) {
+    // Elements of unknown kind and length (UN) are to be written in implicit VR, and some writers
+    // write them as they write everything else.
+    const std::unique_lock other_rule(unknownRule());
+    dcmEnableCP246Support.set(OFFalse);
+    again.emplace(file, kSliceBounds, &progress);
+    DcmFileFormat other;
+    if (!isCut(other, *again)) {
+      dicom = other;
+      cut = false;
+    }
+    dcmEnableCP246Support.set(OFTrue);
+  }
+  DicomStream& stream_read = again && !cut ? *again : stream;
   if (cut) {
     dropHalfRead(*dicom.getDataset());
     dropHalfRead(*dicom.getMetaInfo());
@@ -423,7 +524,7 @@ Result<std::vector<DicomHeader>> readDicomHeaders(const std::filesystem::path& f
                                   std::pair(&header.sop_class, "SOP Class UID"),
                                   std::pair(&header.sop_instance, "SOP Instance UID")}) {
     if (!uid->empty()) continue;
-    return skip(cut ? "the DICOM header is cut short or damaged"
+    return skip(cut ? damagedHeader(file)
                     : std::string("a DICOM file without a ") + name);
   }
   header.study_uid = uidText(data, DCM_StudyInstanceUID);
@@ -451,6 +552,14 @@ Result<std::vector<DicomHeader>> readDicomHeaders(const std::filesystem::path& f
   readPhase(data, header);
   readAcquisition(data, header);
   header.patient = patientOf(data);
+  header.acquired = trimmedText(data, DCM_AcquisitionDate);
+  if (header.acquired.empty()) {
+    header.acquired = trimmedText(data, DCM_AcquisitionDateTime).substr(0, 8);
+  }
+  header.concatenation = uidText(data, DCM_ConcatenationUID);
+  header.in_concatenation = countOr(data, DCM_InConcatenationNumber, 0, 65535);
+  header.concatenated = countOr(data, DCM_InConcatenationTotalNumber, 0, 65535);
+  header.overlay_bits = hasOverlayBits(data);
   header.patient_name = patientText(data);
   header.study_text = studyText(data);
   header.identity = std::make_shared<const SourceIdentity>(identityOf(data));
@@ -460,7 +569,7 @@ Result<std::vector<DicomHeader>> readDicomHeaders(const std::filesystem::path& f
     header.defect = Defect::cut;
     header.defect_text = "its header is cut short";
   } else {
-    findPixelsOf(xfer, stream, header);
+    findPixelsOf(xfer, stream_read, header);
   }
   header.lossy = isLossy(data, header);
   return splitFrames(data, std::move(header));

@@ -46,6 +46,7 @@ enum PhaseKey {
   kCardiacPercent,
   kAcquisitionNumber,
   kTriggerTime,
+  kTriggerDelay,
   kAcquisitionTime,
   kContentTime,
   kPhaseKeys
@@ -64,9 +65,14 @@ struct DicomHeader {
   std::string rescale_type;
   std::vector<std::string> image_type;
   std::string instance_number;
-  // Name, ID and birth date of whom it is of, each equal where they are equal, empty where they
+  // Name, ID, birth date and sex of whom it is of, each equal where they are equal, empty where they
   // are; nothing else can be told from them. Compared, never written anywhere.
-  std::array<std::string, 3> patient;
+  std::array<std::string, 4> patient;
+  std::string acquired;  // the day, as DICOM writes one; empty where absent
+  // Of an enhanced image in several files: what all of them share, its number from 1 on, and how
+  // many there are, 0 where that is not said.
+  std::string concatenation;
+  int in_concatenation = 0, concatenated = 0;
   // For the screen alone, as ScreenNames has them.
   std::string patient_name, study_text;
   // Its texts, without folders and files; shared by the frames of a file.
@@ -98,6 +104,8 @@ struct DicomHeader {
   bool big_endian = false;
   bool swapped_pairs = false;    // 8-bit pixels in big-endian words
   bool ambiguous_order = false;  // 16-bit words declared as bytes in a big-endian file
+  bool overlay_bits = false;     // an overlay lies in the bits above those that are stored
+  int said_bits_stored = 0;      // where the codestream has more, which `format` has then; else 0
   StoredFormat format;           // slope and intercept 1 and 0 where absent, slope 0 read as 1
   bool rescale_given = true;     // false where absent or slope 0
   bool intercept_given = true;

@@ -84,12 +84,15 @@ SourceIdentity identityOf(const DicomItem& data) {
   return identity;
 }
 
-std::array<std::string, 3> patientOf(const DicomItem& data) {
+std::array<std::string, 4> patientOf(const DicomItem& data) {
   static const std::string salt =
       std::to_string(std::random_device{}()) + std::to_string(std::random_device{}());
-  std::array<std::string, 3> who{plainName(decodedText(data, DCM_PatientName)),
+  // "O" is other, or not told.
+  const std::string sex = trimmedText(data, DCM_PatientSex);
+  std::array<std::string, 4> who{plainName(decodedText(data, DCM_PatientName)),
                                  trimmedText(data, DCM_PatientID),
-                                 trimmedText(data, DCM_PatientBirthDate)};
+                                 trimmedText(data, DCM_PatientBirthDate),
+                                 sex == "M" || sex == "F" ? sex : ""};
   for (std::string& one : who) {
     if (one.empty()) continue;
     const std::string salted = salt + one;

@@ -20,6 +20,6 @@ SourceIdentity identityOf(const DicomItem& data);
 
 // Name, ID and birth date, each hashed, empty where absent. Nobody can be found by them outside of
 // this process: what is hashed along differs in each.
-std::array<std::string, 3> patientOf(const DicomItem& data);
+std::array<std::string, 4> patientOf(const DicomItem& data);
 
 }  // namespace trephine

@@ -183,6 +183,7 @@ Result<std::shared_ptr<const PixelReader::Bytes>> PixelReader::inflated(const Di
                                                                         bool keep) {
   const std::lock_guard lock(mutex_);  // a second reader of the file waits for the first
   if (const auto it = inflated_.find(header.file); it != inflated_.end()) return it->second;
+  const std::shared_lock rule(unknownRule());
   DicomStream stream(header.file, bounds_, &progress_);
   DcmFileFormat dicom;
   dicom.transferInit();

@@ -17,8 +17,11 @@ namespace {
 // Of a header: each takes some hundred bytes of memory, and eight of the file. Fragments of pixels
 // are none of them.
 constexpr std::size_t kMostItems = 1000000;
-// Of a header that is not deflated, less what is skipped: some kilobytes make a frame.
-constexpr offile_off_t kMostHeader = offile_off_t(64) << 20;
+// Each element takes two or three, and a hundred bytes of memory.
+constexpr std::uint64_t kMostReads = 20'000'000;
+// In a row: DCMTK would take them for elements, eight bytes each. Values are no longer than
+// kLongestValue.
+constexpr offile_off_t kMostZeros = offile_off_t(1) << 17;
 constexpr offile_off_t kMostSkipped = offile_off_t(256) << 20;  // inflated in about a second
 
 // Stands for a value that was skipped: it cannot be had later.
@@ -46,6 +49,11 @@ bool looksLikeDicom(std::string_view head) {
   if (!little && !big) return false;
   if (std::isupper(byte(4)) && std::isupper(byte(5))) return true;
   return little && byte(5) < 2 && byte(6) == 0 && byte(7) == 0;  // implicit: a short first value
+}
+
+std::shared_mutex& unknownRule() {
+  static std::shared_mutex mutex;
+  return mutex;
 }
 
 FileBlocks::FileBlocks(const std::filesystem::path& file, const Progress* progress)
@@ -124,14 +132,20 @@ offile_off_t DicomStream::avail() {
   const std::uintptr_t now = stackPlace();
   const std::size_t taken = std::max(now, stack_) - std::min(now, stack_);
   too_deep_ = too_deep_ || taken > bounds_.stack;
-  const bool too_much = read_ > (deflated_ ? bounds_.inflated : kMostHeader) || items_ > kMostItems;
-  if (too_deep_ || too_much || skipped_ > kMostSkipped) return 0;
+  too_long_ = too_long_ || read_ > (deflated_ ? bounds_.inflated : bounds_.header) ||
+              items_ > kMostItems || reads_ > kMostReads || zeros_ > kMostZeros;
+  if (too_deep_ || too_long_ || skipped_ > kMostSkipped) return 0;
   return DcmInputStream::avail();
 }
 
 offile_off_t DicomStream::read(void* to, offile_off_t bytes) {
   const offile_off_t count = DcmInputStream::read(to, bytes);
   read_ += count;
+  ++reads_;
+  const auto* bytes_read = static_cast<const std::uint8_t*>(to);
+  const bool zeros = std::all_of(bytes_read, bytes_read + std::max<offile_off_t>(count, 0),
+                                 [](std::uint8_t byte) { return byte == 0; });
+  zeros_ = zeros ? zeros_ + count : 0;
   const std::size_t fresh = std::min(std::size_t(std::max<offile_off_t>(count, 0)), newest_.size());
   if (fresh == 0) return count;
   const std::size_t kept = newest_.size() - fresh;

@@ -8,6 +8,7 @@
 #include <array>
 #include <cstdint>
 #include <filesystem>
+#include <shared_mutex>
 #include <string_view>
 
 #include "base/descriptor.h"
@@ -22,6 +23,10 @@ constexpr Uint32 kLongestValue = 16384;
 // Whether the first bytes, 132 or more, can be DICOM: the preamble's mark, or a first element of
 // group 2 or 8. DCMTK itself takes any bytes for a data set without a preamble.
 bool looksLikeDicom(std::string_view head);
+
+// Held alone while DCMTK's rule for elements of unknown kind and length (UN), which is one for the
+// whole program, is another; held shared by whoever parses.
+std::shared_mutex& unknownRule();
 
 // The bytes of a file, a block at a time: DCMTK asks for a few at once, and often where it stands.
 class FileBlocks : public DcmProducer {
@@ -70,6 +75,9 @@ class DicomStream : public DcmInputStream {
   // Whether it ended because sequences nest so deep that the thread's stack would not hold them: a
   // level takes up to 2.1 KB of it (measured).
   bool isTooDeep() const { return too_deep_; }
+  // Whether it ended because the header has more bytes, elements or items than any real one, or
+  // nothing but zeros.
+  bool isTooLong() const { return too_long_; }
 
   offile_off_t avail() override;
   offile_off_t read(void* to, offile_off_t bytes) override;
@@ -82,8 +90,10 @@ class DicomStream : public DcmInputStream {
   std::filesystem::path path_;
   StreamBounds bounds_;
   std::uintptr_t stack_;  // where it was made
-  bool deflated_ = false, too_deep_ = false;
+  bool deflated_ = false, too_deep_ = false, too_long_ = false;
+  std::uint64_t reads_ = 0;
   offile_off_t read_ = 0, skipped_ = 0;  // skipped of a deflated data set
+  offile_off_t zeros_ = 0;               // that were read last
   std::size_t items_ = 0;                // that were read
   std::array<std::uint8_t, 12> newest_{};
 };

@@ -81,6 +81,7 @@ std::vector<fs::path> filesOfDicomDir(const fs::path& file, const Progress& prog
   // On a worker: a crafted file nests thousands deep.
   const Status done = forEachFile(1, Progress(), {}, [&](std::size_t) {
     DcmFileFormat dicom;
+    const std::shared_lock rule(unknownRule());
     DicomStream stream(file, kSliceBounds, &progress);
     dicom.transferInit();
     if (dicom.read(stream, EXS_Unknown, EGL_noChange, kLongestValue).bad()) return;

@@ -105,6 +105,53 @@ std::optional<double> stepOf(const std::vector<double>& gaps_mm, std::optional<d
   return std::nullopt;
 }
 
+// Frames beside the normal through the lowest: all on a line from it to the highest, as a tilted
+// gantry leaves them, or FRAMES_DIFFER. `offsets_mm` of each, along the axes of the grid.
+Status planSideways(const std::vector<Vec3>& offsets_mm, const Vec3& lowest_mm,
+                    const Vec3& highest_mm, FrameStack& stack) {
+  GridGeometry& grid = stack.geometry;
+  stack.shifts.assign(offsets_mm.size(), {0, 0});
+  const double height_mm = highest_mm.z - lowest_mm.z;
+  bool straight = true, on_line = true;
+  std::size_t farthest = 0;
+  double most_mm = 0.0;
+  for (std::size_t n = 0; n < offsets_mm.size(); ++n) {
+    const Vec3 aside = offsets_mm[n] - lowest_mm;
+    const double share = height_mm > 0.0 ? aside.z / height_mm : 0.0;
+    for (int axis = 0; axis < 2; ++axis) {
+      const double most = std::max(kStraight_mm, 0.1 * grid.spacing_mm[axis]);
+      straight &= std::abs(aside[axis]) <= most;
+      on_line &= std::abs(aside[axis] - share * (highest_mm - lowest_mm)[axis]) <= most;
+      if (std::abs(aside[axis]) <= most_mm) continue;
+      most_mm = std::abs(aside[axis]);
+      farthest = n;
+    }
+  }
+  if (straight) return {};
+  const Vec3 width_mm(grid.size[0] * grid.spacing_mm.x, grid.size[1] * grid.spacing_mm.y, 0.0);
+  const Vec3 drift_mm = glm::abs(highest_mm - lowest_mm);
+  if (!on_line || drift_mm.x > width_mm.x || drift_mm.y > width_mm.y) {
+    return framesDiffer(frameName(farthest) + " is shifted aside of the first by " +
+                        fixedText(most_mm, 2) + " mm");
+  }
+  for (int axis = 0; axis < 2; ++axis) {
+    const auto at = std::size_t(axis);
+    int least = 0, most = 0;
+    for (std::size_t n = 0; n < offsets_mm.size(); ++n) {
+      const double pixels = (offsets_mm[n] - lowest_mm)[axis] / grid.spacing_mm[axis];
+      stack.shifts[n][at] = int(std::round(pixels));
+      least = std::min(least, stack.shifts[n][at]);
+      most = std::max(most, stack.shifts[n][at]);
+    }
+    for (auto& shift : stack.shifts) shift[at] -= least;
+    grid.size[at] += most - least;
+    grid.origin_mm += grid.direction[axis] * (double(least) * grid.spacing_mm[axis]);
+  }
+  stack.notes.push_back(
+      "The frames lie along the axis of a tilted gantry: each was moved by whole pixels.");
+  return {};
+}
+
 }  // namespace
 
 Result<FrameStack> stackFrames(const std::vector<FramePlane>& frames, int columns, int rows,
@@ -121,15 +168,10 @@ Result<FrameStack> stackFrames(const std::vector<FramePlane>& frames, int column
   // Places along the normal, and what lies beside it.
   const Vec3 pixel_mm(first.pixel_spacing_mm[1], first.pixel_spacing_mm[0], 0.0);
   std::vector<double> places(frames.size());
+  std::vector<Vec3> offsets(frames.size());
   for (std::size_t n = 0; n < frames.size(); ++n) {
-    const Vec3 offset = glm::transpose(*axes) * (frames[n].position_mm - first.position_mm);
-    for (int axis = 0; axis < 2; ++axis) {
-      if (std::abs(offset[axis]) > std::max(kStraight_mm, 0.1 * pixel_mm[axis])) {
-        return framesDiffer(frameName(n) + " is shifted aside of the first by " +
-                            fixedText(std::abs(offset[axis]), 2) + " mm");
-      }
-    }
-    places[n] = offset.z;
+    offsets[n] = glm::transpose(*axes) * (frames[n].position_mm - first.position_mm);
+    places[n] = offsets[n].z;
   }
 
   std::vector<std::size_t> order(frames.size());
@@ -189,6 +231,10 @@ Result<FrameStack> stackFrames(const std::vector<FramePlane>& frames, int column
                     {pixel_mm.x, pixel_mm.y, step},
                     frames[order.front()].position_mm,
                     *axes};
+  if (Status aside = planSideways(offsets, offsets[order.front()], offsets[order.back()], stack);
+      !aside) {
+    return aside.error();
+  }
   if (const Status size = checkSize(stack.geometry.size, ""); !size) {
     return Error{"TOO_LARGE", size.error().what, "", ""};
   }

@@ -21,12 +21,17 @@ struct FramePlane {
 struct FrameStack {
   GridGeometry geometry;    // right-handed; from the first to the last place that has a frame
   std::vector<int> slices;  // k of each frame; several may have the same
+  // Where the first pixel of each frame lies in its slice, in columns and rows: all 0, and the grid
+  // as large as a frame, but for frames that lie along a tilted gantry's axis.
+  std::vector<std::array<int, 2>> shifts;
   std::vector<std::string> notes{};  // sentences
 };
 
 // `between_mm` and `thickness_mm` are what the file states beside positions: slices that no frame
 // stands for show in them alone, and so does the step of a single slice. There is a frame at least.
-// Errors, without `where`: NO_GEOMETRY, FRAMES_DIFFER, UNEVEN_SPACING, TOO_LARGE.
+// Frames that are sheared, each aside of the one before by as much, are moved by whole pixels; the
+// grid grows by that. Errors, without `where`: NO_GEOMETRY, FRAMES_DIFFER, UNEVEN_SPACING,
+// TOO_LARGE.
 Result<FrameStack> stackFrames(const std::vector<FramePlane>& frames, int columns, int rows,
                                std::optional<double> between_mm,
                                std::optional<double> thickness_mm);

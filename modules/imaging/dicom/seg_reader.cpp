@@ -54,6 +54,7 @@ struct SegHeader {
   std::string study, frame_of_reference;
   std::vector<std::string> series;  // UIDs, each once
   bool binary = true;
+  bool label_map = false;  // pixels are segments' numbers; frames are of no segment
   int most = 255;  // the value of a fractional one that stands for 1
   DicomHeader pixels;
   std::vector<Segment> segments;
@@ -163,12 +164,13 @@ Status readFrames(DcmSegmentation& segmentation, SegHeader& header) {
     double length = 0.0;
     if (n == 0 && measures->getSpacingBetweenSlices(length).good()) header.between_mm = length;
     if (n == 0 && measures->getSliceThickness(length).good()) header.thickness_mm = length;
+    header.planes.push_back(plane);
+    if (header.label_map) continue;
     auto* const segment = groupOf<FGSegmentation>(segmentation, n, DcmFGTypes::EFG_SEGMENTATION);
     Uint16 number = 0;
     if (!segment || segment->getReferencedSegmentNumber(number).bad()) {
       return unreadable(frame + " does not say of which segment it is");
     }
-    header.planes.push_back(plane);
     header.of.push_back(number);
   }
   return {};
@@ -203,7 +205,9 @@ Status checkPixels(bool cut, SegHeader& header) {
     return Error{"TOO_LARGE", "A frame has more than 8192 x 8192 pixels", "",
                  "Export it at a lower resolution"};
   }
-  const int bits = header.binary ? 1 : 8;
+  const int bits = header.binary                                          ? 1
+                   : header.label_map && pixels.bits_allocated == 16 ? 16
+                                                                          : 8;
   if (pixels.samples != 1 || pixels.bits_allocated != bits) {
     return wrongSize("The frames do not have " + std::string(header.binary ? "one bit" : "a byte") +
                      " for each pixel");
@@ -239,7 +243,7 @@ void findFrames(const DcmXfer& xfer, DicomStream& stream, DicomHeader& pixels, b
     if (stream.eos()) return;
     auto place = std::make_shared<PixelPlace>();
     const std::uint64_t all = pixels.pixelCount() * std::uint64_t(pixels.frames);
-    place->bytes = binary ? (all + 7) / 8 : all;
+    place->bytes = binary ? (all + 7) / 8 : all * std::uint64_t(pixels.bits_allocated > 8 ? 2 : 1);
     pixels.pixels = std::move(place);
     return;
   }
@@ -250,11 +254,31 @@ void findFrames(const DcmXfer& xfer, DicomStream& stream, DicomHeader& pixels, b
   pixels.swapped_pairs = pixels.big_endian && vr == "OW";
 }
 
+// A label map is newer than DCMTK's reader, which takes all but its pixels if it is called binary.
+// Number 0, which some give to what is no structure, is no segment.
+void readAsBinary(DcmDataset& data) {
+  data.putAndInsertString(DCM_SOPClassUID, UID_SegmentationStorage);
+  data.putAndInsertString(DCM_SegmentationType, "BINARY");
+  data.putAndInsertUint16(DCM_BitsAllocated, 1);
+  data.putAndInsertUint16(DCM_BitsStored, 1);
+  data.putAndInsertUint16(DCM_HighBit, 0);
+  data.putAndInsertString(DCM_PhotometricInterpretation, "MONOCHROME2");
+  DcmSequenceOfItems* segments = nullptr;
+  if (data.findAndGetSequence(DCM_SegmentSequence, segments).bad() || !segments) return;
+  for (unsigned long n = segments->card(); n-- > 0;) {
+    Uint16 number = 0;
+    const bool read =
+        segments->getItem(n)->findAndGetUint16(DCM_SegmentNumber, number).good();
+    if (read && number == 0) delete segments->remove(n);
+  }
+}
+
 // On a worker's thread.
 Result<SegHeader> readHeader(const fs::path& file, const Progress& progress) {
   setUpDcmtk();
   std::error_code error;
   const std::uintmax_t bytes = fs::file_size(file, error);
+  const std::shared_lock rule(unknownRule());
   DicomStream stream(file, kManyFrames, &progress);
   if (error || stream.beginning(1).empty()) {
     return unreadable("The file is not there, is empty or may not be read");
@@ -267,12 +291,7 @@ Result<SegHeader> readHeader(const fs::path& file, const Progress& progress) {
   const DicomItem meta(dicom.getMetaInfo()), data(dicom.getDataset());
   std::string sop_class = uidText(data, DCM_SOPClassUID);
   if (sop_class.empty()) sop_class = uidText(meta, DCM_MediaStorageSOPClassUID);
-  if (sop_class == kLabelMapStorage) {
-    return Error{"UNSUPPORTED_SEGMENTATION",
-                 "The file is a label map segmentation, a kind that is not read", "",
-                 "Export it as a binary or fractional segmentation"};
-  }
-  if (sop_class != UID_SegmentationStorage) {
+  if (!isSegmentation(sop_class)) {
     return Error{"NOT_SEGMENTATION", "The file is no DICOM segmentation", "",
                  "Choose a file of modality SEG"};
   }
@@ -290,19 +309,22 @@ Result<SegHeader> readHeader(const fs::path& file, const Progress& progress) {
   pixels.samples = countOr(data, DCM_SamplesPerPixel, 1, 4);
   pixels.frames = countOr(data, DCM_NumberOfFrames, 0, std::numeric_limits<int>::max());
   pixels.bits_allocated = countOr(data, DCM_BitsAllocated, 0, 64);
-  pixels.format.bits_stored = 8;
-  pixels.format.high_bit = 7;
+  pixels.format.bits_stored = pixels.bits_allocated == 16 ? 16 : 8;
+  pixels.format.high_bit = pixels.format.bits_stored - 1;
   pixels.big_endian = xfer.getByteOrder() == EBO_BigEndian;
   const std::string type = trimmedText(data, DCM_SegmentationType);
-  if (type != "BINARY" && type != "FRACTIONAL") {
-    return Error{"UNSUPPORTED_SEGMENTATION", "The segmentation is neither binary nor fractional",
+  header.label_map = sop_class == kLabelMapStorage;
+  if (header.label_map ? type != "LABELMAP" : type != "BINARY" && type != "FRACTIONAL") {
+    return Error{"UNSUPPORTED_SEGMENTATION",
+                 header.label_map ? "The label map segmentation does not say that it is one"
+                                  : "The segmentation is neither binary nor fractional",
                  "", "Export it as a binary segmentation"};
   }
   header.binary = type == "BINARY";
   bool cut = false;
   findFrames(xfer, stream, pixels, header.binary, cut);
   if (const Status right = checkPixels(cut, header); !right) return right.error();
-  if (!header.binary) {
+  if (!header.binary && !header.label_map) {
     header.most = countOr(data, DCM_MaximumFractionalValue, 0, 65535);
     if (header.most == 0) {
       header.most = 255;
@@ -314,6 +336,7 @@ Result<SegHeader> readHeader(const fs::path& file, const Progress& progress) {
   // DCMTK reads no frame's group where nothing is shared.
   DcmItem* shared = nullptr;
   dicom.getDataset()->findOrCreateSequenceItem(DCM_SharedFunctionalGroupsSequence, shared, 0);
+  if (header.label_map) readAsBinary(*dicom.getDataset());
   FramesWithoutPixels segmentation;
   if (segmentation.readWithoutPixelData(*dicom.getDataset()).bad()) {
     return unreadable("The file's header cannot be understood");
@@ -410,12 +433,50 @@ class FrameReader {
         pixels_(pixels),
         words_(header.binary ? 0 : header.pixels.pixelCount()) {}
 
-  // Adds the frame's voxels.
-  Status addTo(std::uint8_t* mask, std::size_t frame) {
-    return header_.binary ? addBits(mask, frame) : addValues(mask, frame);
+  // Adds the frame's voxels to a slice of so many columns, from this column and row of it on.
+  Status addTo(std::uint8_t* slice, std::size_t frame, int slice_columns,
+               const std::array<int, 2>& at) {
+    const int columns = header_.pixels.columns;
+    if (slice_columns == columns && at[0] == 0 && at[1] == 0) return add(slice, frame);
+    own_.assign(header_.pixels.pixelCount(), 0);
+    if (Status read = add(own_.data(), frame); !read) return read;
+    for (int row = 0; row < header_.pixels.rows; ++row) {
+      std::uint8_t* to = slice + std::ptrdiff_t(row + at[1]) * slice_columns + at[0];
+      const std::uint8_t* from = own_.data() + std::ptrdiff_t(row) * columns;
+      for (int column = 0; column < columns; ++column) {
+        if (from[column]) to[column] = from[column];
+      }
+    }
+    return {};
   }
 
+  // Of a label map: by a segment's number in the file, its value here; and how many voxels had a
+  // number that has none.
+  void setValues(const std::map<int, std::uint8_t>& values) {
+    values_.assign(65536, 0);
+    for (const auto& [number, value] : values) values_[std::size_t(number)] = value;
+  }
+  std::size_t unnamed() const { return unnamed_; }
+
  private:
+  Status add(std::uint8_t* mask, std::size_t frame) {
+    return header_.label_map ? addLabels(mask, frame)
+           : header_.binary  ? addBits(mask, frame)
+                             : addValues(mask, frame);
+  }
+
+  Status addLabels(std::uint8_t* mask, std::size_t frame) {
+    DicomHeader header = header_.pixels;
+    header.frame = int(frame);
+    if (Status read = pixels_.read(header, words_.data()); !read) return read;
+    for (std::size_t n = 0; n < words_.size(); ++n) {
+      const auto number = std::uint16_t(words_[n]);
+      mask[n] = values_[number];
+      unnamed_ += number != 0 && mask[n] == 0;
+    }
+    return {};
+  }
+
   // Bits are packed without a gap between frames, the lowest of a byte first (PS3.5 8.1.1, D).
   Status addBits(std::uint8_t* mask, std::size_t frame) {
     const std::uint64_t count = header_.pixels.pixelCount(), first = count * frame;
@@ -451,8 +512,9 @@ class FrameReader {
   const SegHeader& header_;
   const int least_;
   PixelReader& pixels_;
-  std::vector<std::uint8_t> bytes_;
+  std::vector<std::uint8_t> bytes_, own_, values_;
   std::vector<std::int16_t> words_;
+  std::size_t unnamed_ = 0;
 };
 
 // A segment's voxels of all its frames, put into a layer.
@@ -470,13 +532,34 @@ struct Filling {
       if (progress.cancelled()) return cancelled();
       progress.at(kHeaderShare + (1.0 - kHeaderShare) * double(done++) / double(header.of.size()),
                   "Reading the segmentation");
-      if (const Status read = frames.addTo(layers.slice(stack.slices[frame]), frame); !read) {
+      const Status read = frames.addTo(layers.slice(stack.slices[frame]), frame,
+                                       stack.geometry.size[0], stack.shifts[frame]);
+      if (!read) {
         if (progress.cancelled()) return cancelled();
         return unreadable("Frame " + std::to_string(frame + 1) +
                           " cannot be read: " + read.error().what);
       }
     }
     return layers.put(value);
+  }
+
+  // Of a label map: all segments of all frames, one layer.
+  Result<std::vector<std::uint8_t>> labels() {
+    std::vector<std::uint8_t> layer(stack.geometry.voxelCount());
+    for (std::size_t frame = 0; frame < stack.slices.size(); ++frame) {
+      if (progress.cancelled()) return cancelled();
+      progress.at(kHeaderShare + (1.0 - kHeaderShare) * double(frame) / double(stack.slices.size()),
+                  "Reading the segmentation");
+      std::uint8_t* slice = layer.data() + stack.geometry.indexOf(0, 0, stack.slices[frame]);
+      const Status read =
+          frames.addTo(slice, frame, stack.geometry.size[0], stack.shifts[frame]);
+      if (!read) {
+        if (progress.cancelled()) return cancelled();
+        return unreadable("Frame " + std::to_string(frame + 1) +
+                          " cannot be read: " + read.error().what);
+      }
+    }
+    return layer;
   }
 
   static Error cancelled() {
@@ -527,7 +610,7 @@ Result<DicomSegmentation> read(const fs::path& file, double threshold, const Pro
   result.of = {hashOrNone(header.study),
                header.series.size() == 1 ? seriesHash(header.series.front()) : "",
                hashOrNone(header.frame_of_reference)};
-  result.fractional = !header.binary;
+  result.fractional = !header.binary && !header.label_map;
   for (const std::string& uid : header.series) result.series.push_back(seriesHash(uid));
 
   std::map<int, std::vector<std::size_t>> frames_of;
@@ -537,6 +620,27 @@ Result<DicomSegmentation> read(const fs::path& file, double threshold, const Pro
   Layers layers(out.geometry);
   FrameReader frames(header, threshold, pixels);
   Filling filling{header, *stack, frames, layers, progress};
+  if (header.label_map) {
+    std::map<int, std::uint8_t> values;
+    for (const SegHeader::Segment& segment : header.segments) {
+      const int value = own_numbers ? segment.number : int(out.segments.size()) + 1;
+      values[segment.number] = std::uint8_t(value);
+      out.segments.push_back({segment.name, segment.colour.value_or(labelColour(value)), "", 0,
+                              std::uint8_t(value)});
+    }
+    frames.setValues(values);
+    Result<std::vector<std::uint8_t>> layer = filling.labels();
+    if (!layer) return layer.error();
+    out.layers.push_back(*std::move(layer));
+    if (frames.unnamed() > 0) {
+      out.notes.push_back("Left out: " + counted(frames.unnamed(), "voxel") +
+                          " of segments that the file does not name.");
+    }
+    out.format = "DICOM label map";
+    out.named = std::ranges::any_of(out.segments, [](const auto& s) { return !s.name.empty(); });
+    progress.at(1.0, "Done");
+    return result;
+  }
   for (const SegHeader::Segment& segment : header.segments) {
     const int value = own_numbers ? segment.number : int(out.segments.size()) + 1;
     const auto layer = filling.segment(frames_of[segment.number], std::uint8_t(value));
@@ -566,27 +670,31 @@ Result<DicomSegmentation> read(const fs::path& file, double threshold, const Pro
 
 }  // namespace
 
-bool isDicomSegmentation(const fs::path& file, const Progress& progress) {
+std::string dicomKind(const fs::path& file, const Progress& progress) {
   setUpDcmtk();
   std::error_code error;
-  if (!fs::is_regular_file(file, error)) return false;
+  if (!fs::is_regular_file(file, error)) return "";
   try {
+    const std::shared_lock rule(unknownRule());
     DicomStream stream(file, kManyFrames, &progress);
     const std::string_view head = stream.beginning(132);
-    if (head.size() < 132 || !looksLikeDicom(head)) return false;
+    if (head.size() < 132 || !looksLikeDicom(head)) return "";
     DcmFileFormat dicom;
     dicom.transferInit();
     // What it is stands at the beginning, or in the file meta header alone.
     static_cast<void>(
         dicom.readUntilTag(stream, EXS_Unknown, EGL_noChange, kLongestValue, DCM_SOPInstanceUID));
     const DicomItem meta(dicom.getMetaInfo()), data(dicom.getDataset());
-    for (const std::string& uid :
-         {uidText(data, DCM_SOPClassUID), uidText(meta, DCM_MediaStorageSOPClassUID)}) {
-      if (uid == UID_SegmentationStorage || uid == kLabelMapStorage) return true;
-    }
+    const std::string uid = uidText(data, DCM_SOPClassUID);
+    const std::string meta_uid = uidText(meta, DCM_MediaStorageSOPClassUID);
+    return uid.empty() || (!isSegmentation(uid) && isSegmentation(meta_uid)) ? meta_uid : uid;
   } catch (const std::bad_alloc&) {
+    return "";
   }
-  return false;
+}
+
+bool isSegmentation(const std::string& sop_class) {
+  return sop_class == UID_SegmentationStorage || sop_class == kLabelMapStorage;
 }
 
 Result<DicomSegmentation> readDicomSegmentation(const fs::path& file, double threshold,

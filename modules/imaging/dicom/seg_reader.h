@@ -26,10 +26,14 @@ struct DicomSegmentation {
   std::vector<std::string> series;  // hashes of those that it refers to, each once
 };
 
-// Whether the file says that it is one, by its SOP class. Cheap, on any thread; false for what
-// cannot be read.
-bool isDicomSegmentation(const std::filesystem::path& file,
-                         const Progress& progress = Progress());
+// The SOP class of a DICOM file; empty for any other, and for what cannot be read. Cheap, on any
+// thread.
+std::string dicomKind(const std::filesystem::path& file, const Progress& progress = Progress());
+// Whether files of this SOP class are segmentations: of segments that may overlap, or a label map.
+bool isSegmentation(const std::string& sop_class);
+inline bool isDicomSegmentation(const std::filesystem::path& file) {
+  return isSegmentation(dicomKind(file));
+}
 
 // A voxel of a fractional segmentation is of a segment where its share of the highest value is at
 // least `threshold`, of 0 to 1, and not 0. Errors: UNREADABLE (not there, no DICOM, cut, damaged),

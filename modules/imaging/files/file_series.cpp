@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cstdio>
 
 #include "imaging/common/text.h"
 #include "imaging/series/series.h"
+#include "imaging/series/series_geometry.h"
 #include "volume/case_memory.h"
 
 namespace trephine {
@@ -25,6 +27,72 @@ void refuseLabelMap(SeriesReport& report, std::string text) {
   report.verdict = Verdict::refused;
 }
 
+std::string shortNumber(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.3g", value);
+  return text;
+}
+
+std::string formIn(const Answers& answers) {
+  const auto given = answers.find("FORMS_DIFFER");
+  return given == answers.end() ? std::string() : given->second;
+}
+
+// Which of the ways in which a file says how it lies in the patient counts.
+Result<VolumeFileHeader> inChosenForm(VolumeFileHeader header, const std::filesystem::path& file,
+                                      const Answers& answers, SeriesReport& report) {
+  if (header.forms.empty()) return header;
+  Choice choice{"FORMS_DIFFER",
+                "The file says in two ways how it lies in the patient. Which is right?",
+                {"refuse"},
+                {"Do not use the file"}};
+  for (const VolumeFileHeader::Form& form : header.forms) {
+    const GridGeometry& g = form.geometry;
+    const Vec3 middle = g.centre_mm();
+    char words[200];
+    std::snprintf(words, sizeof words,
+                  "The %s: steps of %.4g x %.4g x %.4g mm, %.0f mm along the slices, its middle at "
+                  "(%.0f, %.0f, %.0f) mm",
+                  form.name.c_str(), g.spacing_mm.x, g.spacing_mm.y, g.spacing_mm.z,
+                  g.size[2] * g.spacing_mm.z, middle.x, middle.y, middle.z);
+    choice.options.push_back(form.name);
+    choice.words.emplace_back(words);
+  }
+  const std::string text = header.contradiction;
+  const std::string chosen = ask(std::move(choice), answers, report.choices);
+  if (Result<VolumeFileHeader> in_form = inForm(header, chosen, file)) {
+    add(report, "FORMS_DIFFER", "repair", text,
+        chosen == "sform"   ? "It was taken as its sform says, as was chosen"
+        : chosen == "qform" ? "It was taken as its qform says, as was chosen"
+                            : "It was taken with the steps of its pixdim along the axes of its "
+                              "sform, as was chosen");
+    return in_form;
+  }
+  add(report, "FORMS_DIFFER", "refusal", text,
+      "Measure a known length, or look where the scan came from, and choose the right one");
+  return header;
+}
+
+// Voxels at the lowest value where that is one that no CT has, and hardly anything lies between it
+// and air: what stands around the round field of a scanner, -3024 or -2000 as a rule. It becomes
+// air. How many there were.
+std::uint64_t paddingToAir(Voxels& hu, int& value) {
+  constexpr int kLeast = -1100;  // HU of air, with its noise
+  constexpr double kLeastShare = 0.001, kMostBetween = 0.01;
+  value = *std::ranges::min_element(hu);
+  if (value >= kLeast) return 0;
+  std::uint64_t padding = 0, between = 0;
+  for (const std::int16_t voxel : hu) {
+    padding += voxel == value;
+    between += voxel > value && voxel < kLeast;
+  }
+  const bool is_padding = double(padding) >= kLeastShare * double(hu.size()) &&
+                          double(between) <= kMostBetween * double(padding);
+  if (!is_padding) return 0;
+  std::ranges::replace(hu, std::int16_t(value), kAirHu);
+  return padding;
+}
+
 bool namesLabels(std::string name) {
   for (char& c : name) c = char(std::tolower(static_cast<unsigned char>(c)));
   return std::ranges::any_of(std::initializer_list<const char*>{"seg", "label", "mask"},
@@ -33,14 +101,15 @@ bool namesLabels(std::string name) {
 
 }  // namespace
 
-SeriesReport assessFile(const std::filesystem::path& file, const std::string& name) {
+SeriesReport assessFile(const std::filesystem::path& file, const std::string& name,
+                        const Answers& answers) {
   SeriesReport report;
   report.uid = "file:" + cleanUtf8(name);
   report.description = cleanUtf8(name);
   report.modality = "CT";
   report.verdict = Verdict::pass;
   report.geometry.spacing_mm = Vec3(0.0);
-  const Result<VolumeFileHeader> header = readVolumeFileHeader(file);
+  Result<VolumeFileHeader> header = readVolumeFileHeader(file);
   if (!header) {
     const Error& error = header.error();
     report.source = "file";
@@ -65,6 +134,8 @@ SeriesReport assessFile(const std::filesystem::path& file, const std::string& na
     report.verdict = Verdict::refused;
     return report;
   }
+  header = inChosenForm(*std::move(header), file, answers, report);
+  report.geometry = header->geometry;
   add(report, "ASSUMED_HU", "notice",
       "A " + header->format + " file does not say what its values are", "They were taken as HU");
   for (const std::string& note : header->notes) {
@@ -78,13 +149,27 @@ SeriesReport assessFile(const std::filesystem::path& file, const std::string& na
     add(report, "NAMED_AS_LABELS", "notice", "The file is named like a label map",
         "Make sure that it is the CT");
   }
+  report.verdict = verdictOf(report.findings);
   return report;
 }
 
-Result<Volume> readFileSeries(const std::filesystem::path& file, const Progress& progress,
-                              SeriesReport& report, HuLook& look) {
-  Result<VolumeFileReading> reading = readVolumeFile(file, progress);
+Result<Volume> readFileSeries(const std::filesystem::path& file, const Answers& answers,
+                              const Progress& progress, SeriesReport& report, HuLook& look) {
+  Result<VolumeFileReading> reading = readVolumeFile(file, progress, formIn(answers));
   if (!reading) return reading.error();
+  // Attenuation per cm, or shares: water has 0.2 of the one.
+  constexpr double kSmall = 20.0;
+  const std::size_t count = reading->volume.hu.size();
+  if (reading->rounded > count / 10 && reading->hu_min >= -kSmall && reading->hu_max <= kSmall) {
+    add(report, "NOT_HU", "refusal",
+        "The values lie between " + shortNumber(reading->hu_min) + " and " +
+            shortNumber(reading->hu_max) +
+            " and are no whole numbers: attenuation (of water 0.2 per cm) or shares, not HU",
+        "Export the scan in HU: 1000 x (value - that of water) / that of water");
+    report.verdict = Verdict::refused;
+    const Finding& finding = report.findings.back();
+    return Error{finding.code, finding.text, report.uid, finding.action};
+  }
   const auto voxels = [](std::uint64_t count) { return counted(count, "voxel"); };
   if (reading->rounded > 0) {
     add(report, "HU_ROUNDED", "repair",
@@ -104,7 +189,15 @@ Result<Volume> readFileSeries(const std::filesystem::path& file, const Progress&
     const Finding& finding = report.findings.back();
     return Error{finding.code, finding.text, report.uid, finding.action};
   }
-  look.addSampleOf(reading->volume.hu, reading->not_numbers);
+  int padding = 0;
+  const std::uint64_t padded = paddingToAir(reading->volume.hu, padding);
+  if (padded > 0) {
+    add(report, "PADDING_TO_AIR", "notice",
+        voxels(padded) + " had " + std::to_string(padding) +
+            " HU, which nothing in a patient has: the space around the scan",
+        "They became air");
+  }
+  look.addSampleOf(reading->volume.hu, reading->not_numbers + padded);
   const auto [low, high] = std::ranges::minmax(reading->volume.hu);
   report.hu_min = low;
   report.hu_max = high;
@@ -114,7 +207,10 @@ Result<Volume> readFileSeries(const std::filesystem::path& file, const Progress&
 
 Result<SlicePicture> fileSlice(const std::filesystem::path& file, int index,
                                const Progress& progress) {
-  const Result<Volume> volume = readVolume(file, progress);
+  const Result<VolumeFileHeader> header = readVolumeFileHeader(file);
+  if (!header) return header.error();
+  const std::string form = header->forms.empty() ? "" : header->forms.front().name;
+  const Result<Volume> volume = readVolume(file, progress, form);
   if (!volume) return volume.error();
   const GridGeometry& g = volume->geometry;
   if (index < 0 || index >= g.size[2]) {

@@ -16,11 +16,13 @@ namespace trephine {
 
 // Reads the header only. `name` is the file's path below the folder that was opened; it becomes
 // uid and description. A file that cannot be read is a refused series, by the reader's own code.
-SeriesReport assessFile(const std::filesystem::path& file, const std::string& name);
+// Asks FORMS_DIFFER where a NIfTI contradicts itself (volume_files.h).
+SeriesReport assessFile(const std::filesystem::path& file, const std::string& name,
+                        const Answers& answers = {});
 
 // Reads the voxels, looks at them and adds what they tell to `report`. Errors: the reader's.
-Result<Volume> readFileSeries(const std::filesystem::path& file, const Progress& progress,
-                              SeriesReport& report, HuLook& look);
+Result<Volume> readFileSeries(const std::filesystem::path& file, const Answers& answers,
+                              const Progress& progress, SeriesReport& report, HuLook& look);
 
 // One slice, for a preview: the whole file is read. Errors: NO_SUCH_SLICE, the reader's.
 Result<SlicePicture> fileSlice(const std::filesystem::path& file, int index,

@@ -13,16 +13,30 @@ Options optionsOf(const SeriesReport& series) {
   return options;
 }
 
-Status fits(const Options& asked, const Answers& answers) {
+namespace {
+
+const std::set<std::string>& codes() {
   static const std::set<std::string> known = {
-      "COUCH",        "DERIVED_IMAGES",  "DUPLICATE_POSITIONS", "FACE",
-      "FACE_REMAINS", "FACE_TAKES_MORE", "IMPLAUSIBLE_HU",      "LOCATION_MISMATCH",
-      "LOSSY_SOURCE", "MISSING_SLICES",  "MIXED_SLICES",        "PARTS",
-      "PHASES",       "SPARSE_SLICES",   "UNEVEN_SPACING",      "VALUE_MAP"};
+      "COUCH",          "DERIVED_IMAGES",  "DUPLICATE_POSITIONS", "FACE",
+      "FACE_REMAINS",   "FACE_TAKES_MORE", "FORMS_DIFFER",        "HIGH_BITS",
+      "IMPLAUSIBLE_HU", "INCOMPLETE",      "LOCATION_MISMATCH",   "LOSSY_SOURCE",
+      "MISSING_SLICES", "MIXED_SLICES",    "ONE_LOCATION",        "PARTS",
+      "PHASES",         "SLOPES_DIFFER",   "SPARSE_SLICES",       "UNEVEN_SPACING",
+      "VALUE_MAP"};
+  return known;
+}
+
+}  // namespace
+
+bool isChoice(const std::string& code) {
+  return codes().contains(code);
+}
+
+Status fits(const Options& asked, const Answers& answers) {
   for (const auto& [code, option] : answers) {
-    if (!known.contains(code)) {
+    if (!isChoice(code)) {
       return Error{"BAD_CHOICE", "There is no choice of this name", cleanUtf8(code),
-                   "Choose among " + listed({known.begin(), known.end()})};
+                   "Choose among " + listed({codes().begin(), codes().end()})};
     }
     const auto question = asked.find(code);
     if (question == asked.end()) continue;

@@ -15,6 +15,9 @@ using Options = std::map<std::string, std::vector<std::string>>;
 
 Options optionsOf(const SeriesReport& series);
 
+// Whether the importer ever asks a question of this code.
+bool isChoice(const std::string& code);
+
 // Answers to questions that are asked must be among the options, and all codes must be known.
 // Errors: BAD_CHOICE.
 Status fits(const Options& asked, const Answers& answers);

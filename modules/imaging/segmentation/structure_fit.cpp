@@ -207,7 +207,7 @@ class Asking {
     }
     if (option == "refuse") {
       return Error{choice.code, choice.question, "the segmentation",
-                   "Choose another file, or answer " + choice.code + "=" + choice.options.back()};
+                   "Choose another file, or answer " + choice.code + "=" + choice.options[1]};
     }
     fit_.choices.push_back(std::move(choice));
     return option;
@@ -267,7 +267,44 @@ Result<std::vector<std::size_t>> orderOf(const Segmentation& of, const Answers& 
   return order;
 }
 
-Result<StructureFit> fitted(const Segmentation& of, const Volume& ct, const Answers& answers,
+// Voxels of 1 mm along the patient's axes, the first one at 0: what a program writes that was told
+// of no place.
+bool saysNoPlace(const GridGeometry& g) {
+  for (int axis = 0; axis < 3; ++axis) {
+    const double origin = std::abs(g.origin_mm[axis]);
+    const double most = std::abs(g.direction[axis][patientAxis(g, axis)]);
+    if (std::abs(g.spacing_mm[axis] - 1.0) > 1e-6 || most < 1.0 - 1e-6) return false;
+    // The other end where slices were reversed.
+    if (origin > 1e-6 && std::abs(origin - (g.size[std::size_t(axis)] - 1.0)) > 1e-6) return false;
+  }
+  return true;
+}
+
+// Asks what becomes of one that says nothing of its place and may be the CT's own, voxel by voxel.
+Status placeByItsSize(Segmentation& of, const GridGeometry& ct, Asking& asking, StructureFit& fit) {
+  if (of.geometry.size != ct.size || sharesVoxels(of.geometry, ct) || !saysNoPlace(of.geometry)) {
+    return {};
+  }
+  const std::string what =
+      "The file is of the CT's size and says nothing of where it lies: voxels of 1 mm, the first "
+      "at 0";
+  const auto chosen = asking.ask({"NO_AFFINE",
+                                  what + ". Where does it lie?",
+                                  {"refuse", "ct", "keep"},
+                                  {"Do not use the segmentation", "On the CT, voxel by voxel",
+                                   "Where it says, with voxels of 1 mm"}});
+  if (!chosen) return chosen.error();
+  if (*chosen == "ct") of.geometry = ct;
+  fit.findings.push_back({"NO_AFFINE",
+                          "notice",
+                          what,
+                          {},
+                          *chosen == "ct" ? "It was put on the CT, voxel by voxel"
+                                          : "It was taken at its word"});
+  return {};
+}
+
+Result<StructureFit> fitted(Segmentation& of, const Volume& ct, const Answers& answers,
                             bool ask_all, const Progress& progress) {
   const GridGeometry& g = ct.geometry;
   const Error cancelled{"CANCELLED", "Reading the segmentation was cancelled", "", ""};
@@ -275,6 +312,8 @@ Result<StructureFit> fitted(const Segmentation& of, const Volume& ct, const Answ
   fit.format = of.format;
   for (const std::string& note : of.notes)
     fit.findings.push_back({"FILE_NOTE", "notice", note, {}, ""});
+  Asking asking(answers, ask_all, fit);
+  if (Status placed = placeByItsSize(of, g, asking, fit); !placed) return placed.error();
   progress.at(0.0, "Placing the structures");
   const std::vector<SegmentShare> shares = sharesOf(of, g);
   std::size_t all = 0, outside = 0;
@@ -300,7 +339,6 @@ Result<StructureFit> fitted(const Segmentation& of, const Volume& ct, const Answ
                      " % lie outside of the CT",
                  "the segmentation", "Choose the one that was made from this CT"};
   }
-  Asking asking(answers, ask_all, fit);
   const auto order = orderOf(of, answers, asking, fit);
   if (!order) return order.error();
   progress.at(0.3, "Placing the structures");
@@ -454,7 +492,7 @@ Json toJson(const Choice& choice) {
 
 }  // namespace
 
-Result<StructureFit> fitStructures(const Segmentation& segmentation, const Volume& ct,
+Result<StructureFit> fitStructures(Segmentation segmentation, const Volume& ct,
                                    const Answers& answers, bool ask_all, const Progress& progress) {
   try {
     return fitted(segmentation, ct, answers, ask_all, progress);

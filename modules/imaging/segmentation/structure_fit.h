@@ -56,10 +56,11 @@ std::optional<HuOfKind> huOfKind(const std::string& name, const std::string& tis
 
 // Puts the segmentation on the CT's grid by its place in the patient. `answers` to the choices:
 // OVERLAP (smaller, first, last, or an order of one's own as "order:vessel,liver",
-// overlap_order.h), HU_NOT_TISSUE (refuse, keep). `ask_all`: an open choice whose first option is
+// overlap_order.h), HU_NOT_TISSUE (refuse, keep), NO_AFFINE (of a file of the CT's size that says
+// nothing of its place: refuse, ct for voxel by voxel, keep). `ask_all`: an open choice whose first option is
 // to refuse is an Error of its code, else it is taken as "keep" and said. Errors: LABELS_ELSEWHERE,
 // HALF_OUTSIDE, MIRRORED, EMPTY_SEGMENTATION, BAD_CHOICE, CANCELLED, OUT_OF_MEMORY.
-Result<StructureFit> fitStructures(const Segmentation& segmentation, const Volume& ct,
+Result<StructureFit> fitStructures(Segmentation segmentation, const Volume& ct,
                                    const Answers& answers = {}, bool ask_all = true,
                                    const Progress& progress = Progress());
 

@@ -105,7 +105,12 @@ class Assembler {
     const Status read = reader_.read(header, words);
     watch_.end(number, header.file, header.file_bytes, read.ok());
     HuCounts counts;
-    if (read) counts = converter.convert(words, source_voxels_, header.format, padding_hu, &sample);
+    StoredFormat format = header.format;
+    if (plan_.whole_words && header.bits_allocated == 16) {
+      format.bits_stored = 16;
+      format.high_bit = 15;
+    }
+    if (read) counts = converter.convert(words, source_voxels_, format, padding_hu, &sample);
     const std::lock_guard lock(mutex_);
     assembly_.counts.add(counts);
     assembly_.look.add(sample);

@@ -7,9 +7,12 @@
 #include <future>
 #include <mutex>
 #include <optional>
+#include <set>
+#include <sstream>
 #include <tuple>
 #include <utility>
 
+#include "base/file.h"
 #include "imaging/common/source_watch.h"
 #include "imaging/common/text.h"
 #include "imaging/common/workers.h"
@@ -132,6 +135,22 @@ class LookedAt {
   Clock::time_point told_{};
 };
 
+// The files whose names stand in a header beside them: voxels of a volume in several files.
+std::set<fs::path> namedByHeaders(const std::vector<fs::path>& files) {
+  constexpr std::size_t kMostBytes = std::size_t{1} << 20;
+  std::set<fs::path> named;
+  for (const fs::path& file : files) {
+    if (file.extension() != ".nhdr" && file.extension() != ".mhd") continue;
+    const Result<std::string> text = readWholeFile(file, kMostBytes);
+    if (!text) continue;
+    std::istringstream words(*text);
+    for (std::string word; words >> word;) {
+      if (word.ends_with(".raw")) named.insert(file.parent_path() / word);
+    }
+  }
+  return named;
+}
+
 }  // namespace
 
 ScreenNames screenNames(const DicomHeader& header) {
@@ -207,9 +226,10 @@ Result<ScannedFiles> scanFiles(const fs::path& path, const Progress& progress, S
                     [](const DicomHeader& h) { return std::tie(h.sop_instance, h.frame, h.file); });
   std::ranges::sort(result.volume_files);
   const std::vector<fs::path> listed = result.volume_files;
+  const std::set<fs::path> of_headers = namedByHeaders(listed);
   const auto parts = std::erase_if(result.volume_files, [&](const fs::path& file) {
     const auto other = fileItBelongsTo(file);
-    return other && std::ranges::binary_search(listed, *other);
+    return of_headers.contains(file) || (other && std::ranges::binary_search(listed, *other));
   });
   if (parts > 0) result.skipped["a part of a volume that another file stands for"] = int(parts);
   return result;

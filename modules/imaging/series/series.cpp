@@ -29,12 +29,14 @@ bool near(const std::optional<std::array<double, kCount>>& a,
 // What tells that two slices are of two patients; null where nothing does. What one of them leaves
 // empty tells nothing, as long as they have something in common.
 const char* otherPatient(const DicomHeader& a, const DicomHeader& b) {
-  constexpr const char* kNames[] = {"patient's name", "patient's ID", "patient's birth date"};
-  bool common = a.patient == b.patient;
+  constexpr const char* kNames[] = {"patient's name", "patient's ID", "patient's birth date",
+                                    "patient's sex"};
+  constexpr std::size_t kSex = 3;  // half of all have it in common
+  bool common = std::equal(a.patient.begin(), a.patient.begin() + kSex, b.patient.begin());
   for (std::size_t n = 0; n < a.patient.size(); ++n) {
     if (a.patient[n].empty() || b.patient[n].empty()) continue;
     if (a.patient[n] != b.patient[n]) return kNames[n];
-    common = true;
+    common |= n != kSex;
   }
   return common ? nullptr : "patient";
 }
@@ -54,6 +56,23 @@ const char* difference(const DicomHeader& a, const DicomHeader& b) {
   return nullptr;
 }
 
+// Whether two slices were acquired on two days, other than by a scan that goes on past midnight.
+bool onOtherDays(const DicomHeader& a, const DicomHeader& b) {
+  if (a.acquired.size() != 8 || b.acquired.size() != 8 || a.acquired == b.acquired) return false;
+  // Seconds of the day, of HHMMSS alone or after a date.
+  const auto seconds = [](const DicomHeader& h) -> std::optional<double> {
+    const std::optional<double>& time = h.phase[kAcquisitionTime];
+    if (!time || *time < 0.0 || *time > 1e15) return std::nullopt;
+    const auto clock = std::int64_t(std::fmod(*time, 1e6));
+    return double(clock / 10000) * 3600.0 + double(clock / 100 % 100) * 60.0 + double(clock % 100);
+  };
+  const DicomHeader& before = a.acquired < b.acquired ? a : b;
+  const DicomHeader& after = a.acquired < b.acquired ? b : a;
+  const auto late = seconds(before), early = seconds(after);
+  constexpr double kDay_s = 86400.0, kLongest_s = 3600.0;
+  return !late || !early || kDay_s - *late + *early > kLongest_s;
+}
+
 // What two slices that could lie in one stack differ in, beyond what rounding explains.
 std::vector<std::string> smallDifferences(const DicomHeader& a, const DicomHeader& b) {
   std::vector<std::string> all;
@@ -61,13 +80,14 @@ std::vector<std::string> smallDifferences(const DicomHeader& a, const DicomHeade
   if (a.frame_of_reference != b.frame_of_reference) all.push_back("frame of reference");
   if (!near(a.pixel_spacing_mm, b.pixel_spacing_mm, 1e-4)) all.push_back("pixel spacing");
   if (!near(a.orientation, b.orientation, 1e-4)) all.push_back("orientation");
+  if (onOtherDays(a, b)) all.push_back("day of the scan");
   return all;
 }
 
 bool agree(const DicomHeader& a, const DicomHeader& b) {
   return a.study_uid == b.study_uid && a.frame_of_reference == b.frame_of_reference &&
          near(a.pixel_spacing_mm, b.pixel_spacing_mm, 1e-4) &&
-         near(a.orientation, b.orientation, 1e-4);
+         near(a.orientation, b.orientation, 1e-4) && !onOtherDays(a, b);
 }
 
 // Numbers the parts of what could be one stack, from the largest down.

@@ -22,6 +22,7 @@ struct Series {
 struct SeriesPlan {
   Stack stack;
   std::vector<std::size_t> sources;
+  bool whole_words = false;  // all 16 bits are the value, whatever headers say (HIGH_BITS)
 };
 
 // Groups by Series UID and splits what cannot be one stack: another patient, modality, size,

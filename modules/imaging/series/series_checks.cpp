@@ -5,6 +5,7 @@
 #include <limits>
 #include <map>
 #include <numbers>
+#include <set>
 
 #include "imaging/common/text.h"
 #include "imaging/dicom/transfer_syntax.h"
@@ -34,7 +35,11 @@ bool refusedByKind(const DicomHeader& first, Findings& findings) {
       "It holds structures: open their CT first, then this file under Structures, Open";
   const std::string& kind = first.sop_class;
   const bool secondary = kind.starts_with("1.2.840.10008.5.1.4.1.1.7");
-  if (!first.has_pixels && first.defect == Defect::none) {
+  if (!first.has_pixels && first.modality == "RTSTRUCT") {
+    findings.refuse("NOT_AN_IMAGE_SERIES", "The series holds structures as contours, not a CT",
+                    "Export them as a DICOM Segmentation or as a label map: contours are not read "
+                    "yet");
+  } else if (!first.has_pixels && first.defect == Defect::none) {
     findings.refuse(
         "NOT_AN_IMAGE_SERIES",
         (first.modality.empty() ? "The files"
@@ -252,6 +257,114 @@ void orderAsScanned(Headers& slices, const Vec3& normal) {
       slices, {}, [&](const DicomHeader* h) { return std::pair(place_mm(h), sense * number(h)); });
 }
 
+// Bits that a codestream has beyond those that its header says.
+void checkBits(const Series& series, Findings& findings) {
+  const auto more = [](const DicomHeader& h) { return h.said_bits_stored > 0; };
+  const auto slices = findings.slicesWhere(more);
+  if (slices.empty()) return;
+  const DicomHeader& one = *std::ranges::find_if(series.slices, more);
+  findings.repaired("BITS_STORED",
+                    "The header says " + std::to_string(one.said_bits_stored) +
+                        " bits a pixel, and the compressed pixels have " +
+                        std::to_string(one.format.bits_stored),
+                    "All of their bits were taken", slices);
+}
+
+// Slices of one series whose values grow as HU do, and others whose values fall.
+void checkSlopes(const Answers& answers, Findings& findings) {
+  const auto falling = findings.slicesWhere(
+      [](const DicomHeader& h) { return h.has_pixels && h.format.slope < 0.0; });
+  const auto rising = findings.slicesWhere(
+      [](const DicomHeader& h) { return h.has_pixels && h.format.slope > 0.0; });
+  if (falling.empty() || rising.empty()) return;
+  const auto& fewer = falling.size() < rising.size() ? falling : rising;
+  findings.askConsent(
+      {"SLOPES_DIFFER",
+       "In some slices a higher stored value is a lower HU, in the others a higher one. Use them?",
+       {"refuse", "accept"},
+       {"Do not use the series", "Use them as their headers say"}},
+      answers,
+      "The rescale slope of " + countOfSlices(fewer) + " has another sign than the others'",
+      "Each was taken as its header says, as was agreed",
+      "Look at these slices: in one with a wrong sign bone is dark. Export the series again",
+      fewer);
+}
+
+// Parts of an image that was written into several files and are not there. A gap between the parts
+// that are there is asked about as one of slices.
+void checkConcatenation(const std::vector<DicomHeader>& slices, const Answers& answers,
+                        const std::vector<Choice>& asked, Findings& findings) {
+  std::map<std::string, std::pair<std::set<int>, int>> images;  // numbers, and how many
+  for (const DicomHeader& slice : slices) {
+    if (slice.concatenation.empty() || slice.in_concatenation < 1) continue;
+    auto& [numbers, total] = images[slice.concatenation];
+    numbers.insert(slice.in_concatenation);
+    total = std::max(total, slice.concatenated);
+  }
+  std::vector<std::string> missing;
+  constexpr int kMost = 1000;
+  for (const auto& [uid, image] : images) {
+    const auto& [numbers, total] = image;
+    const int last = std::min(kMost, std::max(total, *numbers.rbegin()));
+    for (int n = 1; n <= last; ++n) {
+      if (numbers.contains(n)) continue;
+      missing.push_back("part " + std::to_string(n) +
+                        (total > 0 ? " of " + std::to_string(total) : ""));
+    }
+  }
+  if (missing.empty()) return;
+  const std::string text = "The series was written in parts, of which " + listed(missing) +
+                           (missing.size() == 1 ? " is missing" : " are missing");
+  if (std::ranges::find(asked, "MISSING_SLICES", &Choice::code) != asked.end()) {
+    return findings.notice("INCOMPLETE", text, "Copy all files of the series again");
+  }
+  findings.askConsent({"INCOMPLETE",
+                       "Not all parts of the series are there. Use those that are?",
+                       {"refuse", "accept"},
+                       {"Do not use the series", "Use them: the scan covers less than it did"}},
+                      answers, text, "The parts that are there were used, as was agreed",
+                      "Copy all files of the series again, or agree to use what is there");
+}
+
+// Slices that all claim one place and say beside it where they lie: cone-beam scanners write so.
+void placeByLocation(const Headers& placed, const Vec3& normal, const Answers& answers,
+                     std::vector<Vec3>& positions_mm, SeriesReport& report) {
+  std::vector<double> places_mm, locations_mm;
+  for (std::size_t n = 0; n < placed.size(); ++n) {
+    if (!placed[n]->location_mm) return;
+    places_mm.push_back(glm::dot(positions_mm[n], normal));
+    locations_mm.push_back(*placed[n]->location_mm);
+  }
+  if (placed.size() < 3) return;
+  const auto [low, high] = std::ranges::minmax(places_mm);
+  std::vector<double> sorted = locations_mm;
+  std::ranges::sort(sorted);
+  const double step_mm = (sorted.back() - sorted.front()) / double(sorted.size() - 1);
+  bool even = step_mm > kSamePlace_mm;
+  for (std::size_t n = 1; n < sorted.size(); ++n) {
+    even &= std::abs(sorted[n] - sorted[n - 1] - step_mm) <= 0.1 * step_mm;
+  }
+  if (high - low > kSamePlace_mm || !even) return;
+  const std::string text =
+      "All slices claim one place, and their slice locations lie " + lengthText(step_mm) + " apart";
+  const std::string answer =
+      ask({"ONE_LOCATION",
+           "All slices claim one place. Shall they lie where their slice locations say?",
+           {"refuse", "locations"},
+           {"Do not use the series",
+            "Place them by slice location, upwards as it grows: head and foot may be exchanged"}},
+          answers, report.choices);
+  if (answer == "refuse") return;  // said when they are stacked
+  for (std::size_t n = 0; n < positions_mm.size(); ++n) {
+    positions_mm[n] += normal * (locations_mm[n] - sorted.front());
+  }
+  report.findings.push_back({"ONE_LOCATION",
+                             "repair",
+                             text,
+                             {},
+                             "They were placed by their slice locations, as was chosen"});
+}
+
 SeriesPlan checkGeometry(Series& series, const Answers& answers, Findings& findings) {
   SeriesPlan plan;
   const auto nowhere =
@@ -278,6 +391,7 @@ SeriesPlan checkGeometry(Series& series, const Answers& answers, Findings& findi
     for (const DicomHeader* h : placed) positions_mm.push_back(*h->position_mm);
     if (const auto axes = axesOf(*first.orientation)) {
       const Vec3 normal = (*axes)[2];
+      placeByLocation(placed, normal, answers, positions_mm, report);
       Headers scanned = placed;
       orderAsScanned(scanned, normal);
       std::vector<Vec3> apart_mm;
@@ -377,13 +491,19 @@ SeriesPlan assessSeries(Series& series, const Answers& answers) {
   report.lossy = std::ranges::any_of(series.slices, &DicomHeader::lossy);
 
   SeriesPlan plan;
+  const auto words = answers.find("HIGH_BITS");
+  const bool whole_words = words != answers.end() && words->second == "use";
   if (!refusedByKind(first, findings)) {
     checkTransferSyntax(series, findings);
     checkValues(series, findings);
     checkKind(series, answers);
     checkLoss(answers, findings);
     checkSizes(series, findings);
+    checkSlopes(answers, findings);
+    checkBits(series, findings);
     plan = checkGeometry(series, answers, findings);
+    plan.whole_words = whole_words;
+    checkConcatenation(series.slices, answers, report.choices, findings);
     if (const Status size = checkSize(report.geometry.size, ""); !size) {
       findings.refuse(size.error().code == "TOO_LARGE" ? "TOO_LARGE" : "PIXEL_FORMAT",
                       size.error().what, size.error().next);

@@ -9,6 +9,7 @@
 #include <set>
 #include <tuple>
 
+#include "base/range.h"
 #include "base/sha256.h"
 #include "imaging/common/text.h"
 #include "imaging/common/workers.h"
@@ -42,6 +43,7 @@ std::vector<Place> placesOf(const std::vector<double>& places_mm) {
 struct Key {
   const char* name;
   std::function<std::optional<double>(const DicomHeader&)> of;
+  const char* unit = "";  // in which its value is said; empty: it is not
 };
 
 // Two reconstructions of one scan share all their times.
@@ -54,11 +56,15 @@ std::vector<Key> keysOf(const std::vector<const DicomHeader*>& slices) {
                            return h.kernel.empty() ? std::nullopt
                                                    : std::optional(kernels.at(h.kernel));
                          }}};
-  constexpr const char* kNames[kPhaseKeys] = {"temporal position", "cardiac phase",
-                                              "acquisition",       "trigger time",
-                                              "acquisition time",  "content time"};
+  keys.push_back({"tube voltage", [](const DicomHeader& h) { return h.kvp; }, " kV"});
+  constexpr std::pair<const char*, const char*> kNames[kPhaseKeys] = {
+      {"temporal position", ""}, {"cardiac phase", " % of the cycle"},
+      {"acquisition", ""},       {"trigger time", " ms"},
+      {"trigger delay", " ms"},  {"acquisition time", ""},
+      {"content time", ""}};
   for (std::size_t key = 0; key < kPhaseKeys; ++key) {
-    keys.push_back({kNames[key], [key](const DicomHeader& h) { return h.phase[key]; }});
+    const auto& [name, unit] = kNames[key];
+    keys.push_back({name, [key](const DicomHeader& h) { return h.phase[key]; }, unit});
   }
   return keys;
 }
@@ -191,6 +197,16 @@ std::string timeText(const DicomHeader& slice) {
   std::snprintf(text, sizeof text, ", %02d:%02d:%02d", int(second / 10000), int(second / 100 % 100),
                 int(second % 100));
   return text;
+}
+
+// " (80 kV)": what the key that tells scans apart is in this one, where a person knows its unit.
+std::string valueText(const std::vector<Key>& keys, const std::string& name,
+                      const DicomHeader& slice) {
+  for (const Key& key : keys) {
+    const auto value = key.name == name ? key.of(slice) : std::nullopt;
+    if (value && *key.unit != '\0') return " (" + plainNumber(*value) + key.unit + ")";
+  }
+  return "";
 }
 
 // What slices with equal HU share; nothing where the pixels cannot be read.
@@ -327,6 +343,7 @@ std::vector<std::size_t> chooseRepeats(const std::vector<const DicomHeader*>& sl
       choice.options.push_back(std::to_string(phase + 1));
       choice.words.push_back((by_kernel ? "Reconstruction " : "Phase ") +
                              std::to_string(phase + 1) + (by_kernel ? "" : " by " + told_apart_by) +
+                             valueText(keys, told_apart_by, middle) +
                              (middle.kernel.empty() ? "" : ", kernel " + shownTerm(middle.kernel)) +
                              timeText(middle) + ", " + counted(its.size(), "slice"));
       choice.on_screen.push_back(middle.description);

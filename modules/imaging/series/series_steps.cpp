@@ -16,17 +16,21 @@ double stepTolerance_mm(double step) {
   return std::max(0.01, 0.01 * step);
 }
 
-// How the steps between places compare with their median.
+// How the steps between places compare with one of them: their median, or the least.
 struct Steps {
   double median_mm = 0.0, least_mm = 0.0, most_mm = 0.0;
-  std::vector<std::int64_t> multiples;  // of the median that each step is nearest to, at least 1
+  double step_mm = 0.0;                 // with which they were compared
+  std::vector<std::int64_t> multiples;  // of that which each step is nearest to, at least 1
   std::int64_t total = 0;               // of the multiples
   bool even = true;                     // every step is its multiple, within the tolerance
   bool jittered = true;                 // ... within kJitter
   bool gaps = false;                    // a multiple over 1
+  std::int64_t missing() const { return total - std::int64_t(multiples.size()); }
 };
 
-Steps stepsOf(const Slices& slices) {
+enum class StepBy { median, least };
+
+Steps stepsOf(const Slices& slices, StepBy by = StepBy::median) {
   std::vector<double> steps;
   for (std::size_t i = 1; i < slices.size(); ++i) {
     steps.push_back(slices[i].place_mm - slices[i - 1].place_mm);
@@ -37,12 +41,14 @@ Steps stepsOf(const Slices& slices) {
   result.median_mm = sorted[(sorted.size() - 1) / 2];  // of two, the smaller: never a gap
   result.least_mm = sorted.front();
   result.most_mm = sorted.back();
+  result.step_mm = by == StepBy::median ? result.median_mm : result.least_mm;
+  const double unit = result.step_mm;
   for (const double step : steps) {
-    const double multiple = std::clamp(std::round(step / result.median_mm), 1.0, 1e9);
-    const double off = std::abs(step - multiple * result.median_mm);
-    const double most = kJitter * result.median_mm;
-    result.even &= off <= std::min(multiple * stepTolerance_mm(result.median_mm),
-                                   std::max(most, stepTolerance_mm(result.median_mm)));
+    const double multiple = std::clamp(std::round(step / unit), 1.0, 1e9);
+    const double off = std::abs(step - multiple * unit);
+    const double most = kJitter * unit;
+    result.even &=
+        off <= std::min(multiple * stepTolerance_mm(unit), std::max(most, stepTolerance_mm(unit)));
     result.jittered &= off <= most;
     result.gaps |= multiple > 1.5;
     result.multiples.push_back(std::int64_t(multiple));
@@ -161,11 +167,11 @@ void planGaps(Slices slices, const Steps& steps, const Answers& answers,
   std::int64_t missing = 0;
   const std::vector<std::string> places = missingPlaces(slices, steps, missing);
   const std::string text = counted(std::uint64_t(missing), "slice", "is", "are") +
-                           " missing from a stack with a step of " + lengthText(steps.median_mm) +
+                           " missing from a stack with a step of " + lengthText(steps.step_mm) +
                            lost_text;
   const Slices part =
-      longestPart(slices, steps.median_mm,
-                  steps.even ? stepTolerance_mm(steps.median_mm) : kJitter * steps.median_mm);
+      longestPart(slices, steps.step_mm,
+                  steps.even ? stepTolerance_mm(steps.step_mm) : kJitter * steps.step_mm);
   Choice choice{
       "MISSING_SLICES",
       places.size() == 1 ? "What shall become of the gap?" : "What shall become of the gaps?",
@@ -398,28 +404,45 @@ void planAlongNormal(Slices slices, const StackInput& input, const Vec3& normal,
                      const Answers& answers, Stack& stack) {
   const std::string& lost_text = input.lost_text;
   Steps steps = stepsOf(slices);
+  // A step that all intervals are multiples of, at least half of the slices being there.
+  if (!steps.even) {
+    Steps by_least = stepsOf(slices, StepBy::least);
+    const bool half = by_least.missing() <= std::int64_t(by_least.multiples.size());
+    if (by_least.even && by_least.gaps && half) steps = std::move(by_least);
+  }
   const double grid_mm = roundedTo_mm(input.positions_mm);
-  // Whole steps with gaps may be rounded ones, too: only the header can tell.
+  // Whole steps with gaps may be rounded ones, too: only where a step that the header states
+  // explains them with fewer slices missing. By the least step they were, where any line of no
+  // gap explains them.
   const std::optional<double> known_mm =
       input.spacing_between_mm || !steps.even ? input.spacing_between_mm : input.thickness_mm;
-  if (grid_mm > 0.0 && (!steps.even || (steps.gaps && known_mm))) {
+  const bool by_least = steps.step_mm != steps.median_mm;
+  if (grid_mm > 0.0 && (!steps.even || (steps.gaps && (known_mm || by_least)))) {
     const double most_mm = mostRounded_mm(grid_mm, normal);
     std::optional<Slices> fitted;
+    bool by_statement = false;
     // What is a whole number of the grid's steps is not moved by rounding.
     const double steps_of_grid = known_mm.value_or(0.0) / grid_mm;
     if (known_mm && std::abs(steps_of_grid - std::round(steps_of_grid)) > 1e-6) {
       if (const auto numbers = numbersOf(slices, std::abs(*known_mm), most_mm)) {
         fitted = onLineOf(slices, *numbers, std::abs(*known_mm));
+        by_statement = true;
       }
     }
     if (!fitted) fitted = onTheirLine(slices, most_mm, known_mm);
+    if (fitted && steps.even) {
+      const double unit = by_statement ? std::abs(*known_mm) : stepsOf(*fitted).least_mm;
+      const double extent = fitted->back().place_mm - fitted->front().place_mm;
+      const auto missing = std::int64_t(std::round(extent / unit)) - std::int64_t(slices.size()) + 1;
+      if (missing >= steps.missing() || (!known_mm && missing > 0)) fitted.reset();
+    }
     if (fitted && moved(*fitted, slices)) {
       slices = *std::move(fitted);
       steps = stepsOf(slices);
-      stack.findings.push_back(roundedFinding(grid_mm, steps.median_mm));
+      stack.findings.push_back(roundedFinding(grid_mm, steps.step_mm));
     }
   }
-  stack.geometry.spacing_mm.z = steps.median_mm;
+  stack.geometry.spacing_mm.z = steps.step_mm;
   const auto usable = std::ranges::count(slices, true, &Slice::usable);
   const bool lost = std::size_t(usable) < slices.size();
   if (usable < 2) {

@@ -193,8 +193,18 @@ class StrangersGuiTest : public test::TrainTest {
     QVERIFY(!reading->isVisible());
     review.showRecordings({}, true, "", {});
     QVERIFY(none->isVisible() && none->text().contains("No exercise has been recorded"));
+    review.showRecordings({bad}, false, "", {});
     review.showNoRecordings("The recordings cannot be listed.");
-    QCOMPARE(none->text(), QString("The recordings cannot be listed."));
+    QVERIFY(reading->isVisible() && rows->isVisible());
+    QCOMPARE(reading->text(), QString("The recordings cannot be listed."));
+    // What a replay came to stays while the list grows.
+    ListedRecording good = bad;
+    good.file = "/r/good.h5";
+    good.problem.reset();
+    review.showRecordings({good}, false, "s", {});
+    review.showOutcome("It replays bit for bit.");
+    review.showRecordings({good, bad}, true, "s", {});
+    QCOMPARE(review.findChild<QLabel*>("replayOutcome")->text(), QString("It replays bit for bit."));
 
     CasesPage cases;
     cases.show();
@@ -208,7 +218,11 @@ class StrangersGuiTest : public test::TrainTest {
     QVERIFY(done->text().contains("No exercise has been done"));
     cases.showNoRecordings("The recordings cannot be listed.");
     QCOMPARE(done->text(), QString("The recordings cannot be listed."));
+    cases.showRecordings({bad}, false);
+    cases.showNoRecordings("The recordings cannot be listed.");
+    QVERIFY(done->text().contains("cannot be listed") && done->text().contains("0:00"));
     cases.showRecordings({bad, bad}, false);
+    QVERIFY(!cases.allRecordingsRead());
     QCOMPARE(cases.exercisesOn(entry).size(), 2u);
     cases.showRecordings({bad}, false);
     QCOMPARE(cases.exercisesOn(entry).size(), 2u);  // while they are read anew

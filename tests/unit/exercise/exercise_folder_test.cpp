@@ -266,6 +266,32 @@ TEST_F(ExerciseFolder, APartThatNothingNamesOrIsNamedInTwoWaysAndAListThatIsALin
   ASSERT_FALSE(unnamed);
   EXPECT_NE(unnamed.error().what.find("evil.sh"), std::string::npos) << unnamed.error().what;
   fs::remove(stick / "evil.sh");
+  // A name like the case's makes it no part of that.
+  ASSERT_TRUE(writeTextFile(stick / "case/volume.payload", "x"));
+  listAnew(stick);
+  EXPECT_EQ(importExercise(stick, folder_ / "elsewhere").error().code, "BAD_FIELD");
+  fs::remove(stick / "case/volume.payload");
+  // Names beside a label map, and voxels beside a header, are named by these.
+  const Segmentation read = *readSegmentation(stick / "case/structures.seg.nrrd");
+  const LabelMap map = merged(read, smallerFirst(read));
+  ASSERT_TRUE(writeSegmentation(map, stick / "case/labels.nii.gz"));
+  ASSERT_TRUE(fs::exists(stick / "case/labels.structures.json"));
+  fs::remove(stick / "case/structures.seg.nrrd");
+  std::string volume = test::bytesOfFile(stick / "case/volume.mha");
+  const std::size_t voxels = volume.find("LOCAL\n") + 6;
+  ASSERT_TRUE(writeTextFile(stick / "case/other.raw", volume.substr(voxels)));
+  ASSERT_TRUE(writeTextFile(stick / "case/volume.mhd",
+                            volume.substr(0, voxels - 6) + "other.raw\n"));
+  fs::remove(stick / "case/volume.mha");
+  Json scene = *readJsonFile(stick / "scene.json");
+  scene["case"] = "case/volume.mhd";
+  scene["labels"] = "case/labels.nii.gz";
+  const std::string scene_before = test::bytesOfFile(stick / "scene.json");
+  ASSERT_TRUE(writeTextFile(stick / "scene.json", scene.dump()));
+  listAnew(stick);
+  const auto beside = importExercise(stick, folder_ / "beside");
+  ASSERT_TRUE(beside.ok()) << beside.error().sentence();
+  EXPECT_TRUE(beside->check.verified());
   Json twice = good;
   const auto in_folder = std::ranges::find_if(good["parts"], [](const Json& part) {
     return part["file"].get<std::string>().find('/') != std::string::npos;
@@ -288,7 +314,8 @@ TEST_F(ExerciseFolder, WhatTheDiskHasNoRoomForIsRefusedBeforeItIsRead) {
   exported(shipped("liver"));
   const fs::path stick = folder_ / "stick";
   Json list = *readJsonFile(stick / "exercise.json");
-  constexpr std::uintmax_t kHuge = std::uintmax_t(1) << 42;  // 4 TB, of which none is stored
+  // More than is free, of which nothing is stored.
+  const std::uintmax_t kHuge = fs::space(folder_.path()).available + (std::uintmax_t(1) << 33);
   fs::resize_file(stick / "tissues.json", kHuge);
   for (Json& part : list["parts"]) {
     if (part["file"] == "tissues.json") part["bytes"] = kHuge;
@@ -331,7 +358,7 @@ TEST_F(ExerciseFolder, ACaseThatCannotBeOpenedFromItsPartsAloneIsRefusedAndNothi
     scene["case"] = "case/volume.mhd";
     ASSERT_TRUE(writeTextFile(stick / "scene.json", scene.dump()));
     const Error error = refused();
-    EXPECT_EQ(error.sentence().find(".part-"), std::string::npos) << error.sentence();
+    EXPECT_EQ(error.sentence().find("-part-"), std::string::npos) << error.sentence();
   }
   // Cut short.
   ASSERT_TRUE(writeTextFile(stick / "scene.json", good.dump()));
@@ -406,7 +433,7 @@ TEST_F(ExerciseFolder, EveryShippedSceneIsSavedReadAndSavedAgainInTheSameBytes) 
   EXPECT_GE(scenes, 7);
   EXPECT_EQ(exercisesIn(folder_ / "storage").size(), std::size_t(2 * scenes));
   for (const fs::path& file : filesBelow(folder_.path())) {
-    EXPECT_EQ(file.string().find(".part-"), std::string::npos) << file;
+    EXPECT_EQ(file.string().find("-part-"), std::string::npos) << file;
   }
 }
 
@@ -537,8 +564,10 @@ TEST_F(ExerciseFolder, AMeshGoesWithoutWhatItsHeaderSaysOfItsMaker) {
 
 TEST_F(ExerciseFolder, WhatAKilledProgramLeftIsTakenAwayAndWhatALivingOneWritesIsNot) {
   const fs::path storage = folder_ / "storage", exercises = storage / "exercises";
-  const fs::path left = exercises / ".mine.part-abcdef", written = exercises / ".mine.part-ghijkl";
-  for (const fs::path& part : {left, written}) {
+  const fs::path left = exercises / ".mine.trephine-part-abcdef";
+  const fs::path written = exercises / ".mine.trephine-part-ghijkl";
+  const fs::path own = exercises / ".thesis.part-second";
+  for (const fs::path& part : {left, written, own}) {
     fs::create_directories(part / "tools");
     ASSERT_TRUE(writeTextFile(part / "scene.json", "{").ok());
   }
@@ -547,6 +576,7 @@ TEST_F(ExerciseFolder, WhatAKilledProgramLeftIsTakenAwayAndWhatALivingOneWritesI
   ASSERT_TRUE(saveExercise(*readScene(shipped("liver")), exercises / "mine", storage).ok());
   EXPECT_FALSE(fs::exists(left));
   EXPECT_TRUE(fs::exists(written));
+  EXPECT_TRUE(fs::exists(own / "scene.json")) << "a person's own folder";
 }
 
 TEST_F(ExerciseFolder, ASavedOneNamesItsCaseFromWhereItLiesAndMovesWithTheStorage) {

@@ -778,6 +778,87 @@ TEST_F(DicomSeg, AFileOfATerabyteOfNothingIsNoneAndKeepsNobodyWaiting) {
   writeBytes(file(), std::string(128, '\0') + "DICM");
   fs::resize_file(file(), kHuge);
   EXPECT_FALSE(isDicomSegmentation(file()));
+  // After a good beginning.
+  SegFile seg;
+  seg.frames = {frameOf(seg, 1, 0, pattern)};
+  save(seg);
+  writeBytes(file(), readBytes(file()).substr(0, 600));
+  fs::resize_file(file(), kHuge);
+  EXPECT_EQ(refused().code, "UNREADABLE");
+}
+
+TEST_F(DicomSeg, FramesAlongTheAxisOfATiltedGantryAreReadWhereTheyLie) {
+  for (const double tilt : {0.28, -0.28, 0.2, -0.12, 0.05}) {
+    SegFile seg;
+    for (int k = 0; k < 6; ++k) {
+      seg.frames.push_back(frameOf(seg, 1, k, pattern));
+      seg.frames.back().position_mm.y += tilt * 2.5 * k;
+    }
+    save(seg);
+    const Segmentation s = read().segmentation;
+    ASSERT_EQ(s.geometry.size[2], 6);
+    std::size_t voxels_there = 0, voxels = 0;
+    for (const std::uint8_t label : s.layers[0]) voxels += label != 0;
+    for (int k = 0; k < 6; ++k) {
+      const SegFile::Frame& frame = seg.frames[std::size_t(k)];
+      for (int j = 0; j < seg.rows; ++j) {
+        for (int i = 0; i < seg.columns; ++i) {
+          if (!pattern(i, j, k)) continue;
+          // Within half a pixel of where the frame has it.
+          const Vec3 at = frame.position_mm + Vec3(0.5 * i, 0.75 * j, 0.0);
+          const Vec3 v = Vec3(s.geometry.patientToVoxel() * glm::dvec4(at, 1.0));
+          const int column = int(std::round(v.x));
+          for (const int row : {int(std::floor(v.y)), int(std::ceil(v.y))}) {
+            const bool inside = s.geometry.contains(column, row, k) && std::abs(v.y - row) <= 0.501;
+            if (!inside || s.layers[0][s.geometry.indexOf(column, row, k)] == 0) continue;
+            ++voxels_there;
+            break;
+          }
+        }
+      }
+    }
+    std::size_t marked = 0;
+    for (int k = 0; k < 6; ++k) {
+      for (int j = 0; j < seg.rows; ++j) {
+        for (int i = 0; i < seg.columns; ++i) marked += pattern(i, j, k);
+      }
+    }
+    EXPECT_EQ(voxels, marked) << tilt;
+    EXPECT_EQ(voxels_there, marked) << tilt;
+  }
+}
+
+TEST_F(DicomSeg, ALabelMapSegmentationIsRead) {
+  for (int variant = 0; variant < 5; ++variant) {
+    SegFile seg;
+    seg.fractional = true;  // a byte for each pixel
+    seg.segments = {{3, "liver"}, {7, "spleen"}};
+    if (variant > 2) seg.segments.push_back({0, "Background"});
+    for (int k = 0; k < 4; ++k) {
+      seg.frames.push_back(frameOf(seg, 1, k, [&](int i, int j, int n) {
+        return (i + j + n) % 3 == 0 ? 3 : (i * j + n + variant) % 4 == 0 ? 7 : 0;
+      }));
+    }
+    DcmDataset data = datasetOf(seg);
+    set(data, DCM_SOPClassUID, "1.2.840.10008.5.1.4.1.1.66.7");
+    set(data, DCM_SegmentationType, "LABELMAP");
+    for (int k = 0; k < 4; ++k) {
+      delete itemOf(data, DCM_PerFrameFunctionalGroupsSequence, k)
+          .remove(DCM_SegmentIdentificationSequence);
+    }
+    save(data);
+    const Segmentation s = read().segmentation;
+    ASSERT_EQ(s.layers.size(), 1u);
+    ASSERT_EQ(s.segments.size(), 2u);
+    EXPECT_EQ(s.segments[0].name, "liver");
+    EXPECT_EQ(s.segments[1].value, 7);
+    for (int k = 0; k < 4; ++k) {
+      for (int n = 0; n < seg.rows * seg.columns; ++n) {
+        ASSERT_EQ(int(s.layers[0][std::size_t(k * seg.rows * seg.columns + n)]),
+                  seg.frames[std::size_t(k)].values[std::size_t(n)]);
+      }
+    }
+  }
 }
 
 TEST_F(DicomSeg, ASegmentationIsToldFromOthersAndOtherKindsAreNamed) {
@@ -792,7 +873,7 @@ TEST_F(DicomSeg, ASegmentationIsToldFromOthersAndOtherKindsAreNamed) {
   set(data, DCM_SOPClassUID, "1.2.840.10008.5.1.4.1.1.66.7");
   save(data);
   EXPECT_TRUE(isDicomSegmentation(file()));
-  EXPECT_EQ(refused().code, "UNSUPPORTED_SEGMENTATION");
+  EXPECT_EQ(refused().code, "UNSUPPORTED_SEGMENTATION") << "it does not say that it is one";
   data = datasetOf(seg);
   set(data, DCM_SegmentationType, "LABELMAP");
   save(data);

@@ -29,20 +29,23 @@ void takeOut(const char* dataset, const std::filesystem::path& recording) {
   H5Fclose(file);
 }
 
-TEST(RecordingMark, StandsWhileItIsWrittenAndStaysWhereItsProgramWasKilled) {
+TEST(IsBeingWritten, IsSoOfAMarkedRecordingThatWasWrittenAMomentAgo) {
   test::TemporaryFolder folder;
   recordRun(folder / "whole.h5", 500);
-  EXPECT_FALSE(saysItIsWritten(folder / "whole.h5"));
+  EXPECT_FALSE(isBeingWritten(folder / "whole.h5"));
   auto recorder = SessionRecorder::create(
       folder / "now.h5", {toJson(test::sceneWithOneArm()), volumeSha256(slab()), {}, "test"}, 1);
   ASSERT_TRUE(recorder.ok());
-  EXPECT_TRUE(saysItIsWritten(folder / "now.h5"));
+  EXPECT_TRUE(isBeingWritten(folder / "now.h5"));
   std::filesystem::copy_file(folder / "now.h5", folder / "killed.h5");
-  EXPECT_TRUE(saysItIsWritten(folder / "killed.h5"));
-  std::ofstream(folder / "letter.h5") << "Dear Sir, I hope that you are well";
-  EXPECT_FALSE(saysItIsWritten(folder / "letter.h5"));
+  EXPECT_TRUE(isBeingWritten(folder / "killed.h5"));
+  std::filesystem::last_write_time(
+      folder / "killed.h5", std::filesystem::file_time_type::clock::now() - std::chrono::minutes(1));
+  EXPECT_FALSE(isBeingWritten(folder / "killed.h5"));
+  std::ofstream(folder / "letter.h5") << "Dear Madam, I hope that you are well";
+  EXPECT_FALSE(isBeingWritten(folder / "letter.h5"));
   std::ofstream(folder / "short.h5") << "\x89HDF";
-  EXPECT_FALSE(saysItIsWritten(folder / "short.h5"));
+  EXPECT_FALSE(isBeingWritten(folder / "short.h5"));
 }
 
 // A recording that points elsewhere is refused before anything else is opened: `change` is given

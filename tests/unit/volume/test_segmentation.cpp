@@ -1,5 +1,6 @@
 #include <zlib.h>
 
+#include <cstring>
 #include <fstream>
 
 #include "support.h"
@@ -347,6 +348,167 @@ TEST(Structures, AnUnusedLabelIsOneThatNothingHas) {
   ASSERT_TRUE(map.find(2));
   EXPECT_EQ(map.find(2)->name, "label 2");
   EXPECT_EQ(map.structures.size(), 4u);
+}
+
+// A label map of 4 x 3 x 2 voxels as NIfTI, of any type; `extension` stands behind the header.
+std::string niftiOf(const std::vector<double>& values, int type, int bits, float slope = 1.0f,
+                    const std::string& extension = "") {
+  std::string bytes(352, '\0');
+  const auto put = [&](std::size_t at, auto value) {
+    std::memcpy(bytes.data() + at, &value, sizeof value);
+  };
+  put(0, std::int32_t(348));
+  const std::int16_t dims[] = {3, 4, 3, 2};
+  for (std::size_t n = 0; n < 4; ++n) put(40 + 2 * n, dims[n]);
+  put(70, std::int16_t(type));
+  put(72, std::int16_t(bits));
+  for (std::size_t n = 0; n < 4; ++n) put(76 + 4 * n, 1.0f);
+  const std::size_t start = (352 + (extension.empty() ? 0 : extension.size() + 8) + 15) / 16 * 16;
+  put(108, float(start));
+  put(112, slope);
+  put(254, std::int16_t(1));
+  put(280, 1.0f);
+  put(300, 1.0f);
+  put(320, 1.0f);
+  bytes[344] = 'n';
+  bytes[345] = '+';
+  bytes[346] = '1';
+  if (!extension.empty()) {
+    bytes[348] = 1;
+    bytes.resize(360);
+    put(352, std::int32_t(extension.size() + 8));
+    bytes += extension;
+  }
+  bytes.resize(start, '\0');
+  for (const double value : values) {
+    if (type == 2) bytes += char(std::uint8_t(value));
+    if (type == 4) {
+      const auto v = std::int16_t(value);
+      bytes.append(reinterpret_cast<const char*>(&v), 2);
+    }
+    if (type == 8) {
+      const auto v = std::int32_t(value);
+      bytes.append(reinterpret_cast<const char*>(&v), 4);
+    }
+    if (type == 16) {
+      const auto v = float(value);
+      bytes.append(reinterpret_cast<const char*>(&v), 4);
+    }
+  }
+  return bytes;
+}
+
+std::vector<double> labelsOf(const std::vector<double>& some) {
+  std::vector<double> values;
+  for (std::size_t v = 0; v < 24; ++v) values.push_back(some[v % some.size()]);
+  return values;
+}
+
+TEST(SegmentationNumbers, AboveWhatACaseCountsToAreGivenOthersAndNamedByWhatTheyWere) {
+  test::TemporaryFolder folder;
+  for (const std::vector<double>& some : std::vector<std::vector<double>>{
+           {0, 5000}, {0, 1, 5000, 2}, {0, 256, 257}, {0, 1, 2, 3, 32767}, {0, 14175, 255, 1000}}) {
+    writeBytes(folder / "l.nii", niftiOf(labelsOf(some), 8, 32));
+    const auto read = readSegmentation(folder / "l.nii");
+    ASSERT_TRUE(read.ok()) << read.error().sentence();
+    ASSERT_EQ(read->segments.size(), some.size() - 1);
+    for (const Segmentation::Segment& segment : read->segments) {
+      const auto at = std::ranges::find(read->layers[0], segment.value) - read->layers[0].begin();
+      const double number = labelsOf(some)[std::size_t(at)];
+      if (number <= 255) {
+        EXPECT_EQ(segment.value, number);
+      } else {
+        EXPECT_EQ(segment.name, "label " + std::to_string(int(number)));
+      }
+    }
+  }
+  // A list beside the file names them by their own numbers.
+  writeBytes(folder / "l.nii", niftiOf(labelsOf({0, 5000, 7}), 8, 32));
+  writeBytes(folder / "l.label", "5000 255 0 0 1 1 1 \"liver\"\n7 0 255 0 1 1 1 \"vein\"\n");
+  const auto named = readSegmentation(folder / "l.nii");
+  ASSERT_TRUE(named.ok());
+  EXPECT_EQ(named->segments[0].name, "liver");
+  EXPECT_EQ(named->segments[1].name, "vein");
+  EXPECT_EQ(named->segments[1].value, 7);
+  std::vector<double> many;
+  for (int n = 0; n < 24; ++n) many.push_back(40000 + n);
+  writeBytes(folder / "l.nii", niftiOf(many, 8, 32));
+  EXPECT_EQ(readSegmentation(folder / "l.nii").error().code, "NOT_LABELS");
+}
+
+TEST(SegmentationNumbers, ThatASlopeOrAFloatLeavesBesideAWholeNumberAreThatNumber) {
+  test::TemporaryFolder folder;
+  // 5 / 32768 and the like, as nibabel scales labels into int16.
+  for (const double most : {5.0, 7.0, 100.0, 117.0, 255.0}) {
+    const float slope = float(most / 32767.0);
+    writeBytes(folder / "l.nii", niftiOf(labelsOf({0, 32767}), 4, 16, slope));
+    const auto read = readSegmentation(folder / "l.nii");
+    ASSERT_TRUE(read.ok()) << read.error().sentence();
+    ASSERT_EQ(read->segments.size(), 1u);
+    EXPECT_EQ(read->segments[0].value, most);
+  }
+  for (const double off : {3e-7, -3e-7, 5e-5}) {
+    writeBytes(folder / "l.nii", niftiOf(labelsOf({0, 5.0 + off}), 16, 32));
+    EXPECT_TRUE(readSegmentation(folder / "l.nii").ok()) << off;
+  }
+  for (const double off : {0.5, 0.01, -0.3}) {
+    writeBytes(folder / "l.nii", niftiOf(labelsOf({0, 5.0 + off}), 16, 32));
+    EXPECT_EQ(readSegmentation(folder / "l.nii").error().code, "NOT_LABELS") << off;
+  }
+}
+
+TEST(SegmentationNames, OfATableInTheHeaderOfANiftiAreTaken) {
+  test::TemporaryFolder folder;
+  const std::string table =
+      R"(<?xml version="1.0"?><CaretExtension><VolumeInformation Index="0"><LabelTable>)"
+      R"(<Label Key="0" Red="0" Green="0" Blue="0" Alpha="0">???</Label>)"
+      R"(<Label Key="5" Red="0.6" Green="0.2" Blue="0.1" Alpha="1"><![CDATA[liver <b>]]></Label>)"
+      R"(<Label Key="9" Red="0" Green="1" Blue="0" Alpha="1">Milz &amp; co</Label>)"
+      R"(<Label Key="77" Red="0" Green="1" Blue="0" Alpha="1">not there</Label>)"
+      R"(<Label Key="x">broken</Label><Label Key="8")";
+  writeBytes(folder / "l.nii", niftiOf(labelsOf({0, 5, 9}), 2, 8, 1.0f, table));
+  const auto read = readSegmentation(folder / "l.nii");
+  ASSERT_TRUE(read.ok()) << read.error().sentence();
+  ASSERT_EQ(read->segments.size(), 2u);
+  EXPECT_EQ(read->segments[0].name, "liver <b>");
+  EXPECT_EQ(read->segments[0].value, 5);
+  EXPECT_NEAR(read->segments[0].colour.x, 0.6, 1e-6);
+  EXPECT_EQ(read->segments[1].name, "Milz & co");
+  EXPECT_TRUE(read->named);
+}
+
+TEST(SegmentationFolder, OfMasksIsOneSegmentation) {
+  test::TemporaryFolder folder;
+  const std::filesystem::path masks = folder / "masks";
+  std::filesystem::create_directory(masks);
+  const auto write = [&](const std::string& name, const std::vector<double>& some) {
+    writeBytes(masks / (name + ".nii"), niftiOf(labelsOf(some), 2, 8));
+  };
+  write("liver", {0, 1, 0, 0});
+  write("spleen", {0, 0, 1, 0});
+  write("vessel", {0, 1, 1, 0});  // in both
+  write("gallbladder", {0});
+  writeBytes(masks / "readme.txt", "made by a program");
+  const auto read = readSegmentation(masks);
+  ASSERT_TRUE(read.ok()) << read.error().sentence();
+  EXPECT_EQ(read->layers.size(), 2u);
+  ASSERT_EQ(read->segments.size(), 4u);
+  EXPECT_EQ(read->segments[0].name, "gallbladder");
+  EXPECT_EQ(overlaps(*read).size(), 2u);
+  for (const Segmentation::Segment& segment : read->segments) {
+    const auto count = std::ranges::count(read->layers[segment.layer], segment.value);
+    EXPECT_EQ(count, segment.name == "gallbladder" ? 0 : segment.name == "vessel" ? 12 : 6);
+  }
+  write("both", {0, 1, 2});
+  EXPECT_EQ(readSegmentation(masks).error().code, "NOT_LABELS");
+  std::filesystem::remove(masks / "both.nii");
+  std::string other = niftiOf(labelsOf({0, 1}), 2, 8);
+  const float moved = 3.0f;
+  std::memcpy(other.data() + 292, &moved, 4);
+  writeBytes(masks / "other.nii", other);
+  EXPECT_EQ(readSegmentation(masks).error().code, "OTHER_GRID");
+  std::filesystem::create_directory(folder / "none");
+  EXPECT_EQ(readSegmentation(folder / "none").error().code, "NOT_LABELS");
 }
 
 }  // namespace

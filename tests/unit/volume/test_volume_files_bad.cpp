@@ -98,6 +98,35 @@ TEST_F(BadVolumeFiles, CutShortAtAnyLength) {
   }
 }
 
+TEST_F(BadVolumeFiles, VoxelsBesideAHeaderThatAreMoreThanItSaysAreNotReadShifted) {
+  const std::string voxels(2 * 64, '\1');
+  const std::string meta =
+      "ObjectType = Image\nNDims = 3\nDimSize = 4 4 4\nElementSpacing = 1 1 1\n"
+      "ElementType = MET_SHORT\n";
+  const std::string nrrd =
+      "NRRD0004\ntype: short\ndimension: 3\nspace: left-posterior-superior\nsizes: 4 4 4\n"
+      "space directions: (1,0,0) (0,1,0) (0,0,1)\nspace origin: (0,0,0)\nendian: little\n"
+      "encoding: raw\ndata file: v.raw\n";
+  for (const std::size_t more : {352u, 1u, 2u, 32u, 128u}) {
+    writeBytes(folder / "v.raw", std::string(more, '\0') + voxels);
+    writeBytes(folder / "a.mhd", meta + "ElementDataFile = v.raw\n");
+    writeBytes(folder / "a.nhdr", nrrd);
+    for (const char* name : {"a.mhd", "a.nhdr"}) {
+      EXPECT_NE(sentenceOf(folder / name).find(std::to_string(more) + " bytes longer"),
+                std::string::npos)
+          << sentenceOf(folder / name);
+    }
+    // Where the header says that they stand in front, or at the end, they are no surprise.
+    writeBytes(folder / "a.mhd", meta + "HeaderSize = " + std::to_string(more) +
+                                     "\nElementDataFile = v.raw\n");
+    writeBytes(folder / "a.nhdr", nrrd + "byte skip: " + std::to_string(more) + "\n");
+    EXPECT_EQ(codeOf(folder / "a.mhd"), "ok");
+    EXPECT_EQ(codeOf(folder / "a.nhdr"), "ok");
+    writeBytes(folder / "a.mhd", meta + "HeaderSize = -1\nElementDataFile = v.raw\n");
+    EXPECT_EQ(codeOf(folder / "a.mhd"), "ok");
+  }
+}
+
 TEST_F(BadVolumeFiles, MetaImageHeadersThatCannotBe) {
   EXPECT_EQ(codeOfMeta("", ""), "ok");
   EXPECT_EQ(codeOfMeta("NDims", "2"), "UNREADABLE");
@@ -163,13 +192,15 @@ TEST_F(BadVolumeFiles, NiftiHeadersThatCannotBe) {
   EXPECT_EQ(codeOfNifti(108, -352.0f), "UNREADABLE");
   EXPECT_EQ(codeOfNifti(108, 354.0f), "UNREADABLE") << "two bytes too few";
   EXPECT_EQ(codeOfNifti(108, 0.0f), "ok") << "where voxels start by custom";
-  EXPECT_EQ(codeOfNifti(280, 3.0f), "ok") << "the sform's spacing is what counts";
-  EXPECT_EQ(codeOfNifti(284, 0.5f), "BAD_GEOMETRY") << "shear";
-  EXPECT_EQ(codeOfNifti(280, 0.0f), "BAD_GEOMETRY") << "no first axis";
-  EXPECT_EQ(codeOfNifti(292, std::numeric_limits<float>::infinity()), "BAD_GEOMETRY");
+  EXPECT_EQ(codeOfNifti(280, 3.0f), "FORMS_DIFFER") << "another step than that of the qform";
+  // Of the two forms one alone can be a place, and a person may choose it.
+  EXPECT_EQ(codeOfNifti(284, 0.5f), "FORMS_DIFFER") << "shear";
+  EXPECT_EQ(codeOfNifti(280, 0.0f), "FORMS_DIFFER") << "no first axis";
+  EXPECT_EQ(codeOfNifti(292, std::numeric_limits<float>::infinity()), "FORMS_DIFFER");
   EXPECT_EQ(codeOfNifti(252, std::int32_t(0)), "BAD_GEOMETRY") << "neither sform nor qform";
   EXPECT_EQ(codeOfNifti(254, std::int16_t(0)), "ok") << "the qform alone";
-  EXPECT_EQ(codeOfNifti(76, std::array{1.0f, 0.0f, 1.0f, 1.0f}), "ok") << "the sform has it";
+  EXPECT_EQ(codeOfNifti(76, std::array{1.0f, 0.0f, 1.0f, 1.0f}), "FORMS_DIFFER")
+      << "a qform over voxels of no size";
 }
 
 TEST_F(BadVolumeFiles, AQformOverVoxelsOfNoSizeIsRefused) {
