@@ -1,15 +1,11 @@
 #include "exercise/exercise_parts.h"
 
 #include <fcntl.h>
-#include <sys/file.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
-#include <chrono>
 #include <cstdio>
-#include <cstdlib>
 #include <cstring>
 #include <fstream>
 #include <optional>
@@ -25,8 +21,8 @@ namespace trephine {
 
 namespace fs = std::filesystem;
 
-// Of folders that are being written: mkdtemp's pattern.
-constexpr const char *kPart = ".trephine-part-", *kRandom = "XXXXXX";
+// Of folders that are being written.
+constexpr const char* kPart = ".trephine-part-";
 constexpr int kMostNames = 1000;
 
 std::string plainName(const std::string& text, const std::string& otherwise) {
@@ -93,43 +89,8 @@ Result<ExercisePart> partOf(const fs::path& folder, const std::string& file,
   return part;
 }
 
-namespace {
-
-Descriptor opened(const fs::path& folder) {
-  return Descriptor(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC));
-}
-
-// One of this account, of a program that has ended; it is locked meanwhile, so that none begins to write there. On a
-// disk that knows no locks of folders none works on one for a day.
-void removeIfLeft(const fs::path& part) {
-  constexpr auto kOld = std::chrono::hours(24);
-  const Descriptor folder = opened(part);
-  struct stat status {};
-  if (!folder.ok() || ::fstat(folder.get(), &status) != 0 || status.st_uid != ::geteuid()) return;
-  bool left = ::flock(folder.get(), LOCK_EX | LOCK_NB) == 0;
-  std::error_code ec;
-  if (!left && errno != EWOULDBLOCK) {
-    const auto last = fs::last_write_time(part, ec);
-    left = !ec && fs::file_time_type::clock::now() - last > kOld;
-  }
-  if (left) fs::remove_all(part, ec);
-}
-
-}  // namespace
-
 void PartFolder::removeLeft(const fs::path& folder) {
-  std::vector<fs::path> parts;
-  std::error_code ec;
-  for (auto it = fs::directory_iterator(folder, ec); !ec && it != fs::end(it); it.increment(ec)) {
-    const std::string name = it->path().filename().string();
-    std::error_code none;
-    const std::size_t part = name.rfind(kPart);
-    if (!name.starts_with('.') || part == std::string::npos) continue;
-    if (name.size() != part + std::strlen(kPart) + std::strlen(kRandom)) continue;
-    if (it->symlink_status(none).type() != fs::file_type::directory) continue;
-    parts.push_back(it->path());
-  }
-  for (const fs::path& part : parts) removeIfLeft(part);
+  LockedFolder::removeLeft(folder, kPart);
 }
 
 Result<PartFolder> PartFolder::make(const fs::path& target) {
@@ -138,40 +99,20 @@ Result<PartFolder> PartFolder::make(const fs::path& target) {
   if (!to.has_filename()) to = to.parent_path();  // it ended with a slash
   if (Status made = makeFolder(to.parent_path()); !made) return made.error();
   removeLeft(to.parent_path());
-  const std::string pattern =
-      (to.parent_path() / ("." + to.filename().string() + kPart + kRandom)).string();
-  std::string path;
-  Descriptor lock;
-  constexpr int kMostTries = 10;
-  for (int tries = 0; tries < kMostTries; ++tries) {
-    path = pattern;
-    if (!::mkdtemp(path.data())) return writeError(target, errno);
-    lock = opened(path);
-    const int why = errno;
-    while (lock.ok() && ::flock(lock.get(), LOCK_EX) != 0 && errno == EINTR) {  // where it is known
-    }
-    if (lock.ok() && fs::is_directory(path, ec)) break;
-    // Another program may have taken it for one that was left, before it was locked.
-    fs::remove(path, ec);
-    if (why != ENOENT || tries + 1 == kMostTries) return writeError(target, why);
-    lock.close();
-  }
-  // mkdtemp's are for their owner alone.
-  fs::permissions(path, fs::perms(0755), ec);
-  giveToGroup(path);
-  return PartFolder(path, to, std::move(lock));
-}
-
-PartFolder::~PartFolder() {
-  std::error_code ec;
-  if (!path_.empty()) fs::remove_all(path_, ec);
+  auto folder =
+      LockedFolder::make(to.parent_path(), "." + to.filename().string() + kPart, target);
+  if (!folder) return folder.error();
+  // It is for its owner alone so far.
+  fs::permissions(folder->path(), fs::perms(0755), ec);
+  giveToGroup(folder->path());
+  return PartFolder(*std::move(folder), to);
 }
 
 Status PartFolder::write(const std::string& file,
                          const std::function<Status(const fs::path&)>& write) {
-  const fs::path path = path_ / file;
-  if (Status made = makeFolder(path.parent_path()); !made) return made;
-  return write(path);
+  const fs::path whole = path() / file;
+  if (Status made = makeFolder(whole.parent_path()); !made) return made;
+  return write(whole);
 }
 
 Status PartFolder::writeText(const std::string& file, std::string_view text) {
@@ -240,17 +181,17 @@ Result<std::vector<ExercisePart>> PartFolder::writeList(const std::string& scene
                                                         const Progress& progress) {
   std::vector<std::string> files;
   std::error_code ec;
-  for (auto it = fs::recursive_directory_iterator(path_, ec); !ec && it != fs::end(it);
+  for (auto it = fs::recursive_directory_iterator(path(), ec); !ec && it != fs::end(it);
        it.increment(ec)) {
-    if (it->is_regular_file(ec)) files.push_back(fs::relative(it->path(), path_, ec).string());
+    if (it->is_regular_file(ec)) files.push_back(fs::relative(it->path(), path(), ec).string());
   }
-  if (ec) return writeError(path_, ec.value());
+  if (ec) return writeError(path(), ec.value());
   std::ranges::sort(files, {}, [&](const std::string& f) { return std::pair(f != scene, f); });
   std::vector<ExercisePart> parts;
   Json list = Json::array();
   for (const std::string& file : files) {
     progress.at(double(parts.size()) / double(files.size()), "Checking what was written");
-    Result<ExercisePart> part = partOf(path_, file, progress);
+    Result<ExercisePart> part = partOf(path(), file, progress);
     if (!part) return part.error();
     list.push_back(toJson(*part));
     parts.push_back(*std::move(part));
@@ -270,7 +211,7 @@ Status PartFolder::keepOthers(const std::set<fs::path>& own) {
        it.increment(ec)) {
     const fs::path file = it->path().lexically_relative(target_);
     if (own.contains(file)) continue;
-    fs::path to = path_ / file;
+    fs::path to = path() / file;
     std::error_code none;
     if (it->is_directory(none) && !it->is_symlink(none)) {
       if (Status made = makeFolder(to); !made) return made;
@@ -294,19 +235,19 @@ Status PartFolder::becomeInstead(const std::set<fs::path>& own) {
   std::error_code ec;
   if (fs::symlink_status(target_, ec).type() == fs::file_type::not_found) return become();
   if (Status kept = keepOthers(own); !kept) return kept;
-  if (Status synced = syncFolder(path_); !synced) return synced;
-  if (::renameat2(AT_FDCWD, path_.c_str(), AT_FDCWD, target_.c_str(), RENAME_EXCHANGE) != 0) {
+  if (Status synced = syncFolder(path()); !synced) return synced;
+  if (::renameat2(AT_FDCWD, path().c_str(), AT_FDCWD, target_.c_str(), RENAME_EXCHANGE) != 0) {
     // A file system without exchange: the one that was there stays beside it until it is done.
     if (errno != EINVAL && errno != ENOSYS) return writeError(target_, errno);
-    const fs::path aside = path_.string() + ".old";
+    const fs::path aside = path().string() + ".old";
     if (::rename(target_.c_str(), aside.c_str()) != 0) return writeError(target_, errno);
-    giveToGroup(path_);
-    if (::rename(path_.c_str(), target_.c_str()) != 0) {
+    giveToGroup(path());
+    if (::rename(path().c_str(), target_.c_str()) != 0) {
       const int why = errno;
       (void)::rename(aside.c_str(), target_.c_str());
       return writeError(target_, why);
     }
-    path_ = aside;
+    folder_.moveTo(aside);
   }
   // What was there lies in this part's place now, and goes with it.
   return syncFolder(target_.parent_path());
@@ -318,10 +259,10 @@ Status PartFolder::becomeAt(const fs::path& target) {
 }
 
 Status PartFolder::become() {
-  if (Status synced = syncFolder(path_); !synced) return synced;
-  giveToGroup(path_);
-  if (::rename(path_.c_str(), target_.c_str()) != 0) return writeError(target_, errno);
-  path_.clear();
+  if (Status synced = syncFolder(path()); !synced) return synced;
+  giveToGroup(path());
+  if (::rename(path().c_str(), target_.c_str()) != 0) return writeError(target_, errno);
+  folder_.keep();
   return syncFolder(target_.parent_path());
 }
 

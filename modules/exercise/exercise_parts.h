@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "base/descriptor.h"
+#include "base/locked_folder.h"
 #include "base/progress.h"
 #include "base/result.h"
 #include "exercise/exercise_folder.h"
@@ -32,20 +32,14 @@ Result<ExercisePart> partOf(const std::filesystem::path& folder, const std::stri
                             const Progress& progress,
                             std::optional<std::uint64_t> expected_bytes = {});
 
-// Beside the folder that it is to be; gone with this unless it became that. It is locked (flock)
-// while its program lives: what one that was killed has left, the next one removes.
+// Beside the folder that it is to be; gone with this unless it became that. What a program that was
+// killed has left, the next one removes.
 class PartFolder {
  public:
   static Result<PartFolder> make(const std::filesystem::path& target);
   // What this account's programs that were killed have left in a folder; make() does it as well.
   static void removeLeft(const std::filesystem::path& folder);
-  PartFolder(PartFolder&& other) noexcept
-      : path_(std::exchange(other.path_, {})),
-        target_(std::move(other.target_)),
-        lock_(std::move(other.lock_)) {}
-  ~PartFolder();
-
-  const std::filesystem::path& path() const { return path_; }
+  const std::filesystem::path& path() const { return folder_.path(); }
   // `file` is a path in the folder; `write` leaves it whole and on the disk (replaceFile).
   Status write(const std::string& file,
                const std::function<Status(const std::filesystem::path&)>& write);
@@ -65,12 +59,11 @@ class PartFolder {
 
  private:
   Status keepOthers(const std::set<std::filesystem::path>& own);
-  PartFolder(std::filesystem::path path, std::filesystem::path target, Descriptor lock)
-      : path_(std::move(path)), target_(std::move(target)), lock_(std::move(lock)) {}
+  PartFolder(LockedFolder folder, std::filesystem::path target)
+      : folder_(std::move(folder)), target_(std::move(target)) {}
 
-  std::filesystem::path path_;  // empty: no longer a part
+  LockedFolder folder_;
   std::filesystem::path target_;
-  Descriptor lock_;
 };
 
 }  // namespace trephine

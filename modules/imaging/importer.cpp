@@ -12,6 +12,7 @@
 #include "imaging/common/workers.h"
 #include "imaging/dicom/dicom_pixels.h"
 #include "imaging/dicom/transfer_syntax.h"
+#include "imaging/files/archive.h"
 #include "imaging/files/file_series.h"
 #include "imaging/report/answers.h"
 #include "imaging/series/assembly.h"
@@ -242,7 +243,8 @@ SeriesReport answeredReport(const Source& source, const Answers& answers) {
 struct CtFolder::Contents {
   ImportReport report;
   FileIds came_upon;
-  std::vector<Source> sources;  // of report.series
+  std::optional<UnpackedArchives> unpacked;  // where the files lie, of a series in an archive
+  std::vector<Source> sources;               // of report.series
 
   Source* find(const std::string& uid) {
     for (std::size_t n = 0; n < report.series.size(); ++n) {
@@ -267,9 +269,40 @@ struct CtFolder::Contents {
     report.series[std::size_t(&source - sources.data())] = source.series.report;
   }
 
+  // Of a folder that holds archives and nothing else to read: what is in them instead, if that is
+  // anything. What could not be unpacked is among what was skipped. CANCELLED, and the
+  // errors of scanFiles().
+  Status unpackInto(ScannedFiles& files, std::filesystem::path& scanned, const Progress& progress,
+                    ScanGuide* guide);
+
   Result<Volume> readDicom(Series& series, const ImportRequest& request, const Progress& progress,
                            Reading& reading);
 };
+
+Status CtFolder::Contents::unpackInto(ScannedFiles& files, std::filesystem::path& scanned,
+                                      const Progress& progress, ScanGuide* guide) {
+  constexpr std::size_t kMostArchives = 16;
+  std::vector<std::filesystem::path> archives = files.archives;
+  if (archives.size() > kMostArchives) return {};
+  Result<UnpackedArchives> some = unpack(archives, progress);
+  // Where nothing can be unpacked, they are what they were: packed.
+  if (!some) return some.error().code == "CANCELLED" ? Status(some.error()) : Status();
+  Result<ScannedFiles> within = scanFiles(some->folder.path(), progress, guide);
+  if (!within) return within.error();
+  if (within->headers.empty() && within->volume_files.empty()) {
+    // Why, where that is more than that it is packed.
+    for (const std::string& reason : some->not_whole) {
+      if (reason.find("damaged") == reason.npos) ++files.skipped[reason];
+    }
+    return {};
+  }
+  for (const std::string& reason : some->not_whole) ++within->skipped[reason];
+  within->files_seen += files.files_seen - int(archives.size());
+  files = *std::move(within);
+  scanned = some->folder.path();
+  unpacked = *std::move(some);
+  return {};
+}
 
 // Slices that turn out to be unreadable are missing slices: they are marked, and the series is
 // looked at again, until it is read or refused.
@@ -326,6 +359,13 @@ Result<CtFolder> CtFolder::scan(const std::filesystem::path& path, const Progres
   const auto start = Clock::now();
   Result<ScannedFiles> files = scanFiles(path, progress, guide);
   if (!files) return files.error();
+  std::filesystem::path scanned = path;
+  if (files->headers.empty() && files->volume_files.empty() && !files->archives.empty()) {
+    const FileIds came_upon = files->came_upon;
+    Status done = contents.unpackInto(*files, scanned, progress, guide);
+    if (!done) return done.error();
+    files->came_upon.insert(came_upon.begin(), came_upon.end());
+  }
 
   report.path = cleanUtf8(path.string());
   contents.came_upon = std::move(files->came_upon);
@@ -342,10 +382,10 @@ Result<CtFolder> CtFolder::scan(const std::filesystem::path& path, const Progres
   }
   if (progress.cancelled()) return Error{"CANCELLED", "The import was cancelled", "", ""};
   std::error_code error;
-  const bool one_file = std::filesystem::is_regular_file(path, error);
+  const bool one_file = std::filesystem::is_regular_file(scanned, error);
   for (const std::filesystem::path& file : files->volume_files) {
     if (progress.cancelled()) return Error{"CANCELLED", "The import was cancelled", "", ""};
-    const auto name = one_file ? file.filename() : file.lexically_relative(path);
+    const auto name = one_file ? file.filename() : file.lexically_relative(scanned);
     Source source;
     source.series.report = assessFile(file, name.string());
     source.file = file;

@@ -19,11 +19,12 @@ namespace trephine {
 // A scanned folder: headers only. Cheap to keep; reading a series opens its files again.
 class CtFolder {
  public:
-  // Finds and groups the files. `path` may also be one file. `guide`, which may be null, is told of
-  // the series meanwhile, and may end the scan early (SCAN_STOPPED). Errors: MISSING_FOLDER,
-  // CANCELLED, SOURCE_VANISHED. A folder without a usable series is an answer, not an error:
-  // report().error is then EMPTY_FOLDER, NO_CT or ALL_REFUSED, and the report says what was skipped
-  // or refused and why.
+  // Finds and groups the files. `path` may also be one file. Where it holds archives alone (ZIP,
+  // tar, gzip, 7z and the like, at most 16), what they hold is unpacked into the temporary folder
+  // for as long as this lives. `guide`, which may be null, is told of the series meanwhile, and may
+  // end the scan early (SCAN_STOPPED). Errors: MISSING_FOLDER, CANCELLED, SOURCE_VANISHED. A folder
+  // without a usable series is an answer, not an error: report().error is then EMPTY_FOLDER, NO_CT
+  // or ALL_REFUSED, and the report says what was skipped or refused and why.
   static Result<CtFolder> scan(const std::filesystem::path& path, const Progress& progress,
                                ScanGuide* guide = nullptr);
 

@@ -350,13 +350,23 @@ void PrepareWorkspace::showUndo() {
 
 void PrepareWorkspace::askAboutStructures(const Error& error, const std::filesystem::path& file,
                                           const Answers& answers, const std::string& option) {
-  ask(bench_.window(), "structuresQuestion", toQt(error.what) + '.',
-      tr("What is used as it is may be felt and cut in the wrong place."),
-      tr("&Use it all the same"),
-      [this, file, answers = answers, code = error.code, option]() mutable {
-        answers[code] = option;
-        workstation_.useLabels(file, answers);
-      });
+  const auto use = [this, file, answers = answers, code = error.code](const std::string& with) {
+    return [this, file, answers = Answers(answers), code, with]() mutable {
+      answers[code] = with;
+      workstation_.useLabels(file, answers);
+    };
+  };
+  QMessageBox* question = ask(bench_.window(), "structuresQuestion", toQt(error.what) + '.',
+                              tr("What is used as it is may be felt and cut in the wrong place."),
+                              option == "ct"      ? tr("&Put it on the CT, voxel by voxel")
+                              : option == "sform" ? tr("Take its &sform")
+                                                  : tr("&Use it all the same"),
+                              use(option));
+  if (option != "sform") return;
+  const bool qform = error.what.find("qform") != std::string::npos;
+  orElse(*question, "otherForm",
+         qform ? tr("Take its &qform") : tr("Take the steps of its &pixdim"),
+         use(qform ? "qform" : "pixdim"));
 }
 
 void PrepareWorkspace::askAboutOverlap(const std::vector<std::string>& names,

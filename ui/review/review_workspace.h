@@ -15,7 +15,10 @@ class ReviewWorkspace : public Workspace {
   QString title() const override { return tr("Review"); }
   Symbol symbol() const override { return Symbol::review; }
   Parts parts() override;
-  void enter() override { list(); }
+  void enter() override {
+    if (!replaying_.busy()) page_->showOutcome({});  // of the last time
+    list();
+  }
   // One that a person has opened, wherever it lies: from the next enter() on it stands in the list,
   // chosen.
   void choose(const std::filesystem::path& file);

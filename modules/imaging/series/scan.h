@@ -25,6 +25,7 @@ std::optional<FileId> fileId(const std::filesystem::path& file);
 struct ScannedFiles {
   std::vector<DicomHeader> headers;  // sorted by SOP Instance UID, then frame and path
   std::vector<std::filesystem::path> volume_files;  // NIfTI and the like, sorted
+  std::vector<std::filesystem::path> archives;      // and packed files, not unpacked
   int dicom_files = 0;                              // that were read
   int files_seen = 0;                               // everything that is not a folder
   int not_looked_at = 0;                            // since a series was chosen before the end

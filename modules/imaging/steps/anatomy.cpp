@@ -22,7 +22,7 @@ constexpr double kCavityLeast_ml = 130.0;  // of a head that is cut through
 constexpr double kCavityOfBody = 0.1;
 constexpr int kOrganLow_HU = 15, kOrganHigh_HU = 190;
 constexpr double kOrganBall_mm = 25.0, kOrganLeast_ml = 60.0;
-constexpr double kWide_mm = 190.0, kMostBone = 0.2;
+constexpr double kWideBody_mm = 190.0, kMostBone = 0.2;
 
 struct Cells {
   Index3 size{0, 0, 0}, step{1, 1, 1};  // step: voxels in one
@@ -323,7 +323,7 @@ Anatomy anatomyOf(const Volume& volume, const Progress& progress) {
   }
   found.organ_ml = organ_ml(everySecond(cells));
   if (progress.cancelled()) return {};
-  const bool wide = found.width_mm >= kWide_mm;
+  const bool wide = found.width_mm >= kWideBody_mm;
   if (wide && found.bone_percent < 100.0 * kMostBone && found.organ_ml >= kOrganLeast_ml &&
       best.ml < kCavityOfBody * found.body_ml) {
     found.region = BodyRegion::abdomen;

@@ -142,7 +142,7 @@ struct Nifti {
   bool labels = false;
 };
 
-std::string bytesOf(const Nifti& of) {
+std::string niftiBytes(const Nifti& of) {
   std::string bytes(352, '\0');
   const auto put = [&](std::size_t at, auto value) {
     std::memcpy(bytes.data() + at, &value, sizeof value);
@@ -213,7 +213,7 @@ Mat4 anyAffine(std::mt19937& random, Vec3& steps) {
 
 class NiftiForms : public SeriesFixture {
  protected:
-  void writeCt(const Nifti& of) { writeBytes(folder() / "ct.nii", bytesOf(of)); }
+  void writeCt(const Nifti& of) { writeBytes(folder() / "ct.nii", niftiBytes(of)); }
   SeriesReport scanned(const Answers& answers = {}) {
     CtFolder ct = scan();
     if (!answers.empty()) {
@@ -257,7 +257,7 @@ TEST_F(NiftiForms, EqualOnesAreReadAndContradictingOnesAskedAbout) {
     const SeriesReport report = scanned();
     Nifti labels = of;
     labels.labels = true;
-    writeBytes(temporary_ / "labels.nii", bytesOf(labels));
+    writeBytes(temporary_ / "labels.nii", niftiBytes(labels));
     const auto segmentation = readSegmentation(temporary_ / "labels.nii");
     if (kind < 2) {
       ++equal;
@@ -302,7 +302,7 @@ TEST_F(NiftiForms, ALabelMapTakesTheFormThatPutsItOnTheCt) {
     ASSERT_TRUE(ct.ok()) << ct.error().sentence();
     of.labels = true;
     (*of.sform)[2] *= 4.0 / 3.0;
-    writeBytes(temporary_ / "labels.nii", bytesOf(of));
+    writeBytes(temporary_ / "labels.nii", niftiBytes(of));
     StructureRequest request;
     request.ask_all = false;
     const auto fit = importStructures(temporary_ / "labels.nii", *ct, request);
@@ -326,7 +326,7 @@ TEST_F(NiftiForms, OneThatSaysNothingOfItsPlaceAndHasTheCtsSizeIsAskedAbout) {
     of.labels = true;
     of.sform = of.qform = Mat4(1.0);
     of.pixdim = Vec3(1.0);
-    writeBytes(temporary_ / "labels.nii", bytesOf(of));
+    writeBytes(temporary_ / "labels.nii", niftiBytes(of));
     EXPECT_EQ(importStructures(temporary_ / "labels.nii", *ct).error().code, "NO_AFFINE");
     StructureRequest request;
     request.answers = {{"NO_AFFINE", "ct"}};
@@ -572,9 +572,9 @@ TEST_F(HeadersDisagree, AVolumeFileMayBeTheCtOfALabelMapBesideIt) {
   std::mt19937 random(8);
   Nifti of;
   of.sform = of.qform = anyAffine(random, of.pixdim);
-  writeBytes(folder() / "ct.nii", bytesOf(of));
+  writeBytes(folder() / "ct.nii", niftiBytes(of));
   of.labels = true;
-  writeBytes(folder() / "liver.nii", bytesOf(of));
+  writeBytes(folder() / "liver.nii", niftiBytes(of));
   const CtFolder ct = scan();
   ASSERT_EQ(ct.labelFiles().size(), 1u);
   EXPECT_EQ(ct.labelFiles()[0].name, "liver.nii");

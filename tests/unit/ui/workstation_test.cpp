@@ -83,7 +83,7 @@ TEST_F(WorkstationTest, ALabelMapBelongsToTheCaseThatIsOpen) {
   EXPECT_EQ(workstation_.currentCase()->labels->labels,
             std::vector<std::uint8_t>(ball().hu.size(), 7));
 
-  workstation_.useLabels(labels(700));
+  workstation_.useLabels(labels(-7));
   ASSERT_TRUE(wait());
   ASSERT_TRUE(failed_);
   EXPECT_EQ(failed_->code, "NOT_LABELS");
@@ -104,7 +104,7 @@ TEST_F(WorkstationTest, AnImportedCaseComesWithItsLabelMapOrWithoutOneAndASenten
   ASSERT_TRUE(workstation_.currentCase() && workstation_.currentCase()->labels);
 
   const auto another = std::make_shared<const Volume>(ball());
-  workstation_.openImported(caseOf(another), labels(700));
+  workstation_.openImported(caseOf(another), labels(-7));
   ASSERT_TRUE(wait());
   ASSERT_TRUE(failed_);
   EXPECT_EQ(failed_->code, "NOT_LABELS");
