@@ -192,7 +192,8 @@ void deleteOldReports(const fs::path& folder) {
 Status reportCrashesTo(const fs::path& folder) {
   if (Status made = makeFolder(folder); !made) return made;
   std::error_code ec;
-  if (!fs::is_symlink(folder, ec)) fs::permissions(folder, fs::perms::owner_all, ec);  // a recording's path may tell who a patient is
+  // A recording's path may tell who a patient is.
+  if (!fs::is_symlink(folder, ec)) fs::permissions(folder, fs::perms::owner_all, ec);
   const std::string path = (folder / (kCrash + std::to_string(long(::getpid())) + ".txt")).string();
   if (path.size() >= kPath) return writeError(folder, ENAMETOOLONG);
   path.copy(report_path, kPath - 1);

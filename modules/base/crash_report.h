@@ -15,8 +15,8 @@
 
 namespace trephine {
 
-// From here on; the folder is made this account's alone, unless it is a link. Once, before there are threads. Errors:
-// CANNOT_WRITE; then there are no reports.
+// From here on; the folder is made this account's alone, unless it is a link. Once, before there
+// are threads. Errors: CANNOT_WRITE; then there are no reports.
 Status reportCrashesTo(const std::filesystem::path& folder);
 // The exercise that is being recorded; empty: none. The thread that asks for it does the writing.
 void noteRecording(const std::filesystem::path& recording);

@@ -282,9 +282,8 @@ struct CtFolder::Contents {
 Status CtFolder::Contents::unpackInto(ScannedFiles& files, std::filesystem::path& scanned,
                                       const Progress& progress, ScanGuide* guide) {
   constexpr std::size_t kMostArchives = 16;
-  std::vector<std::filesystem::path> archives = files.archives;
-  if (archives.size() > kMostArchives) return {};
-  Result<UnpackedArchives> some = unpack(archives, progress);
+  if (files.archives.size() > kMostArchives) return {};
+  Result<UnpackedArchives> some = unpack(files.archives, progress);
   // Where nothing can be unpacked, they are what they were: packed.
   if (!some) return some.error().code == "CANCELLED" ? Status(some.error()) : Status();
   Result<ScannedFiles> within = scanFiles(some->folder.path(), progress, guide);
@@ -297,7 +296,8 @@ Status CtFolder::Contents::unpackInto(ScannedFiles& files, std::filesystem::path
     return {};
   }
   for (const std::string& reason : some->not_whole) ++within->skipped[reason];
-  within->files_seen += files.files_seen - int(archives.size());
+  within->files_seen += files.files_seen - int(files.archives.size());
+  within->came_upon.merge(files.came_upon);
   files = *std::move(within);
   scanned = some->folder.path();
   unpacked = *std::move(some);
@@ -324,11 +324,7 @@ Result<Volume> CtFolder::Contents::readDicom(Series& series, const ImportRequest
       series.slices[lost.slice].defect_text = lost.why;
     }
     if (!assembly->unreadable.empty()) continue;
-    // Debris in uncompressed words is masked, as the standard has it; a compressor was given values.
-    const bool explained = std::ranges::any_of(series.slices, [](const DicomHeader& slice) {
-      return slice.overlay_bits || !slice.pixels || !slice.pixels->encapsulated;
-    });
-    if (plan.whole_words || (assembly->counts.high_bits && !explained)) {
+    if (plan.whole_words || assembly->high_bits) {
       askAboutHighBits(series.slices[plan.sources.front()], answers, series.report);
     }
     addValueFindings(assembly->counts, series.report);
@@ -361,10 +357,8 @@ Result<CtFolder> CtFolder::scan(const std::filesystem::path& path, const Progres
   if (!files) return files.error();
   std::filesystem::path scanned = path;
   if (files->headers.empty() && files->volume_files.empty() && !files->archives.empty()) {
-    const FileIds came_upon = files->came_upon;
     Status done = contents.unpackInto(*files, scanned, progress, guide);
     if (!done) return done.error();
-    files->came_upon.insert(came_upon.begin(), came_upon.end());
   }
 
   report.path = cleanUtf8(path.string());

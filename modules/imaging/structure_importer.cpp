@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "imaging/dicom/seg_reader.h"
+#include "imaging/report/answers.h"
 #include "volume/grid_place.h"
 #include "volume/segmentation.h"
 #include "volume/volume_files.h"
@@ -82,8 +83,7 @@ std::string formOf(const std::filesystem::path& file, const Volume& ct, const An
                    std::optional<Finding>& said) {
   constexpr const char* kCode = "FORMS_DIFFER";
   constexpr double kSame = 0.1;  // of a voxel
-  const auto given = answers.find(kCode);
-  if (given != answers.end()) return given->second;
+  if (const std::string given = answerTo(answers, kCode); !given.empty()) return given;
   const Result<VolumeFileHeader> header = readVolumeFileHeader(file);
   if (!header || header->forms.empty()) return "";
   const Vec3& mm = ct.geometry.spacing_mm;
@@ -144,7 +144,8 @@ Result<StructureFit> importStructures(const std::filesystem::path& file, const V
         readSegmentation(file, reading, formOf(file, ct, request.answers, form));
     if (!read) return read.error();
     const int hidden = hideNames(*read, request);
-    Result<StructureFit> fit = fitStructures(*std::move(read), ct, request.answers, request.ask_all, fitting);
+    Result<StructureFit> fit =
+        fitStructures(*std::move(read), ct, request.answers, request.ask_all, fitting);
     if (fit && form) fit->findings.push_back(*std::move(form));
     if (fit) sayHidden(*fit, hidden);
     return fit;

@@ -8,6 +8,7 @@
 
 #include "base/memory.h"
 #include "imaging/importer.h"
+#include "imaging/report/answers.h"
 #include "scene/scene_structures.h"
 #include "volume/phantom_file.h"
 #include "volume/volume_files.h"
@@ -60,9 +61,7 @@ Result<Case> read(const std::string& source, const Answers& answers, const Progr
     }
     return built_in;
   }
-  const auto form = answers.find("FORMS_DIFFER");
-  Result<Volume> volume =
-      readVolume(source, progress, form == answers.end() ? std::string() : form->second);
+  Result<Volume> volume = readVolume(source, progress, answerTo(answers, "FORMS_DIFFER"));
   if (!volume) return volume.error();
   return caseOf(std::make_shared<const Volume>(*std::move(volume)));
 }

@@ -10,12 +10,7 @@ namespace trephine {
 namespace {
 
 constexpr double kMinHu = -32768.0, kMaxHu = 32767.0;
-enum Event : std::uint8_t { kRounded = 1, kClamped = 2, kPadding = 4, kHighBits = 8 };
-
-// The bits of a word above the highest that is stored.
-std::uint16_t highMask(const StoredFormat& format) {
-  return std::uint16_t(0xFFFFU << (format.high_bit + 1));
-}
+enum Event : std::uint8_t { kRounded = 1, kClamped = 2, kPadding = 4 };
 
 bool isPadding(std::uint16_t word, const StoredFormat& format) {
   if (!format.padding) return false;
@@ -38,20 +33,14 @@ HuCounts shiftValues(std::int16_t* words, std::size_t count, const StoredFormat&
   // Up to the top of the word and back down: masks, and extends the sign of a signed type.
   const int up = 15 - format.high_bit, down = 16 - format.bits_stored;
   Word low = std::numeric_limits<Word>::max(), high = std::numeric_limits<Word>::min();
-  const std::uint16_t mask = highMask(format);
-  std::uint16_t odd = 0;  // high bits that are neither 0 nor the sign
   for (std::size_t i = 0; i < count; ++i) {
-    const auto word = static_cast<std::uint16_t>(words[i]);
-    const auto top = static_cast<Word>(word << up);
+    const auto top = static_cast<Word>(static_cast<std::uint16_t>(words[i]) << up);
     const auto value = static_cast<Word>(top >> down);
-    const auto sign = static_cast<std::uint16_t>(kSigned ? value : 0);
-    odd = static_cast<std::uint16_t>(odd | ((word ^ sign) & word));
     words[i] = static_cast<std::int16_t>(value);
     low = std::min(low, value);
     high = std::max(high, value);
   }
   HuCounts counts;
-  counts.high_bits = (odd & mask) != 0;
   if (count == 0) return counts;
   const auto intercept = static_cast<int>(format.intercept);
   if (low + intercept >= kMinHu && high + intercept <= kMaxHu) {
@@ -78,7 +67,6 @@ void HuCounts::add(const HuCounts& other) {
   padding += other.padding;
   rounded += other.rounded;
   clamped += other.clamped;
-  high_bits |= other.high_bits;
   hu_min = std::min(hu_min, other.hu_min);
   hu_max = std::max(hu_max, other.hu_max);
 }
@@ -87,6 +75,15 @@ int storedValue(std::uint16_t word, const StoredFormat& format) {
   const int down = 16 - format.bits_stored;
   const auto top = static_cast<std::uint16_t>(word << (15 - format.high_bit));
   return format.is_signed ? static_cast<std::int16_t>(top) >> down : top >> down;
+}
+
+bool hasHighBits(std::span<const std::int16_t> words, const StoredFormat& format) {
+  const auto above = std::uint16_t(0xFFFFU << (format.high_bit + 1));
+  return std::ranges::any_of(words, [&](std::int16_t signed_word) {
+    const auto word = std::uint16_t(signed_word);
+    const auto sign = std::uint16_t(format.is_signed ? storedValue(word, format) : 0);
+    return ((word ^ sign) & word & above) != 0 && !isPadding(word, format);
+  });
 }
 
 void HuConverter::buildTable(const StoredFormat& format, std::int16_t padding_hu) {
@@ -108,9 +105,6 @@ void HuConverter::buildTable(const StoredFormat& format, std::int16_t padding_hu
       events_[word] = kRounded;
     }
     hu_[word] = static_cast<std::int16_t>(clamped);
-    const auto sign =
-        std::uint16_t(format.is_signed ? storedValue(std::uint16_t(word), format) : 0);
-    if (((word ^ sign) & word & highMask(format)) != 0) events_[word] |= kHighBits;
   }
   table_format_ = format;
   table_padding_hu_ = padding_hu;
@@ -136,7 +130,6 @@ HuCounts HuConverter::convert(std::int16_t* words, std::size_t count, const Stor
   }
   HuCounts counts;
   int low = 32767, high = -32768;
-  std::uint8_t high_bits = 0;
   for (std::size_t i = 0; i < count; ++i) {
     const auto word = static_cast<std::uint16_t>(words[i]);
     const std::int16_t hu = hu_[word];
@@ -144,12 +137,10 @@ HuCounts HuConverter::convert(std::int16_t* words, std::size_t count, const Stor
     words[i] = hu;
     counts.rounded += event & kRounded;
     counts.clamped += (event & kClamped) >> 1;
-    counts.padding += (event & kPadding) >> 2;
-    high_bits |= event;
+    counts.padding += event >> 2;
     low = std::min<int>(low, hu);
     high = std::max<int>(high, hu);
   }
-  counts.high_bits = (high_bits & kHighBits) != 0;
   counts.hu_min = low;
   counts.hu_max = high;
   return counts;

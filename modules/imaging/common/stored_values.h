@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "volume/volume.h"
@@ -40,7 +41,6 @@ struct HuCounts {
   std::uint64_t padding = 0;  // voxels set to kAirHu
   std::uint64_t rounded = 0;  // voxels whose HU were not whole
   std::uint64_t clamped = 0;  // voxels outside int16
-  bool high_bits = false;     // set above the stored ones, and not the sign's: masked away
   int hu_min = 32767;
   int hu_max = -32768;
 
@@ -67,5 +67,9 @@ class HuConverter {
 
 // The value of a whole word: masked, shifted, sign-extended.
 int storedValue(std::uint16_t word, const StoredFormat& format);
+
+// Whether any word has bits above the stored ones that are neither 0 nor the sign's, and is no
+// padding: they are masked away.
+bool hasHighBits(std::span<const std::int16_t> words, const StoredFormat& format);
 
 }  // namespace trephine

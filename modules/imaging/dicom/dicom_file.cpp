@@ -254,7 +254,8 @@ std::uint64_t textBytes(const DicomHeader& h) {
   for (const std::string* text :
        {&h.series_key, &h.modality, &h.description, &h.body_part, &h.rescale_type,
         &h.instance_number, &h.patient[0], &h.patient[1], &h.patient[2], &h.patient[3],
-        &h.patient_name, &h.acquired, &h.concatenation, &h.study_text, &h.volumetric, &h.technique, &h.presentation, &h.kernel, &h.scanner,
+        &h.patient_name, &h.acquired, &h.concatenation, &h.study_text, &h.volumetric, &h.technique,
+        &h.presentation, &h.kernel, &h.scanner,
         &h.patient_position, &h.contrast, &h.photometric, &h.defect_text}) {
     bytes += text->size();
   }

@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "imaging/common/text.h"
+#include "imaging/report/answers.h"
 #include "imaging/series/series.h"
 #include "imaging/series/series_geometry.h"
 #include "volume/case_memory.h"
@@ -31,11 +32,6 @@ std::string shortNumber(double value) {
   char text[32];
   std::snprintf(text, sizeof text, "%.3g", value);
   return text;
-}
-
-std::string formIn(const Answers& answers) {
-  const auto given = answers.find("FORMS_DIFFER");
-  return given == answers.end() ? std::string() : given->second;
 }
 
 // Which of the ways in which a file says how it lies in the patient counts.
@@ -155,7 +151,8 @@ SeriesReport assessFile(const std::filesystem::path& file, const std::string& na
 
 Result<Volume> readFileSeries(const std::filesystem::path& file, const Answers& answers,
                               const Progress& progress, SeriesReport& report, HuLook& look) {
-  Result<VolumeFileReading> reading = readVolumeFile(file, progress, formIn(answers));
+  Result<VolumeFileReading> reading =
+      readVolumeFile(file, progress, answerTo(answers, "FORMS_DIFFER"));
   if (!reading) return reading.error();
   // Attenuation per cm, or shares: water has 0.2 of the one.
   constexpr double kSmall = 20.0;

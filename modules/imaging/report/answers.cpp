@@ -28,6 +28,11 @@ const std::set<std::string>& codes() {
 
 }  // namespace
 
+std::string answerTo(const Answers& answers, const std::string& code) {
+  const auto given = answers.find(code);
+  return given == answers.end() ? std::string() : given->second;
+}
+
 bool isChoice(const std::string& code) {
   return codes().contains(code);
 }

@@ -15,6 +15,9 @@ using Options = std::map<std::string, std::vector<std::string>>;
 
 Options optionsOf(const SeriesReport& series);
 
+// What was answered to a question; empty: nothing.
+std::string answerTo(const Answers& answers, const std::string& code);
+
 // Whether the importer ever asks a question of this code.
 bool isChoice(const std::string& code);
 

@@ -28,6 +28,11 @@ class Assembler {
     target_ = {assembly.volume.geometry.size[0], assembly.volume.geometry.size[1]};
     source_voxels_ = std::size_t(source_.columns) * std::size_t(source_.rows);
     target_voxels_ = std::size_t(target_.columns) * std::size_t(target_.rows);
+    // Debris in uncompressed words is masked, as the standard has it; a compressor was given
+    // values.
+    bits_are_values_ = std::ranges::all_of(series.slices, [](const DicomHeader& slice) {
+      return slice.pixels && slice.pixels->encapsulated && !slice.overlay_bits;
+    });
   }
 
   // A slice of the volume for each source: in place, or shifted on the way.
@@ -105,6 +110,8 @@ class Assembler {
     const Status read = reader_.read(header, words);
     watch_.end(number, header.file, header.file_bytes, read.ok());
     HuCounts counts;
+    const bool odd =
+        read && bits_are_values_ && hasHighBits({words, source_voxels_}, header.format);
     StoredFormat format = header.format;
     if (plan_.whole_words && header.bits_allocated == 16) {
       format.bits_stored = 16;
@@ -114,6 +121,7 @@ class Assembler {
     const std::lock_guard lock(mutex_);
     assembly_.counts.add(counts);
     assembly_.look.add(sample);
+    assembly_.high_bits |= odd;
     if (!read) assembly_.unreadable.push_back({slice, read.error().what});
   }
 
@@ -122,6 +130,7 @@ class Assembler {
   Assembly& assembly_;
   SliceSize source_, target_;
   std::size_t source_voxels_ = 0, target_voxels_ = 0;
+  bool bits_are_values_ = false;  // those above the stored ones, if there are any
   PixelReader reader_;
   SourceWatch watch_;
   std::mutex mutex_;

@@ -16,7 +16,8 @@ namespace trephine {
 struct Assembly {
   Volume volume;
   HuCounts counts;
-  HuLook look;  // at the slices before anything was interpolated
+  bool high_bits = false;  // compressed slices have bits above the stored ones, and no overlay does
+  HuLook look;             // at the slices before anything was interpolated
   struct Unreadable {
     std::size_t slice;  // in Series::slices
     std::string why;

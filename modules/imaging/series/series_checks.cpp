@@ -9,6 +9,7 @@
 
 #include "imaging/common/text.h"
 #include "imaging/dicom/transfer_syntax.h"
+#include "imaging/report/answers.h"
 #include "imaging/series/findings.h"
 #include "imaging/series/series.h"
 #include "imaging/series/series_agreement.h"
@@ -491,8 +492,6 @@ SeriesPlan assessSeries(Series& series, const Answers& answers) {
   report.lossy = std::ranges::any_of(series.slices, &DicomHeader::lossy);
 
   SeriesPlan plan;
-  const auto words = answers.find("HIGH_BITS");
-  const bool whole_words = words != answers.end() && words->second == "use";
   if (!refusedByKind(first, findings)) {
     checkTransferSyntax(series, findings);
     checkValues(series, findings);
@@ -502,7 +501,7 @@ SeriesPlan assessSeries(Series& series, const Answers& answers) {
     checkSlopes(answers, findings);
     checkBits(series, findings);
     plan = checkGeometry(series, answers, findings);
-    plan.whole_words = whole_words;
+    plan.whole_words = answerTo(answers, "HIGH_BITS") == "use";
     checkConcatenation(series.slices, answers, report.choices, findings);
     if (const Status size = checkSize(report.geometry.size, ""); !size) {
       findings.refuse(size.error().code == "TOO_LARGE" ? "TOO_LARGE" : "PIXEL_FORMAT",

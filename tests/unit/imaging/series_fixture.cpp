@@ -1,5 +1,7 @@
 #include "series_fixture.h"
 
+#include <zlib.h>
+
 #include <cstdio>
 #include <fstream>
 #include <iterator>
@@ -29,6 +31,23 @@ void writeBytes(const fs::path& file, const std::string& bytes) {
 std::string readBytes(const fs::path& file) {
   std::ifstream in(file, std::ios::binary);
   return {std::istreambuf_iterator<char>(in), {}};
+}
+
+std::string packedBy(Deflate format, const std::string& bytes) {
+  constexpr int kLargestWindow = 15, kGzip = 16, kLevel = 6, kMemory = 8;
+  z_stream zlib{};
+  deflateInit2(&zlib, kLevel, Z_DEFLATED,
+               format == Deflate::gzip ? kLargestWindow + kGzip : -kLargestWindow, kMemory,
+               Z_DEFAULT_STRATEGY);
+  std::string packed(deflateBound(&zlib, bytes.size()), '\0');
+  zlib.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(bytes.data()));
+  zlib.avail_in = uInt(bytes.size());
+  zlib.next_out = reinterpret_cast<Bytef*>(packed.data());
+  zlib.avail_out = uInt(packed.size());
+  deflate(&zlib, Z_FINISH);
+  packed.resize(zlib.total_out);
+  deflateEnd(&zlib);
+  return packed;
 }
 
 fs::path SeriesFixture::slice(int number) const {

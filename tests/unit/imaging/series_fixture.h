@@ -22,6 +22,10 @@ Volume rampVolume(Index3 size = {7, 5, 6});
 void writeBytes(const std::filesystem::path& file, const std::string& bytes);
 std::string readBytes(const std::filesystem::path& file);
 
+// By zlib: in gzip's format, or as bare deflated bytes.
+enum class Deflate { gzip, bare };
+std::string packedBy(Deflate format, const std::string& bytes);
+
 class SeriesFixture : public ::testing::Test {
  protected:
   std::filesystem::path folder() const { return temporary_ / "ct"; }

@@ -22,19 +22,7 @@ std::string zipOf(const std::vector<std::pair<std::string, std::string>>& files,
                   int flags = 0) {
   std::string all, directory;
   for (const auto& [name, bytes] : files) {
-    std::string stored = bytes;
-    if (pack) {
-      z_stream zlib{};
-      deflateInit2(&zlib, 6, Z_DEFLATED, -15, 8, Z_DEFAULT_STRATEGY);
-      stored.resize(deflateBound(&zlib, bytes.size()));
-      zlib.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(bytes.data()));
-      zlib.avail_in = uInt(bytes.size());
-      zlib.next_out = reinterpret_cast<Bytef*>(stored.data());
-      zlib.avail_out = uInt(stored.size());
-      deflate(&zlib, Z_FINISH);
-      stored.resize(zlib.total_out);
-      deflateEnd(&zlib);
-    }
+    const std::string stored = pack ? packedBy(Deflate::bare, bytes) : bytes;
     const auto crc = crc32(0, reinterpret_cast<const Bytef*>(bytes.data()), uInt(bytes.size()));
     const std::size_t at = all.size();
     const auto head = [&](std::string& to) {
@@ -93,20 +81,6 @@ std::string tarOf(const std::string& name, const std::string& bytes, char type =
   return head + bytes + std::string((512 - bytes.size() % 512) % 512, '\0');
 }
 
-std::string gzipOf(const std::string& bytes) {
-  z_stream zlib{};
-  deflateInit2(&zlib, 6, Z_DEFLATED, 31, 8, Z_DEFAULT_STRATEGY);
-  std::string out(deflateBound(&zlib, bytes.size()), '\0');
-  zlib.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(bytes.data()));
-  zlib.avail_in = uInt(bytes.size());
-  zlib.next_out = reinterpret_cast<Bytef*>(out.data());
-  zlib.avail_out = uInt(out.size());
-  deflate(&zlib, Z_FINISH);
-  out.resize(zlib.total_out);
-  deflateEnd(&zlib);
-  return out;
-}
-
 class Archives : public SeriesFixture {
  protected:
   Archives() {
@@ -150,7 +124,8 @@ TEST_F(Archives, OfEachKindAreReadAndNothingOfThemStays) {
   std::string tar;
   for (const auto& [name, bytes] : files) tar += tarOf(name, bytes);
   tar += std::string(1024, '\0');
-  for (const std::string& bytes : {zipOf(files), zipOf(files, true), tar, gzipOf(tar)}) {
+  for (const std::string& bytes :
+       {zipOf(files), zipOf(files, true), tar, packedBy(Deflate::gzip, tar)}) {
     fs::remove_all(folder());
     writeBytes(folder() / "from-the-clinic", bytes);
     expectRead(folder());
@@ -160,7 +135,7 @@ TEST_F(Archives, OfEachKindAreReadAndNothingOfThemStays) {
   fs::remove_all(folder());
   int n = 0;
   for (const auto& [name, bytes] : files) {
-    writeBytes(folder() / (std::to_string(++n) + ".dcm.gz"), gzipOf(bytes));
+    writeBytes(folder() / (std::to_string(++n) + ".dcm.gz"), packedBy(Deflate::gzip, bytes));
   }
   expectRead(folder());
   // Several, and what is no archive beside them.
@@ -213,7 +188,7 @@ TEST_F(Archives, NothingInThemLeadsOutOfTheirFolder) {
 }
 
 TEST_F(Archives, ThatWouldFillTheDiskAreGivenUp) {
-  const std::string one = gzipOf(std::string(std::size_t{64} << 20, 'x'));
+  const std::string one = packedBy(Deflate::gzip, std::string(std::size_t{64} << 20, 'x'));
   std::string bomb;
   for (int n = 0; n < 6; ++n) bomb += one;  // 384 MB in 0.4
   writeBytes(folder() / "bomb.gz", bomb);

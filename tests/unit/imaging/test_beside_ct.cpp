@@ -1,7 +1,5 @@
 // What lies beside a CT, or in its place: volume files, label maps, archives; and whose series are
 // shown.
-#include <zlib.h>
-
 #include <array>
 #include <cstring>
 
@@ -36,20 +34,6 @@ std::string niftiHeader(std::int16_t x, std::int16_t y, std::int16_t z, std::int
   put(280, rows);
   put(344, std::array<char, 4>{'n', '+', '1', '\0'});
   return header;
-}
-
-std::string gzipped(const std::string& bytes) {
-  z_stream stream{};
-  deflateInit2(&stream, 1, Z_DEFLATED, 15 + 16, 8, Z_DEFAULT_STRATEGY);
-  std::string packed(deflateBound(&stream, bytes.size()), '\0');
-  stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(bytes.data()));
-  stream.avail_in = uInt(bytes.size());
-  stream.next_out = reinterpret_cast<Bytef*>(packed.data());
-  stream.avail_out = uInt(packed.size());
-  deflate(&stream, Z_FINISH);
-  packed.resize(stream.total_out);
-  deflateEnd(&stream);
-  return packed;
 }
 
 class BesideCt : public SeriesFixture {
@@ -143,9 +127,10 @@ TEST_F(BesideCt, AFileOf30GbIsRefusedByItsHeader) {
   writeSparse("fits.nrrd", nrrd);
   writeBytes(folder() / "fits.mhd", mhd);
   writeSparse("voxels.raw", "");
-  writeBytes(folder() / "packed.nii.gz", gzipped(niftiHeader(2000, 2000, 1950, 16)));
+  writeBytes(folder() / "packed.nii.gz",
+             packedBy(Deflate::gzip, niftiHeader(2000, 2000, 1950, 16)));
   writeBytes(folder() / "many.nii.gz",
-             gzipped(niftiHeader(2000, 2000, 4000) + std::string(30 << 20, '\0')));
+             packedBy(Deflate::gzip, niftiHeader(2000, 2000, 4000) + std::string(30 << 20, '\0')));
   CtFolder ct = scan();
   ASSERT_EQ(ct.report().series.size(), 6u) << "voxels.raw belongs to fits.mhd";
   for (const SeriesReport& series : ImportReport(ct.report()).series) {
@@ -164,7 +149,7 @@ TEST_F(BesideCt, WhatIsPackedIsToldByItsFirstBytes) {
   tar.replace(257, 5, "ustar");
   const std::pair<const char*, std::string> files[] = {
       {"a ZIP archive", std::string("PK\3\4\x14\0\0\0\x08\0", 10)},
-      {"a gzip file", gzipped(std::string(2000, 'x'))},
+      {"a gzip file", packedBy(Deflate::gzip, std::string(2000, 'x'))},
       {"a 7z archive", "7z\xBC\xAF\x27\x1C...."},
       {"a RAR archive", "Rar!\x1A\x07...."},
       {"an xz file", std::string("\xFD"
@@ -198,12 +183,12 @@ TEST_F(BesideCt, AnArchiveAmongManyOtherFilesIsWhatTheSentenceSpeaksOf) {
 
 TEST_F(BesideCt, AGzippedSliceIsAnArchiveAndAGzippedVolumeIsNone) {
   write(rampVolume());
-  const std::string packed = gzipped(readBytes(slice(1)));
+  const std::string packed = packedBy(Deflate::gzip, readBytes(slice(1)));
   fs::remove_all(folder());
   writeBytes(folder() / "slice.dcm.gz", packed);
   std::string volume = niftiHeader(4, 4, 4);
   for (int n = 0; n < 64; ++n) volume += std::string("\x18\xFC", 2);  // -1000
-  writeBytes(folder() / "volume.nii.gz", gzipped(volume));
+  writeBytes(folder() / "volume.nii.gz", packedBy(Deflate::gzip, volume));
   const CtFolder ct = scan();
   ASSERT_EQ(ct.report().skipped.size(), 1u);
   EXPECT_EQ(ct.report().skipped.front().reason, std::string("a gzip file") + kUnpack);
