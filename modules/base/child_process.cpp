@@ -104,13 +104,13 @@ Result<ChildRun> runChild(const ChildCommand& command, const Progress& progress)
   const std::vector<char*> arguments = pointersTo(words);
   const std::vector<char*> environment = pointersTo(variables);
 
-  // Not fork(): all memory would be shared until it is written, a page fault for each page that the
-  // haptic thread touches. This thread waits for the exec; no signal's handler runs in the child
-  // before it.
+  // After fork() all memory is shared until it is written: a page fault for each page that the
+  // haptic thread touches. After vfork() the child counts our own peak of memory for its own. This
+  // thread waits for the exec; no signal's handler runs in the child before it.
   sigset_t all, before;
   ::sigfillset(&all);
   ::pthread_sigmask(SIG_SETMASK, &all, &before);
-  const pid_t child = ::vfork();
+  const pid_t child = command.measures_memory ? ::fork() : ::vfork();
   if (child == 0) {
     becomeProgram(arguments.data(), environment.data(), output.get(), nothing.get(),
                   reporting.get(), before);
@@ -158,7 +158,7 @@ Result<ChildRun> runChild(const ChildCommand& command, const Progress& progress)
   if (process.get() < 0) return cannotRun(command, ENOSYS);
   run.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
   run.seconds = double(end_ns - report.start_ns) / 1e9;
-  run.peak_rss_mb = double(usage.ru_maxrss) / 1024.0;
+  if (command.measures_memory) run.peak_rss_mb = double(usage.ru_maxrss) / 1024.0;
   return run;
 }
 

@@ -17,14 +17,18 @@ struct ChildCommand {
   std::filesystem::path home;      // its HOME, so that it leaves nothing in the user's; empty: ours
   double limit_s = 120.0;          // after which it is ended
   std::string step{};              // reported meanwhile, as the limit comes nearer; empty: nothing
+  // To have its `peak_rss_mb`. Each page that this program writes until the child's exec costs a
+  // page fault then: not beside a haptic thread.
+  bool measures_memory = false;
 };
 
 struct ChildRun {
   int exit_code = 0;       // 128 + the signal's number where one ended it
   bool timed_out = false;  // then it was ended
   double seconds = 0.0;    // wall time from just before exec to its end
-  // Resident memory at its peak, MB of 2^20 bytes.
-  double peak_rss_mb = 0.0;
+  // Resident memory at its peak, MB of 2^20 bytes, where it was asked for; at least what this
+  // program held when the child was started, which Linux counts for both.
+  std::optional<double> peak_rss_mb;
 };
 
 // Waits for the child's end; it ends with this process too. One that is to end gets a SIGTERM, and

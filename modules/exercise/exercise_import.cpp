@@ -1,8 +1,8 @@
 // A folder becomes an exercise of this workstation.
 #include <algorithm>
-#include <cmath>
 #include <set>
 
+#include "base/disk_room.h"
 #include "base/file.h"
 #include "base/json.h"
 #include "base/utf8.h"
@@ -87,23 +87,11 @@ Status namesPartsAlone(const fs::path& folder, const ExerciseCheck& check, Json&
   return {};
 }
 
-std::string mb(double bytes) {
-  return std::to_string(std::int64_t(std::ceil(bytes / 1e6))) + " MB";
-}
-
 // Before any of it is read: a part may say any size, and have it without taking room.
-Status roomFor(const ExerciseCheck& check, const fs::path& storage) {
-  std::error_code ec;
-  fs::path there = fs::absolute(storage, ec);
-  while (!fs::exists(there, ec) && there.has_relative_path()) there = there.parent_path();
-  double bytes = 0;
+double bytesOf(const ExerciseCheck& check) {
+  double bytes = 0.0;
   for (const ExercisePart& part : check.parts) bytes += double(part.bytes);
-  const fs::space_info room = fs::space(there, ec);
-  if (ec || bytes <= double(room.available)) return {};
-  return Error{"CANNOT_WRITE",
-               "The disk has no room for the exercise: it needs " + mb(bytes) + ", and " +
-                   mb(double(room.available)) + " are free",
-               storage.string(), "Free some space, or choose another storage folder"};
+  return bytes;
 }
 
 // Reads all that the exercise of a folder consists of, to its end: what cannot be read here cannot
@@ -248,7 +236,9 @@ Result<ImportedExercise> importExercise(const fs::path& folder, const fs::path& 
   Result<ExerciseCheck> check = listOf(folder);
   if (!check) return check.error();
   PartFolder::removeLeft(storage / "exercises");
-  if (Status room = roomFor(*check, storage); !room) return room.error();
+  if (Status room = enoughRoom(storage, bytesOf(*check), "the exercise"); !room) {
+    return room.error();
+  }
   if (Status read = verify(folder, *check, Progress(progress, 0.0, 0.3)); !read) {
     return read.error();
   }

@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/disk_room.h"
 #include "base/file.h"
 #include "base/json.h"
 #include "base/shared_folder.h"
@@ -148,14 +149,7 @@ void Folders::sweep() const {
 }
 
 Status Folders::roomFor(std::uint64_t bytes) const {
-  std::error_code ec;
-  const fs::space_info space = fs::space(storage_, ec);
-  if (ec || space.available >= bytes) return {};
-  const auto mb = [](std::uint64_t n) { return std::to_string(n / 1000000 + 1) + " MB"; };
-  return Error{"CANNOT_WRITE",
-               "The disk has no room for the case: it needs " + mb(bytes) + ", and " +
-                   mb(space.available) + " are free",
-               storage_.string(), "Free some space, or choose another storage folder"};
+  return enoughRoom(storage_, double(bytes), "the case");
 }
 
 void Folders::removePrivate(const std::string& key) const {

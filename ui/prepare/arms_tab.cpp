@@ -6,9 +6,9 @@
 
 #include "base/child_process.h"
 #include "base/file.h"
+#include "base/locked_folder.h"
 #include "base/log.h"
 #include "base/system.h"
-#include "lab/common/temporary_folder.h"
 #include "lab/touch/law_costs.h"
 #include "lab/trades/recommended.h"
 #include "lab/trades/trades_measurement.h"
@@ -130,13 +130,14 @@ void ArmsTab::measureTrades() {
       [to = ownFolder()](const Progress& progress) -> Status {
         const Result<std::filesystem::path> temporary = temporaryFolder();
         if (!temporary) return temporary.error();
-        const Result<TemporaryFolder> out = TemporaryFolder::in(*temporary, "trephine-trades");
+        const Result<LockedFolder> out =
+            LockedFolder::make(*temporary, ".trephine-trades-", *temporary);
         if (!out) return out.error();
         progress.at(0.0, "Measuring, some minutes");
         constexpr double kLongest_s = 1200.0;
         const Result<ChildRun> run = runChild(
             {{labProgram().string(), "measure", "trades", "--out", out->path().string(), "--json"},
-             *out / "answer.json",
+             out->path() / "answer.json",
              out->path(),
              kLongest_s},
             progress);
@@ -147,7 +148,7 @@ void ArmsTab::measureTrades() {
         }
         if (Status made = makeFolder(to); !made) return made;
         for (const char* file : {"trades.json", "recommended.json"}) {
-          const Result<Json> json = readJsonFile(*out / file);
+          const Result<Json> json = readJsonFile(out->path() / file);
           if (!json) return json.error();
           if (Status written = writeTextFile(to / file, json->dump(1) + '\n'); !written) {
             return written;

@@ -349,24 +349,27 @@ void PrepareWorkspace::showUndo() {
 }
 
 void PrepareWorkspace::askAboutStructures(const Error& error, const std::filesystem::path& file,
-                                          const Answers& answers, const std::string& option) {
+                                          const Answers& answers,
+                                          const std::vector<std::string>& options) {
   const auto use = [this, file, answers = answers, code = error.code](const std::string& with) {
     return [this, file, answers = Answers(answers), code, with]() mutable {
       answers[code] = with;
       workstation_.useLabels(file, answers);
     };
   };
+  const auto words = [](const std::string& option) {
+    return option == "ct"       ? tr("&Put it on the CT, voxel by voxel")
+           : option == "sform"  ? tr("Take its &sform")
+           : option == "qform"  ? tr("Take its &qform")
+           : option == "pixdim" ? tr("Take the steps of its &pixdim")
+                                : tr("&Use it all the same");
+  };
   QMessageBox* question = ask(bench_.window(), "structuresQuestion", toQt(error.what) + '.',
                               tr("What is used as it is may be felt and cut in the wrong place."),
-                              option == "ct"      ? tr("&Put it on the CT, voxel by voxel")
-                              : option == "sform" ? tr("Take its &sform")
-                                                  : tr("&Use it all the same"),
-                              use(option));
-  if (option != "sform") return;
-  const bool qform = error.what.find("qform") != std::string::npos;
-  orElse(*question, "otherForm",
-         qform ? tr("Take its &qform") : tr("Take the steps of its &pixdim"),
-         use(qform ? "qform" : "pixdim"));
+                              words(options.front()), use(options.front()));
+  for (std::size_t n = 1; n < options.size(); ++n) {
+    orElse(*question, "otherForm", words(options[n]), use(options[n]));
+  }
 }
 
 void PrepareWorkspace::askAboutOverlap(const std::vector<std::string>& names,

@@ -100,7 +100,7 @@ class PrepareWorkspace : public Workspace {
   bool offerMissing();
   void askForLabels();
   void askAboutStructures(const Error& error, const std::filesystem::path& file,
-                          const Answers& answers, const std::string& option);
+                          const Answers& answers, const std::vector<std::string>& options);
   void askAboutOverlap(const std::vector<std::string>& names, const std::filesystem::path& file,
                        const Answers& answers);
   void askForThreshold(const std::filesystem::path& file, const Answers& answers);

@@ -202,9 +202,10 @@ class Workstation : public QObject {
   void structuresChanged();
   // It stays as it was; failed() says why.
   void placingFailed();
-  // The file was not used: its `error` names a choice, whose option that uses it is `option`.
+  // The file was not used: its `error` names a choice, whose options that use it are `options`, at
+  // least one.
   void structuresAsked(const trephine::Error& error, const std::filesystem::path& file,
-                       const trephine::Answers& answers, const std::string& option);
+                       const trephine::Answers& answers, const std::vector<std::string>& options);
   // Structures of the file share voxels: `names`, in the order that would be taken; the answer is
   // OVERLAP.
   void overlapAsked(const std::vector<std::string>& names, const std::filesystem::path& file,

@@ -227,6 +227,7 @@ void Workstation::setStored(const std::string& id, const std::string& name) {
 // What a person is asked of a file that could be used as it is; the file is then not used yet.
 struct Workstation::Asked {
   std::vector<std::string> overlapping;
+  std::vector<std::string> forms;  // in which a NIfTI says how it lies (volume_files.h)
   bool threshold = false;
   bool any() const { return threshold || !overlapping.empty(); }
 };
@@ -241,6 +242,11 @@ Result<Case> Workstation::withAnswered(const Case& of, const Opened& opening, As
   request.ask_threshold = !request.answers.contains(kThreshold);
   Result<StructureFit> fit = importStructures(opening.labels_file, *of.volume, request, progress);
   asked.threshold = !fit && fit.error().code == "THRESHOLD";
+  if (!fit && fit.error().code == "FORMS_DIFFER") {
+    const Result<VolumeFileHeader> header = readVolumeFileHeader(opening.labels_file);
+    if (!header) return header.error();
+    for (const VolumeFileHeader::Form& form : header->forms) asked.forms.push_back(form.name);
+  }
   if (!fit) return fit.error();
   if (!request.answers.contains("OVERLAP")) asked.overlapping = fit->overlapping;
   if (asked.any()) return Error{"ASKED", "A person is asked about the structures", "", ""};
@@ -318,16 +324,14 @@ void Workstation::openInBackground(Opened opening) {
         if (!outcome && asked->threshold) return thresholdAsked(labels, answers);
         if (!outcome && asked->any()) return overlapAsked(asked->overlapping, labels, answers);
         // A choice that has an option beside refusing is a question.
-        static const std::map<std::string, std::string> kQuestions{
-            {"HU_NOT_TISSUE", "keep"},
-            {"MIRRORED", "keep"},
-            {"OTHER_FRAME", "keep"},
-            {"NO_AFFINE", "ct"},
-            {"FORMS_DIFFER", "sform"}};
-        if (!outcome && kQuestions.contains(outcome.error().code)) {
-          emit structuresAsked(outcome.error(), labels, answers,
-                               kQuestions.at(outcome.error().code));
-          return;
+        std::map<std::string, std::vector<std::string>> questions{{"HU_NOT_TISSUE", {"keep"}},
+                                                                  {"MIRRORED", {"keep"}},
+                                                                  {"OTHER_FRAME", {"keep"}},
+                                                                  {"NO_AFFINE", {"ct"}}};
+        if (!asked->forms.empty()) questions["FORMS_DIFFER"] = asked->forms;
+        if (!outcome && questions.contains(outcome.error().code)) {
+          const Error& error = outcome.error();
+          return structuresAsked(error, labels, answers, questions.at(error.code));
         }
         opened(std::move(outcome));
       });

@@ -558,9 +558,10 @@ Result<std::vector<DicomHeader>> readDicomHeaders(const std::filesystem::path& f
     header.acquired = trimmedText(data, DCM_AcquisitionDateTime).substr(0, 8);
   }
   header.concatenation = uidText(data, DCM_ConcatenationUID);
-  header.in_concatenation = countOr(data, DCM_InConcatenationNumber, 0, 65535);
-  header.concatenated = countOr(data, DCM_InConcatenationTotalNumber, 0, 65535);
-  header.overlay_bits = hasOverlayBits(data);
+  if (!header.concatenation.empty()) {
+    header.in_concatenation = countOr(data, DCM_InConcatenationNumber, 0, 65535);
+    header.concatenated = countOr(data, DCM_InConcatenationTotalNumber, 0, 65535);
+  }
   header.patient_name = patientText(data);
   header.study_text = studyText(data);
   header.identity = std::make_shared<const SourceIdentity>(identityOf(data));
@@ -571,6 +572,7 @@ Result<std::vector<DicomHeader>> readDicomHeaders(const std::filesystem::path& f
     header.defect_text = "its header is cut short";
   } else {
     findPixelsOf(xfer, stream_read, header);
+    header.overlay_bits = header.pixels && header.pixels->encapsulated && hasOverlayBits(data);
   }
   header.lossy = isLossy(data, header);
   return splitFrames(data, std::move(header));

@@ -104,7 +104,7 @@ struct DicomHeader {
   bool big_endian = false;
   bool swapped_pairs = false;    // 8-bit pixels in big-endian words
   bool ambiguous_order = false;  // 16-bit words declared as bytes in a big-endian file
-  bool overlay_bits = false;     // an overlay lies in the bits above those that are stored
+  bool overlay_bits = false;     // of compressed pixels: an overlay lies in their upper bits
   int said_bits_stored = 0;      // where the codestream has more, which `format` has then; else 0
   StoredFormat format;           // slope and intercept 1 and 0 where absent, slope 0 read as 1
   bool rescale_given = true;     // false where absent or slope 0

@@ -289,18 +289,18 @@ Status placeByItsSize(Segmentation& of, const GridGeometry& ct, Asking& asking, 
       "The file is of the CT's size and says nothing of where it lies: voxels of 1 mm, the first "
       "at 0";
   const auto chosen = asking.ask({"NO_AFFINE",
-                                  what + ". Where does it lie?",
+                                  what,
                                   {"refuse", "ct", "keep"},
                                   {"Do not use the segmentation", "On the CT, voxel by voxel",
                                    "Where it says, with voxels of 1 mm"}});
   if (!chosen) return chosen.error();
   if (*chosen == "ct") of.geometry = ct;
-  fit.findings.push_back({"NO_AFFINE",
-                          "notice",
-                          what,
-                          {},
-                          *chosen == "ct" ? "It was put on the CT, voxel by voxel"
-                                          : "It was taken at its word"});
+  fit.findings.push_back(
+      {"NO_AFFINE",
+       "notice",
+       what,
+       {},
+       *chosen == "ct" ? "It was put on the CT, voxel by voxel" : "It was taken at its word"});
   return {};
 }
 

@@ -7,10 +7,10 @@
 #include "base/child_process.h"
 #include "base/file.h"
 #include "base/formatted.h"
+#include "base/locked_folder.h"
 #include "base/system.h"
 #include "device/find_arms.h"
 #include "lab/commission/commission.h"
-#include "lab/common/temporary_folder.h"
 #include "session/arm_trial.h"
 
 namespace trephine {
@@ -162,7 +162,7 @@ std::vector<CommissionCheck> checkArms(double patience_s, const Progress& progre
     return failedFor(
         {"CANNOT_WRITE", "There is no folder for temporary files", "", kTemporaryNext});
   }
-  const Result<TemporaryFolder> folder = TemporaryFolder::in(*temporary, "trephine-arms");
+  const Result<LockedFolder> folder = LockedFolder::make(*temporary, ".trephine-arms-", *temporary);
   if (!folder) {
     return failedFor({"CANNOT_WRITE", "The folder for temporary files cannot be written to", "",
                       kTemporaryNext});
@@ -174,19 +174,19 @@ std::vector<CommissionCheck> checkArms(double patience_s, const Progress& progre
   const Result<ChildRun> run =
       runChild({{labProgram().string(), "commission", "--arms", "--json", "--out",
                  folder->path().string(), "--wait", plainNumber(patience_s)},
-                *folder / "said",
+                folder->path() / "said",
                 {},
                 patience_s + kPushes_s + kOpening_s,
                 "Hold each arm and move it a little"},
                progress);
-  const Result<Json> json = readJsonFile(*folder / kArmsAnswer);
+  const Result<Json> json = readJsonFile(folder->path() / kArmsAnswer);
   if (!run) return failedFor(run.error());
   if (run->timed_out) return failed("The driver of a device does not answer");
   if (run->exit_code > 128) return failed("The driver of a device ended the program that asked it");
   const auto checks =
       json && json->contains("checks") ? checksOf(json->at("checks")) : std::nullopt;
   if (checks) return *checks;
-  const auto said = errorSaid(*folder / "said");
+  const auto said = errorSaid(folder->path() / "said");
   return said ? failedFor(*said)
               : failed("The program that tries the arms did not come to its end");
 }

@@ -27,6 +27,7 @@ Result<OwnRun> runOurs(const OwnProgram& program, const LoaderTask& task,
   command.output = task.empty / "answer.json";
   command.home = task.empty;
   command.limit_s = program.limit_s;
+  command.measures_memory = true;
   Result<ChildRun> child = runChild(command, task.progress);
   if (!child) return child.error();
   OwnRun run{*child, {}, {}};
@@ -79,7 +80,7 @@ Loader importLoader(const OwnProgram& program) {
     const Json& report = ours->answer;
     if (task.known) run.correct = reportsVolume(report, task.known->sha256);
     ImportSample sample;
-    sample.peak_rss_mb = ours->child.peak_rss_mb;
+    sample.peak_rss_mb = ours->child.peak_rss_mb.value_or(0.0);
     sample.above_start_mb = number(report, "/peak_rss_mb") - number(report, "/start_rss_mb");
     sample.seconds = number(report, "/seconds/scan") + number(report, "/seconds/read");
     run.samples.push_back(sample);
@@ -100,7 +101,7 @@ Loader floorLoader(const OwnProgram& program) {
     if (!ours->problem.empty()) return failedRun(ours->problem);
     LoaderRun run;
     for (const char* figure : {"/seconds", "/kept_seconds"}) {
-      run.samples.push_back({number(ours->answer, figure), ours->child.peak_rss_mb, {}});
+      run.samples.push_back({number(ours->answer, figure), ours->child.peak_rss_mb.value_or(0.0), {}});
     }
     return run;
   };
@@ -132,7 +133,7 @@ Loader ownScanner(const OwnProgram& program) {
     if (!ours) return ours.error();
     if (!ours->problem.empty()) return failedRun(ours->problem);
     LoaderRun run;
-    run.samples.push_back({number(ours->answer, "/seconds/scan"), ours->child.peak_rss_mb, {}});
+    run.samples.push_back({number(ours->answer, "/seconds/scan"), ours->child.peak_rss_mb.value_or(0.0), {}});
     return run;
   };
   return loader;

@@ -8,8 +8,8 @@
 #include <sstream>
 
 #include "base/file.h"
+#include "base/locked_folder.h"
 #include "lab/common/spread.h"
-#include "lab/common/temporary_folder.h"
 
 namespace trephine {
 
@@ -54,10 +54,9 @@ struct Gathered {
 
 // Every loader once untimed, then `repetitions` times in turns. One that has a problem is not run
 // again and keeps no figures.
-Result<std::vector<Gathered>> takeTurns(const std::vector<Loader>& loaders,
-                                        const TemporaryFolder& place, const std::string& series,
-                                        const KnownVolume* known, int repetitions,
-                                        const Progress& progress) {
+Result<std::vector<Gathered>> takeTurns(const std::vector<Loader>& loaders, const fs::path& place,
+                                        const std::string& series, const KnownVolume* known,
+                                        int repetitions, const Progress& progress) {
   const fs::path folder = place / series, empty = place / "run";
   std::vector<std::vector<Gathered>> gathered;
   for (const Loader& loader : loaders) {
@@ -200,7 +199,7 @@ Result<ImportMeasurement> measureImport(const ImportOptions& options,
                                         const Progress& progress) {
   if (Status good = check(options, subjects.names); !good) return good.error();
   if (Status made = makeFolder(out); !made) return made.error();
-  Result<TemporaryFolder> folder = TemporaryFolder::in(out, "import");
+  const Result<LockedFolder> folder = LockedFolder::make(out, ".import-", out);
   if (!folder) return folder.error();
   ImportSeries series = options.series;
   if (series.names.empty()) series.names = subjects.names;
@@ -215,15 +214,16 @@ Result<ImportMeasurement> measureImport(const ImportOptions& options,
   double from = kMakingShare;
   for (std::size_t n = 0; n < series.names.size(); ++n) {
     const Progress reading(progress, from, from + part);
-    Result<std::vector<Gathered>> gathered = takeTurns(subjects.loaders, *folder, series.names[n],
-                                                       &(*known)[n], options.repetitions, reading);
+    Result<std::vector<Gathered>> gathered =
+        takeTurns(subjects.loaders, folder->path(), series.names[n], &(*known)[n],
+                  options.repetitions, reading);
     if (!gathered) return gathered.error();
     for (const Gathered& g : *gathered) result.rows.push_back(summarizeImport(g.row, g.samples));
     from += part;
   }
   const Progress scanning(progress, from, 1.0);
   Result<std::vector<Gathered>> scans =
-      takeTurns(subjects.scanners, *folder, "scan", nullptr, options.repetitions, scanning);
+      takeTurns(subjects.scanners, folder->path(), "scan", nullptr, options.repetitions, scanning);
   if (!scans) return scans.error();
   for (const Gathered& g : *scans) {
     const ImportRow row = summarizeImport(g.row, g.samples);

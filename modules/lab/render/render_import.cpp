@@ -1,5 +1,5 @@
 // From an import's end to the first picture of what was imported.
-#include "lab/common/temporary_folder.h"
+#include "base/locked_folder.h"
 #include "lab/import/import_series.h"
 #include "lab/render/render_parts.h"
 
@@ -7,7 +7,7 @@ namespace trephine {
 
 Status measureFirstPicture(const RenderOptions& options, const std::filesystem::path& out,
                            const Progress& progress, RenderMeasurement& result) {
-  Result<TemporaryFolder> folder = TemporaryFolder::in(out, "render");
+  const Result<LockedFolder> folder = LockedFolder::make(out, ".render-", out);
   if (!folder) return folder.error();
   ImportSeries series;
   series.names = {"int16"};
@@ -22,14 +22,15 @@ Status measureFirstPicture(const RenderOptions& options, const std::filesystem::
   if (!made) return made.error();
   SceneRenderer& renderer = **made;
   renderer.setTissues(*tissues);
-  const Result<Case> of = readCase((*folder / "int16").string(), Progress(progress, 0.6, 1.0));
+  const Result<Case> of =
+      readCase((folder->path() / "int16").string(), Progress(progress, 0.6, 1.0));
   if (!of) return of.error();
   const auto start = RenderClock::now();
   auto mirror = std::make_shared<VolumeMirror>();  // as in the window
   mirror->show(copyOf(*of->volume), nullptr, of->volume);
   renderer.setMirror(std::move(mirror));
   renderer.setMoving(true);  // as the window draws what is new
-  do {  // the first sends the volume, and no more
+  do {                       // the first sends the volume, and no more
     renderer.paint(0, 50.0);
   } while (renderer.stale());
   result.first_picture_ms = msSince(start);

@@ -105,6 +105,7 @@ Loader peerLoader(const Peer& peer, double limit_s, bool makes_volume) {
     command.output = task.empty / "stdout";
     command.home = task.empty;
     command.limit_s = limit_s;
+    command.measures_memory = true;
     Result<ChildRun> child = runChild(command, task.progress);
     if (!child) {
       if (child.error().code == "CANCELLED") return child.error();
@@ -118,7 +119,7 @@ Loader peerLoader(const Peer& peer, double limit_s, bool makes_volume) {
     } else if (makes_volume && volumes.size() != 1) {
       run.problem = "wrote " + std::to_string(volumes.size()) + " volumes";
     } else {
-      run.samples.push_back({child->seconds, child->peak_rss_mb, std::nullopt});
+      run.samples.push_back({child->seconds, child->peak_rss_mb.value_or(0.0), std::nullopt});
     }
     if (makes_volume && !run.problem.empty()) run.correct = false;
     if (makes_volume && run.problem.empty() && task.known) {

@@ -259,6 +259,37 @@ class ImportGuiTest : public test::WindowTest {
     dialog()->reject();
   }
 
+  void aNiftiThatContradictsItselfIsTakenByTheFormThatIsChosen() {
+    const QString folder = temporary_.filePath("contradicts");
+    QVERIFY(QDir().mkpath(folder));
+    const Volume ct = block({64, 48, 40}, 7);
+    QVERIFY(writeVolume(ct, toPath(folder) / "ct.nii").ok());
+    {
+      constexpr qint64 kSformSliceStep = 320;  // the third of srow_z
+      QFile file(folder + "/ct.nii");
+      QVERIFY(file.open(QIODevice::ReadWrite));
+      const float taller = float(ct.geometry.spacing_mm.z * 4.0 / 3.0);
+      QVERIFY(file.seek(kSformSliceStep));
+      QCOMPARE(file.write(reinterpret_cast<const char*>(&taller), 4), qint64(4));
+    }
+    open(folder);
+    auto* import = find<QPushButton>("import");
+    QVERIFY(!import->isEnabled());
+    QCOMPARE(find<QLabel>("verdictWord")->text(), stateWord(SeriesState::asks));
+    keepGrab("import-forms-differ.png");
+    auto* qform = find<QRadioButton>("choice_FORMS_DIFFER_qform");
+    QVERIFY2(qform->accessibleName().contains("2 x 2 x 3 mm"), qPrintable(qform->accessibleName()));
+    QTest::mouseClick(qform, Qt::LeftButton);
+    QVERIFY(import->isEnabled());
+    QSignalSpy opened(&workstation(), &Workstation::caseOpened);
+    QTest::mouseClick(import, Qt::LeftButton);
+    QVERIFY(opened.wait(kLong_ms));
+    QVERIFY(std::abs(workstation().currentCase()->volume->geometry.spacing_mm.z -
+                     ct.geometry.spacing_mm.z) < 1e-5);
+    QVERIFY(workstation().currentCase()->volume->hu == ct.hu);
+    closeError();
+  }
+
   void valuesThatCannotBeHuAreAskedForOnceTheyWereRead() {
     const QString folder = temporary_.filePath("stored");
     Volume stored = block({64, 48, 40}, 3);
@@ -533,7 +564,8 @@ class ImportGuiTest : public test::WindowTest {
       files << toQt(entry.path().filename());
     }
     files.sort();
-    QCOMPARE(files, QStringList({"empty", "gap", "head", "many", "storage", "stored", "two"}));
+    QCOMPARE(files, QStringList({"contradicts", "empty", "gap", "head", "many", "storage", "stored",
+                                 "two"}));
   }
 
   void cleanupTestCase() { window_.reset(); }

@@ -17,7 +17,10 @@
 #include <QTimer>
 #include <QTreeWidget>
 #include <QtTest>
+#include <array>
+#include <cstring>
 #include <fstream>
+#include <optional>
 
 #include "gui_support.h"
 #include "imaging/dicom/seg_reader.h"
@@ -56,6 +59,51 @@ void writeOverlapping(const GridGeometry& g, const LabelMap& liver,
     voxels += char(liver.labels[v] != 0 && v % 4 == 0);
   }
   out << voxels;
+}
+
+constexpr std::size_t kPixdim = 80, kSform = 280;  // of a NIfTI
+
+void overwrite(const std::filesystem::path& file, std::size_t at, const auto& values) {
+  std::fstream bytes(file, std::ios::in | std::ios::out | std::ios::binary);
+  bytes.seekp(std::streamoff(at));
+  bytes.write(reinterpret_cast<const char*>(values.data()), std::streamsize(sizeof values));
+  QVERIFY(bytes.good());
+}
+
+// A NIfTI whose sform and qform put the structure so many slices above its place.
+void writeNifti(const LabelMap& liver, std::optional<int> sform, std::optional<int> qform,
+                const std::filesystem::path& file) {
+  const GridGeometry& g = liver.geometry;
+  QCOMPARE(g.direction, Mat3(1.0));
+  std::string bytes(352, '\0');
+  const auto put = [&bytes](std::size_t at, auto value) {
+    std::memcpy(bytes.data() + at, &value, sizeof value);
+  };
+  put(0, std::int32_t(348));
+  put(40, std::int16_t(3));
+  put(70, std::int16_t(2));  // 8 bits
+  put(72, std::int16_t(8));
+  put(76, 1.0f);
+  for (int axis = 0; axis < 3; ++axis) {
+    put(42 + 2 * std::size_t(axis), std::int16_t(g.size[std::size_t(axis)]));
+    put(kPixdim + 4 * std::size_t(axis), float(g.spacing_mm[axis]));
+  }
+  put(108, 352.0f);
+  put(252, std::int16_t(qform ? 1 : 0));
+  put(254, std::int16_t(sform ? 1 : 0));
+  put(264, 1.0f);  // turned about z by 180 degrees: from our axes to NIfTI's
+  for (int axis = 0; axis < 3; ++axis) {
+    const double sign = axis < 2 ? -1.0 : 1.0;
+    const auto from = [&](int slices) {
+      return float(sign * g.origin_mm[axis] + (axis == 2 ? slices * g.spacing_mm.z : 0.0));
+    };
+    put(268 + 4 * std::size_t(axis), from(qform.value_or(0)));
+    put(kSform + 20 * std::size_t(axis), float(sign * g.spacing_mm[axis]));
+    put(kSform + 12 + 16 * std::size_t(axis), from(sform.value_or(0)));
+  }
+  bytes.replace(344, 3, "n+1");
+  bytes.append(liver.labels.begin(), liver.labels.end());
+  std::ofstream(file, std::ios::binary) << bytes;
 }
 
 // The same file with shares instead of yes and no: every other frame has 0.4 of each voxel.
@@ -103,6 +151,19 @@ class StructureFilesGuiTest : public test::WindowTest {
         return list()->topLevelItem(i)->text(1).toDouble();
     }
     return -1.0;
+  }
+  // Whether the case's structures are the liver alone, so many slices above its place.
+  bool liesAbove(int slices) {
+    const LabelMap& now = *workstation().currentCase()->structures;
+    const std::size_t slice = std::size_t(liver_.geometry.size[0]) * std::size_t(liver_.geometry.size[1]);
+    const std::size_t moved = slice * std::size_t(std::abs(slices));
+    const std::size_t rest = liver_.labels.size() - moved;
+    const std::size_t from = slices < 0 ? moved : 0, to = slices > 0 ? moved : 0;
+    std::size_t other = 0;
+    for (std::size_t v = 0; v < rest; ++v) {
+      other += (now.labels[to + v] != 0) != (liver_.labels[from + v] != 0);
+    }
+    return other == 0 && std::ranges::count(liver_.labels, 1) > 1000;
   }
   template <class Dialog>
   Dialog* wait(const char* name) {
@@ -279,6 +340,64 @@ class StructureFilesGuiTest : public test::WindowTest {
     QFile stl(file);
     QVERIFY(stl.open(QIODevice::ReadOnly) && stl.size() > 84 + 50 * 1000);
     QCOMPARE((stl.size() - 84) % 50, qint64(0));
+  }
+
+  void aNiftiThatContradictsItselfIsTakenByTheFormThatIsChosen() {
+    const std::filesystem::path file = toPath(temporary_.filePath("contradicts.nii"));
+    writeNifti(liver_, 3, -3, file);
+    QSignalSpy changed(&workstation(), &Workstation::structuresChanged);
+    workstation().useLabels(file);
+    auto* question = wait<QMessageBox>("structuresQuestion");
+    QVERIFY2(question->text().contains("sform and qform"), qPrintable(question->text()));
+    QVERIFY(question->grab().save(QString(TREPHINE_ARTEFACTS "/forms-differ.png")));
+    QCOMPARE(changed.count(), 0);
+    question->findChild<QPushButton*>("otherForm")->click();
+    QVERIFY(changed.count() == 1 || changed.wait(kLong_ms));
+    QVERIFY(liesAbove(-3));
+    QTRY_VERIFY(!window_->findChild<QMessageBox*>("structuresQuestion"));
+    workstation().useLabels(file);
+    wait<QMessageBox>("structuresQuestion")->findChild<QPushButton*>("goOnAnyway")->click();
+    QVERIFY(changed.count() == 2 || changed.wait(kLong_ms));
+    QVERIFY(liesAbove(3));
+    QTRY_VERIFY(!window_->findChild<QMessageBox*>("structuresQuestion"));
+  }
+
+  void aFormThatIsNoneIsNotOffered() {
+    const std::filesystem::path file = toPath(temporary_.filePath("no-sform.nii"));
+    writeNifti(liver_, 3, -3, file);
+    overwrite(file, kSform, std::array<float, 12>{});
+    QSignalSpy changed(&workstation(), &Workstation::structuresChanged);
+    workstation().useLabels(file);
+    auto* question = wait<QMessageBox>("structuresQuestion");
+    QVERIFY(!question->findChild<QPushButton*>("otherForm"));
+    auto* qform = question->findChild<QPushButton*>("goOnAnyway");
+    QVERIFY2(qform->text().contains("qform"), qPrintable(qform->text()));
+    qform->click();
+    QVERIFY(changed.count() == 1 || changed.wait(kLong_ms));
+    QVERIFY(liesAbove(-3));
+    QTRY_VERIFY(!window_->findChild<QMessageBox*>("structuresQuestion"));
+  }
+
+  void aFileThatSaysNoPlaceIsPutOnTheCtOnceThatIsAgreed() {
+    const std::filesystem::path file = toPath(temporary_.filePath("no-place.nii"));
+    writeNifti(liver_, 0, {}, file);
+    overwrite(file, kPixdim, std::array{1.0f, 1.0f, 1.0f});
+    overwrite(file, kSform, std::array{1.0f, 0.0f, 0.0f, 0.0f, 0.0f, 1.0f, 0.0f, 0.0f, 0.0f, 0.0f,
+                                       1.0f, 0.0f});
+    QSignalSpy changed(&workstation(), &Workstation::structuresChanged);
+    workstation().useLabels(file);
+    auto* question = wait<QMessageBox>("structuresQuestion");
+    QVERIFY2(question->text().contains("says nothing of where it lies: voxels of 1 mm"),
+             qPrintable(question->text()));
+    QVERIFY(question->grab().save(QString(TREPHINE_ARTEFACTS "/no-place.png")));
+    question->button(QMessageBox::Cancel)->click();
+    QTRY_VERIFY(!window_->findChild<QMessageBox*>("structuresQuestion"));
+    QCOMPARE(changed.count(), 0);
+    workstation().useLabels(file);
+    wait<QMessageBox>("structuresQuestion")->findChild<QPushButton*>("goOnAnyway")->click();
+    QVERIFY(changed.count() == 1 || changed.wait(kLong_ms));
+    QVERIFY(liesAbove(0));
+    QTRY_VERIFY(!window_->findChild<QMessageBox*>("structuresQuestion"));
   }
 
   void aBuiltInCaseHasNoSourceThatCouldBeNamed() {

@@ -73,13 +73,16 @@ TEST_F(Child, OfACommandOfOursTheErrorIsRead) {
 }
 
 TEST_F(Child, TellsThePeakOfItsMemory) {
-  const Result<ChildRun> small = runChild(shell(":"), progress_);
-  const Result<ChildRun> large =
-      runChild(shell("exec dd if=/dev/zero of=/dev/null bs=200M count=1"), progress_);
-  ASSERT_TRUE(small && large);
-  EXPECT_GT(large->peak_rss_mb, 200.0);
-  EXPECT_LT(large->peak_rss_mb, 300.0);
-  EXPECT_LT(small->peak_rss_mb, large->peak_rss_mb - 100.0);
+  ASSERT_EQ(std::string(std::size_t(400) << 20, 'x').back(), 'x') << "ours, and given back";
+  ChildCommand nothing = shell(":"),
+               dd = shell("exec dd if=/dev/zero of=/dev/null bs=200M count=1");
+  nothing.measures_memory = dd.measures_memory = true;
+  const Result<ChildRun> small = runChild(nothing, progress_), large = runChild(dd, progress_);
+  ASSERT_TRUE(small && large && small->peak_rss_mb && large->peak_rss_mb);
+  EXPECT_GT(*large->peak_rss_mb, 200.0);
+  EXPECT_LT(*large->peak_rss_mb, 300.0);
+  EXPECT_LT(*small->peak_rss_mb, *large->peak_rss_mb - 100.0);
+  EXPECT_FALSE(runChild(shell(":"), progress_)->peak_rss_mb) << "it would be ours";
 }
 
 TEST_F(Child, HasItsOwnHomeAndTheRestOfTheEnvironment) {

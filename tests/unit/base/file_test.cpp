@@ -9,6 +9,7 @@
 #include <fstream>
 #include <sstream>
 
+#include "base/disk_room.h"
 #include "file_size_limit.h"
 #include "support.h"
 
@@ -200,6 +201,19 @@ TEST(MakeFolder, RefusesWhereAFileIs) {
     EXPECT_EQ(status.error().where, path.string());
   }
   EXPECT_EQ(contentOf(folder / "file"), "text");
+}
+
+TEST(DiskRoom, IsThatOfTheNearestFolderThatIsThere) {
+  const test::TemporaryFolder folder;
+  const fs::path wanted = folder / "new" / "storage";
+  EXPECT_TRUE(enoughRoom(folder.path(), 1000.0, "the case"));
+  EXPECT_TRUE(enoughRoom(wanted, 1000.0, "the case"));
+  const Status status = enoughRoom(wanted, 1e30, "the exercise");
+  ASSERT_FALSE(status);
+  EXPECT_EQ(status.error().code, "CANNOT_WRITE");
+  EXPECT_EQ(status.error().where, wanted.string());
+  EXPECT_EQ(status.error().what.find("The disk has no room for the exercise: it needs "), 0U);
+  EXPECT_FALSE(fs::exists(folder / "new"));
 }
 
 TEST(TemporaryFolder, IsTheOneThatTheEnvironmentNames) {
