@@ -184,6 +184,26 @@ void addStoppedScan(const ScannedFiles& files, Series& series) {
   report.verdict = verdictOf(report.findings);
 }
 
+// Slices of it may be among what could not be unpacked.
+void addNotWhole(const UnpackedArchives& unpacked, Series& series) {
+  for (const auto& archive : unpacked.not_whole) {
+    const bool from_it = std::ranges::any_of(series.slices, [&](const DicomHeader& slice) {
+      return slice.file.parent_path() == archive.folder;
+    });
+    if (!from_it) continue;
+    SeriesReport& report = series.report;
+    report.findings.insert(
+        report.findings.begin() + std::ptrdiff_t(series.findings_kept++),
+        {"ARCHIVE_NOT_WHOLE",
+         "refusal",
+         "It comes from " + archive.why + ": some of its slices may not be there",
+         {},
+         "Copy or download the archive again, or unpack it by hand and import the folder"});
+    report.verdict = verdictOf(report.findings);
+    return;
+  }
+}
+
 // Refused as a whole, rather than with a question about every slice that is not there any more.
 Error refuseVanished(SeriesReport& series) {
   series.findings.push_back({"SOURCE_VANISHED",
@@ -290,12 +310,12 @@ Status CtFolder::Contents::unpackInto(ScannedFiles& files, std::filesystem::path
   if (!within) return within.error();
   if (within->headers.empty() && within->volume_files.empty()) {
     // Why, where that is more than that it is packed.
-    for (const std::string& reason : some->not_whole) {
-      if (reason.find("damaged") == reason.npos) ++files.skipped[reason];
+    for (const auto& archive : some->not_whole) {
+      if (archive.why.find("damaged") == archive.why.npos) ++files.skipped[archive.why];
     }
     return {};
   }
-  for (const std::string& reason : some->not_whole) ++within->skipped[reason];
+  for (const auto& archive : some->not_whole) ++within->skipped[archive.why];
   within->files_seen += files.files_seen - int(files.archives.size());
   within->came_upon.merge(files.came_upon);
   files = *std::move(within);
@@ -324,7 +344,7 @@ Result<Volume> CtFolder::Contents::readDicom(Series& series, const ImportRequest
       series.slices[lost.slice].defect_text = lost.why;
     }
     if (!assembly->unreadable.empty()) continue;
-    if (plan.whole_words || assembly->high_bits) {
+    if (assembly->high_bits) {
       askAboutHighBits(series.slices[plan.sources.front()], answers, series.report);
     }
     addValueFindings(assembly->counts, series.report);
@@ -372,6 +392,7 @@ Result<CtFolder> CtFolder::scan(const std::filesystem::path& path, const Progres
   }
   for (Series& series : groupSeries(std::move(files->headers), progress)) {
     if (files->not_looked_at > 0) addStoppedScan(*files, series);
+    if (contents.unpacked) addNotWhole(*contents.unpacked, series);
     contents.sources.push_back({std::move(series), {}});
   }
   if (progress.cancelled()) return Error{"CANCELLED", "The import was cancelled", "", ""};

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 
 #include "imaging/dicom/seg_reader.h"
@@ -77,6 +78,31 @@ Status match(const DicomSegmentation& seg, const Volume& ct, const StructureRequ
   return {};
 }
 
+// How far a corner of the one grid lies from the nearest corner of the other at most, in whatever
+// order they count their voxels.
+double cornersFrom_mm(const GridGeometry& of, const GridGeometry& ct) {
+  const auto corners = [](const GridGeometry& g) {
+    std::vector<Vec3> all;
+    for (int corner = 0; corner < 8; ++corner) {
+      const Vec3 at(corner & 1 ? g.size[0] - 1 : 0, corner & 2 ? g.size[1] - 1 : 0,
+                    corner & 4 ? g.size[2] - 1 : 0);
+      all.push_back(g.toPatient_mm(at));
+    }
+    return all;
+  };
+  Index3 sizes = of.size, ct_sizes = ct.size;
+  std::ranges::sort(sizes);
+  std::ranges::sort(ct_sizes);
+  if (sizes != ct_sizes) return std::numeric_limits<double>::infinity();
+  double most = 0.0;
+  for (const Vec3& one : corners(of)) {
+    double least = std::numeric_limits<double>::infinity();
+    for (const Vec3& other : corners(ct)) least = std::min(least, glm::length(one - other));
+    most = std::max(most, least);
+  }
+  return most;
+}
+
 // Of a label map that says in two ways how it lies in the patient (volume_files.h): what was
 // answered, else the one that puts it on the CT's voxels. Empty: none of them alone does.
 std::string formOf(const std::filesystem::path& file, const Volume& ct, const Answers& answers,
@@ -87,18 +113,21 @@ std::string formOf(const std::filesystem::path& file, const Volume& ct, const An
   const Result<VolumeFileHeader> header = readVolumeFileHeader(file);
   if (!header || header->forms.empty()) return "";
   const Vec3& mm = ct.geometry.spacing_mm;
-  std::vector<std::string> on_ct;
+  double least_mm = kSame * std::min({mm.x, mm.y, mm.z});
+  std::string nearest;
   for (const VolumeFileHeader::Form& form : header->forms) {
-    const double apart_mm = cornersApart_mm(form.geometry, ct.geometry);
-    if (apart_mm <= kSame * std::min({mm.x, mm.y, mm.z})) on_ct.push_back(form.name);
+    const double apart_mm = cornersFrom_mm(form.geometry, ct.geometry);
+    if (apart_mm > least_mm) continue;
+    least_mm = apart_mm;
+    nearest = form.name;
   }
-  if (on_ct.size() != 1) return "";
+  if (nearest.empty()) return "";
   said = Finding{kCode,
                  "notice",
                  header->contradiction,
                  {},
-                 "The " + on_ct.front() + " puts it on the CT's voxels, and was taken"};
-  return on_ct.front();
+                 "The " + nearest + " puts it on the CT's voxels, and was taken"};
+  return nearest;
 }
 
 int hideNames(Segmentation& segmentation, const StructureRequest& request) {

@@ -2,8 +2,6 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
-#include <utility>
 
 #include "haptics/haptic_types.h"
 
@@ -13,21 +11,26 @@ class PausedTicks {
  public:
   void add(const Event& event) {
     if (event.kind != EventKind::command) return;
-    if (event.command.kind == CommandKind::pause && !since_) since_ = event.tick;
-    if (event.command.kind == CommandKind::resume && since_) {
-      ended_ += event.tick - *std::exchange(since_, std::nullopt);
+    if (event.command.kind == CommandKind::pause && !pauses_) {
+      pauses_ = true;
+      since_ = event.tick;
+    }
+    if (event.command.kind == CommandKind::resume && pauses_) {
+      pauses_ = false;
+      ended_ += event.tick - since_;
     }
   }
   // Of the pauses that have ended.
   std::uint64_t ended() const { return ended_; }
   // With the one that lasts still, up to that tick.
   std::uint64_t until(std::uint64_t tick) const {
-    return since_ && tick > *since_ ? ended_ + tick - *since_ : ended_;
+    return pauses_ && tick > since_ ? ended_ + tick - since_ : ended_;
   }
 
  private:
   std::uint64_t ended_ = 0;
-  std::optional<std::uint64_t> since_;
+  bool pauses_ = false;
+  std::uint64_t since_ = 0;
 };
 
 }  // namespace trephine

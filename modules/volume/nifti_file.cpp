@@ -95,6 +95,22 @@ struct Affines {
   Vec3 pixdim_mm{0.0};
 };
 
+// The scalar part of the sform's rotation, where b, c and d leave it open: near a half turn the
+// rounding of floats makes up to 7e-4 of it, and that a tenth of a degree.
+std::optional<double> scalarPart(const Mat4& sform, const Vec3& bcd, double left) {
+  constexpr double kRounding = 4e-7;  // of a * a: 2 (|b| + |c| + |d|) times half a float's last bit
+  Mat3 axes(sform);
+  for (int axis = 0; axis < 3; ++axis) {
+    const double length = glm::length(axes[axis]);
+    if (!(length > 0.0) || !std::isfinite(length)) return std::nullopt;
+    axes[axis] /= length;
+  }
+  if (glm::determinant(axes) < 0.0) axes[2] = -axes[2];
+  const Quat q = glm::quat_cast(axes);
+  if (!(std::abs(q.w * q.w - left) < kRounding)) return std::nullopt;
+  return glm::dot(Vec3(q.x, q.y, q.z), bcd) < 0.0 ? -q.w : q.w;
+}
+
 Result<Affines> affinesOf(const Header& h, const fs::path& file) {
   double unit_mm = 1.0;
   switch (h.units() & 7) {
@@ -111,7 +127,8 @@ Result<Affines> affinesOf(const Header& h, const fs::path& file) {
       return badGeometry("The unit of length is unknown", file);
   }
   Affines of;
-  of.pixdim_mm = Vec3(h.pixdim(1), h.pixdim(2), h.pixdim(3)) * unit_mm;
+  // Steps have no sign: handedness is that of pixdim[0], or of the sform.
+  of.pixdim_mm = glm::abs(Vec3(h.pixdim(1), h.pixdim(2), h.pixdim(3))) * unit_mm;
   if (h.sform() > 0) {
     Mat4& affine = of.sform.emplace(1.0);
     for (int row = 0; row < 3; ++row) {
@@ -124,7 +141,9 @@ Result<Affines> affinesOf(const Header& h, const fs::path& file) {
     const double b = h.quaternion(0), c = h.quaternion(1), d = h.quaternion(2);
     // Below 1e-7 it is what floats leave of a half turn: libnifti takes it for none as well.
     const double left = 1.0 - b * b - c * c - d * d;
-    const Quat q(left < 1e-7 ? 0.0 : std::sqrt(left), b, c, d);
+    double a = left < 1e-7 ? 0.0 : std::sqrt(left);
+    if (of.sform) a = scalarPart(*of.sform, Vec3(b, c, d), left).value_or(a);
+    const Quat q(a, b, c, d);
     const Mat3 rotation = glm::mat3_cast(glm::normalize(q));
     Mat4& affine = of.qform.emplace(1.0);
     for (int axis = 0; axis < 3; ++axis) {
@@ -162,7 +181,8 @@ std::string stepsText(const Vec3& mm) {
 std::string contradictionOf(const Mat4& sform, const char* name, const Mat4& other,
                             double apart_mm) {
   const Vec3 a = stepsOf_mm(sform), b = stepsOf_mm(other);
-  const std::string both = std::string("The file's sform and ") + name + " contradict one another: ";
+  const std::string both =
+      std::string("The file's sform and ") + name + " contradict one another: ";
   for (int axis = 0; axis < 3; ++axis) {
     if (std::abs(a[axis] - b[axis]) <= 1e-3 * a[axis]) continue;
     return both + "the one says steps of " + stepsText(a) + ", the other of " + stepsText(b);
@@ -174,6 +194,15 @@ std::string contradictionOf(const Mat4& sform, const char* name, const Mat4& oth
   std::snprintf(text, sizeof text, "by the one it lies up to %.4g mm from where the other puts it",
                 apart_mm);
   return both + text;
+}
+
+// Numbers that are none, or an axis of no length: a form that a writer left empty.
+bool saysNothing(const Mat4& affine) {
+  for (int axis = 0; axis < 4; ++axis) {
+    const double length = glm::length(Vec3(affine[axis]));
+    if (!std::isfinite(length) || (axis < 3 && !(length > 0.0))) return true;
+  }
+  return false;
 }
 
 // `header` as the first form that there is has it; where another contradicts it, all are kept.
@@ -190,6 +219,12 @@ Status place(const Affines& of, const Index3& size, const fs::path& file,
                                     : of.qform   ? of.qform
                                                  : withPixdim(first, of.pixdim_mm);
   if (!other) return settled(first);
+  if (of.qform && saysNothing(first) != saysNothing(*other)) {
+    const bool qform = saysNothing(first);
+    header.notes.push_back(std::string("The file's ") + (qform ? "sform" : "qform") +
+                           " says no place: its " + (qform ? "qform" : "sform") + " was taken.");
+    return settled(qform ? *other : first);
+  }
   const double apart_mm =
       cornersApart_mm(geometryFrom(kFlipXy * first, size), geometryFrom(kFlipXy * *other, size));
   const Vec3 steps = glm::min(stepsOf_mm(first), stepsOf_mm(*other));
@@ -204,14 +239,13 @@ Status place(const Affines& of, const Index3& size, const fs::path& file,
     if (!good) why = good;
   }
   if (header.forms.empty()) return why;
-  if (header.forms.size() == 1) {
-    const bool first_is_good = header.forms.front().name == "sform";
-    header.contradiction = std::string("The file's ") + (first_is_good ? name : "sform") +
-                           " is no place that an image can have, and its " +
-                           header.forms.front().name + " is another";
-  }
   header.geometry = header.forms.front().geometry;
   header.reversed_slices = header.forms.front().reversed_slices;
+  if (header.forms.size() == 1) {
+    const std::string& good = header.forms.front().name;
+    header.contradiction = std::string("The file's ") + (good == "sform" ? name : "sform") +
+                           " is a place that is not read, and its " + good + " contradicts it";
+  }
   return {};
 }
 
@@ -236,15 +270,18 @@ Result<Index3> sizeOf(const Header& h, const fs::path& file) {
 }
 
 // What stands for a character of a text in XML.
-std::string withoutEntities(std::string text) {
+std::string withoutEntities(const std::string& text) {
   constexpr std::pair<const char*, const char*> kSigns[] = {
       {"&lt;", "<"}, {"&gt;", ">"}, {"&quot;", "\""}, {"&apos;", "'"}, {"&amp;", "&"}};
-  for (const auto& [sign, character] : kSigns) {
-    for (std::size_t at = 0; (at = text.find(sign, at)) != text.npos; ++at) {
-      text.replace(at, std::strlen(sign), character);
-    }
+  std::string plain;
+  for (std::size_t at = 0; at < text.size();) {
+    const auto* sign = std::ranges::find_if(kSigns, [&](const auto& one) {
+      return std::string_view(text).substr(at).starts_with(one.first);
+    });
+    plain += sign != std::end(kSigns) ? sign->second[0] : text[at];
+    at += sign != std::end(kSigns) ? std::strlen(sign->first) : 1;
   }
-  return text;
+  return plain;
 }
 
 // The table of labels that Connectome Workbench and TotalSegmentator write into a header's
@@ -272,7 +309,7 @@ std::map<std::string, std::string> labelTable(const std::string& extension) {
       name = name.substr(text + kText.size());
       name = name.substr(0, name.find(kTextEnd));
     } else {
-      name = withoutEntities(std::move(name));
+      name = withoutEntities(name);
     }
     at = end;
     const auto key = numberIn(attribute("Key"));
@@ -309,7 +346,7 @@ std::string headerFor(const GridGeometry& g, VoxelType type) {
   put(76, std::array<float, 8>{left_handed ? -1.0f : 1.0f, float(g.spacing_mm.x),
                                float(g.spacing_mm.y), float(g.spacing_mm.z), 1, 1, 1, 1});
   put(108, float(kVoxelsFrom));
-  put(123, std::uint8_t(2));  // mm
+  put(123, std::uint8_t(2));                                      // mm
   const std::string made = std::string("Trephine: ") + kPurpose;  // of 80 characters
   std::copy_n(made.data(), std::min<std::size_t>(made.size(), 79), bytes.data() + 148);
   put(252, std::array<std::int16_t, 2>{1, 2});  // a scanner's place by qform, an aligned by sform

@@ -16,6 +16,10 @@ namespace trephine::file_format {
 
 namespace {
 
+Error cancelled(const std::filesystem::path& file) {
+  return {"CANCELLED", "Reading the volume was cancelled", file.string(), ""};
+}
+
 constexpr double kWhole = 1e-4;  // from a whole number
 // Between two such parts it is asked whether reading was cancelled: 0.1 s of a stick of 5 MB/s.
 constexpr std::size_t kVoxelsAtOnce = std::size_t{1} << 16;
@@ -53,12 +57,15 @@ class VoxelBytes {
   }
   bool read(std::uint8_t* to, std::size_t count) { return readSome(to, count) == count; }
 
-  bool skip(std::uint64_t count) {
-    std::uint8_t unused[4096];
-    for (; count > 0; count -= std::min<std::uint64_t>(count, sizeof unused)) {
-      if (!read(unused, std::size_t(std::min<std::uint64_t>(count, sizeof unused)))) return false;
+  // Until it is cancelled.
+  bool skip(std::uint64_t count, const Progress& progress) {
+    std::vector<std::uint8_t> unused(std::size_t{1} << 20);
+    while (count > 0 && !progress.cancelled()) {
+      const std::uint64_t now = std::min<std::uint64_t>(count, unused.size());
+      if (!read(unused.data(), std::size_t(now))) return false;
+      count -= now;
     }
-    return true;
+    return count == 0;
   }
 
   // After the last voxel: whether zlib's checksum is right. It is not reached, and not asked for,
@@ -167,11 +174,9 @@ Result<VolumeFileReading> readVoxels(VolumeFileHeader header, const std::filesys
   Voxels& hu = reading.volume.hu;
   // Memory is reserved here but only filled, and so taken, as voxels come.
   hu.reserve(count);
-  bool whole = source.skip(h.data.skip);
+  bool whole = source.skip(h.data.skip, progress);
   for (std::vector<std::uint8_t> bytes; whole && hu.size() < count;) {
-    if (progress.cancelled()) {
-      return Error{"CANCELLED", "Reading the volume was cancelled", file.string(), ""};
-    }
+    if (progress.cancelled()) return cancelled(file);
     progress.at(double(hu.size()) / double(count), "Reading voxels");
     const std::size_t done = hu.size(), now = std::min(kVoxelsAtOnce, count - done);
     bytes.resize(now * std::size_t(voxel_bytes));
@@ -180,6 +185,7 @@ Result<VolumeFileReading> readVoxels(VolumeFileHeader header, const std::filesys
     hu.resize(done + now);
     if (whole) convertVoxels(bytes, hu.data() + done, reading);
   }
+  if (progress.cancelled()) return cancelled(file);
   if (!whole || !source.finish()) {
     return unreadable("The file's voxels are damaged or cut short", file);
   }

@@ -364,7 +364,8 @@ bool isLossy(const DicomItem& data, const DicomHeader& header) {
 }
 
 // Bits that the codestream has and the header does not say: they would be masked away. One of all
-// allocated bits tells nothing: many writers give none else.
+// allocated bits tells nothing: many writers give none else. Neither do those above a sign, or with
+// an overlay among them.
 void takeBitsOfStream(DicomHeader& header) {
   const TransferSyntax* syntax = findTransferSyntax(header.transfer_syntax);
   const bool compressed = syntax && header.pixels && !header.pixels->frames.empty() &&
@@ -372,7 +373,8 @@ void takeBitsOfStream(DicomHeader& header) {
   if (!compressed || header.pixels->frames.front().empty()) return;
   const int bits = bitsOfCodestream(*syntax, firstBytes(header)).value_or(0);
   StoredFormat& format = header.format;
-  const bool as_said = format.high_bit == format.bits_stored - 1;
+  const bool as_said =
+      format.high_bit == format.bits_stored - 1 && !format.is_signed && !header.overlay_bits;
   if (!as_said || bits <= format.bits_stored || bits >= header.bits_allocated) return;
   header.said_bits_stored = format.bits_stored;
   format.bits_stored = bits;
@@ -410,7 +412,6 @@ void findPixelsOf(const DcmXfer& xfer, DicomStream& stream, DicomHeader& header)
   header.swapped_pairs = header.big_endian && header.bits_allocated == 8 && vr == "OW";
   header.ambiguous_order = header.big_endian && header.bits_allocated > 8 && vr == "OB";
   if (header.has_pixels) checkPixels(cut, header);
-  takeBitsOfStream(header);
 }
 
 bool isCut(DcmFileFormat& dicom, DicomStream& stream) {
@@ -573,6 +574,7 @@ Result<std::vector<DicomHeader>> readDicomHeaders(const std::filesystem::path& f
   } else {
     findPixelsOf(xfer, stream_read, header);
     header.overlay_bits = header.pixels && header.pixels->encapsulated && hasOverlayBits(data);
+    takeBitsOfStream(header);
   }
   header.lossy = isLossy(data, header);
   return splitFrames(data, std::move(header));

@@ -166,6 +166,11 @@ int countOr(const DicomItem& item, const DcmTagKey& tag, int fallback, int most)
 std::optional<double> timeNumber(const DicomItem& item, const DcmTagKey& tag) {
   std::string text = trimmedText(item, tag);
   text = text.substr(0, text.find_first_of("+-"));  // the offset from UTC is the same for all
+  // A time may end after its hours or minutes, and so may one behind a date.
+  constexpr std::size_t kDate = 8, kTime = 6;
+  const std::size_t digits = std::min(text.find_first_not_of("0123456789"), text.size());
+  const std::size_t of_time = digits > kDate ? digits - kDate : digits;
+  if (digits == text.size() && (of_time == 2 || of_time == 4)) text.append(kTime - of_time, '0');
   return parseDecimal(text);
 }
 

@@ -15,15 +15,21 @@ namespace trephine {
 struct UnpackedArchives {
   LockedFolder folder;  // of this account alone, in the temporary folder
   std::size_t files = 0;
-  std::vector<std::string>
-      not_whole;  // why what of some could not be unpacked, without a file's name
+  // Archives of which something could not be unpacked, in the order in which they were given: the
+  // folder of what was, and why, without a file's name.
+  struct NotWhole {
+    std::filesystem::path folder;
+    std::string why;
+  };
+  std::vector<NotWhole> not_whole;
 };
 
-// Unpacks into one folder, which goes with the result. Nothing in an archive leads out of it: files
-// get numbers for names, but those of volumes, whose headers name others; links and devices are
-// left out, archives within stay packed. An archive that unpacks to over a hundred times its size
-// (and over 256 MB), to more than the disk has room for, or to over 200,000 files is given up.
-// Errors: CANCELLED, NO_TEMPORARY_FOLDER, CANNOT_WRITE.
+// Unpacks each into a folder of its own in one that goes with the result. Nothing in an archive
+// leads out of it: files get numbers for names, but those of volumes, whose headers name others;
+// links and devices are left out, archives within stay packed. A file that is damaged or locked is
+// left out, and the rest unpacked. An archive that unpacks to over a hundred times its size (and
+// over 256 MB), all of them to more than half of what the disk has free, or to over 200,000 files
+// are given up. Errors: CANCELLED, NO_TEMPORARY_FOLDER, CANNOT_WRITE.
 Result<UnpackedArchives> unpack(const std::vector<std::filesystem::path>& archives,
                                 const Progress& progress = Progress());
 

@@ -167,7 +167,7 @@ Result<Volume> readFileSeries(const std::filesystem::path& file, const Answers& 
     const Finding& finding = report.findings.back();
     return Error{finding.code, finding.text, report.uid, finding.action};
   }
-  const auto voxels = [](std::uint64_t count) { return counted(count, "voxel"); };
+  const auto voxels = [](std::uint64_t n) { return counted(n, "voxel"); };
   if (reading->rounded > 0) {
     add(report, "HU_ROUNDED", "repair",
         voxels(reading->rounded) + " had HU that are not whole numbers",

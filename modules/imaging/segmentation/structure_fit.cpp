@@ -207,7 +207,7 @@ class Asking {
     }
     if (option == "refuse") {
       return Error{choice.code, choice.question, "the segmentation",
-                   "Choose another file, or answer " + choice.code + "=" + choice.options[1]};
+                   "Choose another file, or answer " + choice.code + "=" + choice.options.back()};
     }
     fit_.choices.push_back(std::move(choice));
     return option;
@@ -290,9 +290,10 @@ Status placeByItsSize(Segmentation& of, const GridGeometry& ct, Asking& asking, 
       "at 0";
   const auto chosen = asking.ask({"NO_AFFINE",
                                   what,
-                                  {"refuse", "ct", "keep"},
-                                  {"Do not use the segmentation", "On the CT, voxel by voxel",
-                                   "Where it says, with voxels of 1 mm"}});
+                                  {"refuse", "keep", "ct"},
+                                  {"Do not use the segmentation",
+                                   "Where it says, with voxels of 1 mm",
+                                   "On the CT, voxel by voxel"}});
   if (!chosen) return chosen.error();
   if (*chosen == "ct") of.geometry = ct;
   fit.findings.push_back(

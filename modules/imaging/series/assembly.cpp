@@ -113,7 +113,7 @@ class Assembler {
     const bool odd =
         read && bits_are_values_ && hasHighBits({words, source_voxels_}, header.format);
     StoredFormat format = header.format;
-    if (plan_.whole_words && header.bits_allocated == 16) {
+    if (plan_.whole_words && bits_are_values_ && header.bits_allocated == 16) {
       format.bits_stored = 16;
       format.high_bit = 15;
     }

@@ -6,6 +6,7 @@
 #include <map>
 #include <numbers>
 #include <set>
+#include <tuple>
 
 #include "imaging/common/text.h"
 #include "imaging/dicom/transfer_syntax.h"
@@ -246,16 +247,21 @@ double statedStep_mm(const Headers& slices) {
   return step_mm;
 }
 
-// By place, and at one place in the order of locations or instance numbers, whichever way they run.
+// By place, and at one place in the order of locations, which may be rounded as places are, and then
+// of instance numbers, whichever way each of them runs.
 void orderAsScanned(Headers& slices, const Vec3& normal) {
   const auto place_mm = [&](const DicomHeader* h) { return glm::dot(*h->position_mm, normal); };
+  const auto location_mm = [](const DicomHeader* h) { return h->location_mm.value_or(0.0); };
   const auto number = [](const DicomHeader* h) {
-    return h->location_mm ? *h->location_mm : parseDecimal(h->instance_number).value_or(0.0);
+    return parseDecimal(h->instance_number).value_or(0.0);
   };
   std::ranges::stable_sort(slices, {}, place_mm);
-  const double sense = number(slices.back()) < number(slices.front()) ? -1.0 : 1.0;
-  std::ranges::stable_sort(
-      slices, {}, [&](const DicomHeader* h) { return std::pair(place_mm(h), sense * number(h)); });
+  const DicomHeader *first = slices.front(), *last = slices.back();
+  const double up = location_mm(last) < location_mm(first) ? -1.0 : 1.0;
+  const double on = number(last) < number(first) ? -1.0 : 1.0;
+  std::ranges::stable_sort(slices, {}, [&](const DicomHeader* h) {
+    return std::tuple(place_mm(h), up * location_mm(h), on * number(h));
+  });
 }
 
 // Bits that a codestream has beyond those that its header says.

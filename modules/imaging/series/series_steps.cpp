@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "imaging/common/text.h"
 
@@ -11,6 +12,7 @@ namespace {
 
 constexpr double kJitter = 0.1;              // of the median step: up to here a stack is resampled
 constexpr std::int64_t kMostSlices = 10000;  // of a volume with filled gaps
+constexpr double kSlack_mm = 1e-6;  // what numbers of two decimals leave when they are subtracted
 
 double stepTolerance_mm(double step) {
   return std::max(0.01, 0.01 * step);
@@ -47,14 +49,25 @@ Steps stepsOf(const Slices& slices, StepBy by = StepBy::median) {
     const double multiple = std::clamp(std::round(step / unit), 1.0, 1e9);
     const double off = std::abs(step - multiple * unit);
     const double most = kJitter * unit;
-    result.even &=
-        off <= std::min(multiple * stepTolerance_mm(unit), std::max(most, stepTolerance_mm(unit)));
+    const double tolerance =
+        std::min(multiple * stepTolerance_mm(unit), std::max(most, stepTolerance_mm(unit)));
+    result.even &= off <= tolerance + kSlack_mm;
     result.jittered &= off <= most;
     result.gaps |= multiple > 1.5;
     result.multiples.push_back(std::int64_t(multiple));
     result.total += result.multiples.back();
   }
   return result;
+}
+
+// By the median, or else by a step that all intervals are multiples of, half of the slices being
+// there.
+Steps explained(const Slices& slices) {
+  Steps steps = stepsOf(slices);
+  if (steps.even) return steps;
+  Steps by_least = stepsOf(slices, StepBy::least);
+  const bool half = by_least.missing() <= std::int64_t(by_least.multiples.size());
+  return by_least.even && by_least.gaps && half ? by_least : steps;
 }
 
 // The longest row of usable slices whose steps are `step_mm` within the tolerance.
@@ -161,9 +174,26 @@ void keepPart(const Slices& part, const char* code, const std::string& text, Sta
   planSlices(part, std::int64_t(part.size()), stack);
 }
 
+// Places on a line of even steps that they were rounded from.
+struct Line {
+  Slices slices;
+  double step_mm = 0.0;
+  std::int64_t missing = 0;  // slices between the first and the last one
+};
+
+Finding roundedFinding(double grid_mm, double step_mm) {
+  return {"ROUNDED_POSITIONS",
+          "repair",
+          "The positions of the slices were rounded to " + fixedText(grid_mm, 1) + " mm",
+          {},
+          "They were put back on the line that explains them all, with a step of " +
+              fixedText(step_mm, 3) + " mm"};
+}
+
 // Slices that are not there, or are there and lost, in a stack that is even otherwise (or nearly).
 void planGaps(Slices slices, const Steps& steps, const Answers& answers,
-              const std::string& lost_text, Stack& stack) {
+              const std::string& lost_text, const std::optional<Line>& rounded, double grid_mm,
+              Stack& stack) {
   std::int64_t missing = 0;
   const std::vector<std::string> places = missingPlaces(slices, steps, missing);
   const std::string text = counted(std::uint64_t(missing), "slice", "is", "are") +
@@ -195,7 +225,22 @@ void planGaps(Slices slices, const Steps& steps, const Answers& answers,
     choice.words.push_back("Use only the longest part without a gap: " + rangeText(part) + ", " +
                            counted(part.size(), "slice"));
   }
+  if (rounded) {
+    choice.options.push_back("line");
+    choice.words.push_back("None is missing: their positions were rounded to " +
+                           fixedText(grid_mm, 1) + " mm, from even steps of " +
+                           fixedText(rounded->step_mm, 3) + " mm");
+  }
   const std::string answer = ask(std::move(choice), answers, stack.choices);
+  if (answer == "line") {
+    stack.findings.push_back({"MISSING_SLICES", "repair", text, {},
+                              "None is missing, as was chosen: positions that were rounded to " +
+                                  fixedText(grid_mm, 1) + " mm were put back on even steps of " +
+                                  fixedText(rounded->step_mm, 3) + " mm"});
+    planAsTheyAre(rounded->slices, stack);
+    stack.geometry.spacing_mm.z = rounded->step_mm;
+    return;
+  }
   if (answer == "part") return keepPart(part, "MISSING_SLICES", text, stack);
   if (answer == "fill") {
     const std::size_t before = slices.size();
@@ -262,7 +307,7 @@ void planUneven(const Slices& slices, const Steps& steps, const Answers& answers
 // The coarsest grid that a writer rounds to and that all positions lie on, along the axes on which
 // they differ [mm]; 0: none.
 double roundedTo_mm(const std::vector<Vec3>& positions_mm) {
-  for (const double grid_mm : {1.0, 0.1}) {
+  for (const double grid_mm : {1.0, 0.5, 0.1}) {
     bool all = true;
     for (int axis = 0; axis < 3; ++axis) {
       const double first = positions_mm.front()[axis];
@@ -320,62 +365,153 @@ bool moved(const Slices& fitted, const Slices& slices) {
   return false;
 }
 
-// Places that were rounded, put back on the line that they were rounded from: the step is that of
-// the least squares over whole numbers of steps, with as few slices missing as any line explains.
-// Nothing where no line does. Rounding moves a place by `most_mm` at most, and a step by less than
-// twice that.
-std::optional<Slices> onTheirLine(const Slices& slices, double most_mm,
-                                  const std::optional<double>& known_mm) {
+// The line of this step, with as few slices missing as it takes.
+std::optional<Line> lineOfStep(const Slices& slices, double step_mm, double most_mm) {
+  const auto numbers = numbersOf(slices, step_mm, most_mm);
+  if (!numbers) return std::nullopt;
+  return Line{onLineOf(slices, *numbers, step_mm), step_mm,
+              std::int64_t(numbers->back()) - std::int64_t(slices.size()) + 1};
+}
+
+// How far places lie at most from the line of this step that is nearest to them in this sense, as
+// slices with these numbers.
+double farthest_mm(const Slices& slices, const std::vector<double>& numbers, double step_mm) {
+  double low = std::numeric_limits<double>::infinity(), high = -low;
+  for (std::size_t i = 0; i < slices.size(); ++i) {
+    const double start = slices[i].place_mm - step_mm * numbers[i];
+    low = std::min(low, start);
+    high = std::max(high, start);
+  }
+  return 0.5 * (high - low);
+}
+
+// The step whose line all places were rounded from, by `most_mm` at most: that of the least squares
+// where it serves, else the one whose farthest place is nearest. Nothing where there is none.
+std::optional<double> roundedStep_mm(const Slices& slices, const std::vector<double>& numbers,
+                                     double most_mm) {
+  const double n = double(slices.size()), first = slices.front().place_mm;
+  double sum = 0.0, squares = 0.0, places = 0.0, products = 0.0;
+  for (std::size_t i = 0; i < slices.size(); ++i) {
+    sum += numbers[i];
+    squares += numbers[i] * numbers[i];
+    places += slices[i].place_mm - first;
+    products += numbers[i] * (slices[i].place_mm - first);
+  }
+  const double least_squares = (n * products - sum * places) / (n * squares - sum * sum);
+  const double allowed = most_mm * (1.0 + 1e-6);
+  if (farthest_mm(slices, numbers, least_squares) <= allowed) return least_squares;
+  if (farthest_mm(slices, numbers, least_squares) > 2.0 * most_mm) return std::nullopt;
+  // farthest_mm() is convex in the step.
+  double low = least_squares - 4.0 * most_mm / numbers.back(), high = 2.0 * least_squares - low;
+  for (int turn = 0; turn < 80; ++turn) {
+    const double third = (high - low) / 3.0;
+    const bool left =
+        farthest_mm(slices, numbers, low + third) < farthest_mm(slices, numbers, high - third);
+    (left ? high : low) += left ? -third : third;
+  }
+  const double nearest = 0.5 * (low + high);
+  if (farthest_mm(slices, numbers, nearest) > allowed) return std::nullopt;
+  return nearest;
+}
+
+// The line of any step, by whole numbers of steps with as few slices missing as any line explains.
+// A step that is known tells a gap from one that was rounded; few slices tell it less well.
+// Rounding moves a place by `most_mm` at most, and a step by less than twice that.
+std::optional<Line> lineOfAnyStep(const Slices& slices, double most_mm,
+                                  const std::optional<double>& known_mm,
+                                  std::int64_t most_missing) {
   const double n = double(slices.size());
   const double first = slices.front().place_mm, extent = slices.back().place_mm - first;
-  const auto most_missing = std::int64_t(slices.size() / 2);
   for (std::int64_t missing = 0; missing <= most_missing; ++missing) {
     const double guess = extent / (n - 1.0 + double(missing));
     std::vector<double> numbers;
-    double sum = 0.0, sum_squares = 0.0, places = 0.0, products = 0.0;
-    bool rising = true;
+    bool fits = true;
     for (const Slice& slice : slices) {
-      const double number = std::round((slice.place_mm - first) / guess);
-      rising &= numbers.empty() || number > numbers.back();
+      // Rounded places tell the numbers themselves where none is missing.
+      const double number =
+          missing == 0 ? double(numbers.size()) : std::round((slice.place_mm - first) / guess);
+      fits &= numbers.empty() || number > numbers.back();
       numbers.push_back(number);
-      sum += number;
-      sum_squares += number * number;
-      places += slice.place_mm - first;
-      products += number * (slice.place_mm - first);
     }
-    if (!rising) continue;
-    const double step = (n * products - sum * places) / (n * sum_squares - sum * sum);
-    const double start = first + (places - step * sum) / n;
-    Slices fitted = slices;
-    // What the header says tells a gap from a step that was rounded. Few slices tell a step less
-    // well.
-    bool fits = !known_mm || std::abs(step - *known_mm) <= std::max(0.01 * *known_mm, most_mm / n);
-    for (std::size_t i = 0; i < slices.size() && fits; ++i) {
-      fitted[i].place_mm = start + step * numbers[i];
-      fits =
-          std::abs(fitted[i].place_mm - slices[i].place_mm) <= most_mm * (1.0 + 1.0 / std::sqrt(n));
-      if (i == 0) continue;
-      const double steps = (numbers[i] - numbers[i - 1]) * step;
+    const auto step = fits ? roundedStep_mm(slices, numbers, most_mm) : std::nullopt;
+    fits &= step &&
+            (!known_mm || std::abs(*step - *known_mm) <= std::max(0.01 * *known_mm, most_mm / n));
+    for (std::size_t i = 1; i < slices.size() && fits; ++i) {
+      const double steps = (numbers[i] - numbers[i - 1]) * *step;
       const double is = slices[i].place_mm - slices[i - 1].place_mm;
-      fits &= std::abs(is - steps) < 2.0 * most_mm * (1.0 - 1e-6);
+      fits = std::abs(is - steps) < 2.0 * most_mm * (1.0 - 1e-6);
     }
-    if (fits) return fitted;
+    if (fits) return Line{onLineOf(slices, numbers, *step), *step, missing};
   }
   return {};
 }
 
-Finding roundedFinding(double grid_mm, double step_mm) {
-  return {"ROUNDED_POSITIONS",
-          "repair",
-          "The positions of the slices were rounded to " + fixedText(grid_mm, 1) + " mm",
-          {},
-          "They were put back on the line that explains them all, with a step of " +
-              fixedText(step_mm, 3) + " mm"};
+// Whether it is less likely than `chance` that one of so many lines says which intervals are longer
+// than the others, where any of them may be.
+bool tellsLongerSteps(const Slices& slices, double grid_mm, double lines, double chance) {
+  const double intervals = double(slices.size()) - 1.0;
+  double least = std::numeric_limits<double>::infinity(), longer = 0.0;
+  for (std::size_t i = 1; i < slices.size(); ++i) {
+    least = std::min(least, slices[i].place_mm - slices[i - 1].place_mm);
+  }
+  for (std::size_t i = 1; i < slices.size(); ++i) {
+    longer += slices[i].place_mm - slices[i - 1].place_mm > least + 0.5 * grid_mm ? 1.0 : 0.0;
+  }
+  const double log_patterns = std::lgamma(intervals + 1.0) - std::lgamma(longer + 1.0) -
+                              std::lgamma(intervals - longer + 1.0);
+  return log_patterns >= std::log(lines / chance);
 }
 
 // How far rounding to a grid moves a place along the normal at most.
 double mostRounded_mm(double grid_mm, const Vec3& normal) {
   return 0.5 * grid_mm * (std::abs(normal.x) + std::abs(normal.y) + std::abs(normal.z));
+}
+
+struct Rounded {
+  std::optional<Line> taken, offered;
+};
+
+// The line that places on a grid were rounded from. Where even steps with gaps explain them as
+// well, it is taken if the header states its step or if it cannot be chance, and else offered.
+// Uneven steps leave nothing simpler.
+Rounded lineFor(const Slices& slices, const Steps& steps, const StackInput& input, double grid_mm,
+                double most_mm) {
+  constexpr double kChance = 1e-3;
+  // What is a whole number of the grid's steps is not moved by rounding.
+  const auto ofStep = [&](const std::optional<double>& said_mm) -> std::optional<Line> {
+    const double step_mm = std::abs(said_mm.value_or(0.0)), of_grid = step_mm / grid_mm;
+    if (!(step_mm > 0.0) || std::abs(of_grid - std::round(of_grid)) <= 1e-6) return std::nullopt;
+    return lineOfStep(slices, step_mm, most_mm);
+  };
+  std::optional<double> between_mm;
+  if (input.spacing_between_mm) between_mm = std::abs(*input.spacing_between_mm);
+  const double n = double(slices.size());
+  const auto half = std::int64_t(slices.size() / 2);
+  const std::int64_t most_missing = !steps.even ? half : between_mm ? steps.missing() - 1 : 0;
+  Rounded rounded;
+  // Of `lines` lines of its kind.
+  const auto take = [&](const std::optional<Line>& line, double lines) {
+    if (!line || !moved(line->slices, slices)) return false;
+    if (steps.even && line->missing >= steps.missing()) return false;
+    const bool stated = lines == 0.0;
+    const bool taken =
+        stated || tellsLongerSteps(slices, grid_mm, lines, steps.even ? kChance : 1.0);
+    if (taken && line->missing <= half) {
+      rounded.taken = line;
+      return true;
+    }
+    if (steps.even && line->missing == 0 && !rounded.offered) rounded.offered = line;
+    return false;
+  };
+  if (take(ofStep(between_mm), 0.0)) return rounded;
+  if (!between_mm) {
+    const auto by_thickness = ofStep(input.thickness_mm);
+    const bool whole = by_thickness && by_thickness->missing == 0;
+    // Without a gap it leaves uneven steps no other reading.
+    if (take(by_thickness, whole && !steps.even ? 0.0 : n)) return rounded;
+  }
+  take(lineOfAnyStep(slices, most_mm, between_mm, most_missing), between_mm ? n : n * n);
+  return rounded;
 }
 
 }  // namespace
@@ -403,42 +539,16 @@ std::optional<Finding> takeApart(std::vector<Vec3>& positions_mm, const Vec3& no
 void planAlongNormal(Slices slices, const StackInput& input, const Vec3& normal,
                      const Answers& answers, Stack& stack) {
   const std::string& lost_text = input.lost_text;
-  Steps steps = stepsOf(slices);
-  // A step that all intervals are multiples of, at least half of the slices being there.
-  if (!steps.even) {
-    Steps by_least = stepsOf(slices, StepBy::least);
-    const bool half = by_least.missing() <= std::int64_t(by_least.multiples.size());
-    if (by_least.even && by_least.gaps && half) steps = std::move(by_least);
-  }
+  Steps steps = explained(slices);
   const double grid_mm = roundedTo_mm(input.positions_mm);
-  // Whole steps with gaps may be rounded ones, too: only where a step that the header states
-  // explains them with fewer slices missing. By the least step they were, where any line of no
-  // gap explains them.
-  const std::optional<double> known_mm =
-      input.spacing_between_mm || !steps.even ? input.spacing_between_mm : input.thickness_mm;
-  const bool by_least = steps.step_mm != steps.median_mm;
-  if (grid_mm > 0.0 && (!steps.even || (steps.gaps && (known_mm || by_least)))) {
-    const double most_mm = mostRounded_mm(grid_mm, normal);
-    std::optional<Slices> fitted;
-    bool by_statement = false;
-    // What is a whole number of the grid's steps is not moved by rounding.
-    const double steps_of_grid = known_mm.value_or(0.0) / grid_mm;
-    if (known_mm && std::abs(steps_of_grid - std::round(steps_of_grid)) > 1e-6) {
-      if (const auto numbers = numbersOf(slices, std::abs(*known_mm), most_mm)) {
-        fitted = onLineOf(slices, *numbers, std::abs(*known_mm));
-        by_statement = true;
-      }
-    }
-    if (!fitted) fitted = onTheirLine(slices, most_mm, known_mm);
-    if (fitted && steps.even) {
-      const double unit = by_statement ? std::abs(*known_mm) : stepsOf(*fitted).least_mm;
-      const double extent = fitted->back().place_mm - fitted->front().place_mm;
-      const auto missing = std::int64_t(std::round(extent / unit)) - std::int64_t(slices.size()) + 1;
-      if (missing >= steps.missing() || (!known_mm && missing > 0)) fitted.reset();
-    }
-    if (fitted && moved(*fitted, slices)) {
-      slices = *std::move(fitted);
-      steps = stepsOf(slices);
+  // Without a gap that a rounding could explain as well.
+  std::optional<Line> offered;
+  if (grid_mm > 0.0 && (!steps.even || steps.gaps)) {
+    const Rounded rounded = lineFor(slices, steps, input, grid_mm, mostRounded_mm(grid_mm, normal));
+    offered = rounded.offered;
+    if (rounded.taken && explained(rounded.taken->slices).even) {
+      slices = rounded.taken->slices;
+      steps = explained(slices);
       stack.findings.push_back(roundedFinding(grid_mm, steps.step_mm));
     }
   }
@@ -454,13 +564,14 @@ void planAlongNormal(Slices slices, const StackInput& input, const Vec3& normal,
                               {},
                               "Copy these files again from their source"});
   } else if ((steps.gaps || lost) && (steps.even || steps.jittered) && steps.total < kMostSlices) {
-    planGaps(slices, steps, answers, lost_text, stack);
+    planGaps(slices, steps, answers, lost_text, lost ? std::nullopt : offered, grid_mm, stack);
   } else if (steps.even && !steps.gaps) {
     planAsTheyAre(slices, stack);
     stack.geometry.spacing_mm.z =
         (slices.back().place_mm - slices.front().place_mm) / double(slices.size() - 1);
   } else if (steps.jittered && !steps.gaps) {
     planSlices(slices, std::int64_t(slices.size()), stack);
+    if (stack.oneToOne()) return;  // within what even steps may differ
     stack.findings.push_back(
         {"RESAMPLED_SPACING",
          "repair",

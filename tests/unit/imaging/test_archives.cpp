@@ -182,8 +182,8 @@ TEST_F(Archives, NothingInThemLeadsOutOfTheirFolder) {
   const auto unpacked = unpack({folder() / "a.tar"});
   ASSERT_TRUE(unpacked.ok());
   EXPECT_EQ(unpacked->files, 1u);
-  for (const auto& entry : fs::directory_iterator(unpacked->folder.path())) {
-    EXPECT_TRUE(entry.is_regular_file() && !entry.is_symlink());
+  for (const auto& entry : fs::recursive_directory_iterator(unpacked->folder.path())) {
+    EXPECT_TRUE((entry.is_regular_file() || entry.is_directory()) && !entry.is_symlink());
   }
 }
 
@@ -201,15 +201,50 @@ TEST_F(Archives, ThatWouldFillTheDiskAreGivenUp) {
   EXPECT_EQ(left(), 0u);
 }
 
-TEST_F(Archives, ThatAreDamagedOrLockedSaySo) {
+// What an interrupted download leaves: the slices that are there are no whole CT.
+TEST_F(Archives, OfWhichAPartIsLostAreRefused) {
   const auto files = slices();
-  const std::string whole = zipOf(files);
-  writeBytes(folder() / "a.zip", whole.substr(0, whole.size() / 2));
-  const CtFolder cut = scan();
-  EXPECT_TRUE(cut.report().error || !cut.report().series.empty());
-  EXPECT_TRUE(std::ranges::any_of(cut.report().skipped, [](const SkippedFiles& s) {
-    return s.reason.find("archive") != std::string::npos;
-  }));
+  const auto expectNotWhole = [&](const std::string& bytes, const char* what) {
+    SCOPED_TRACE(what);
+    fs::remove_all(folder());
+    writeBytes(folder() / "from-the-clinic", bytes);
+    const Finding finding = expectRefused("ARCHIVE_NOT_WHOLE");
+    EXPECT_NE(finding.text.find("some of its slices"), std::string::npos);
+    EXPECT_EQ(refusal({{"MISSING_SLICES", "fill"}}).code, "ARCHIVE_NOT_WHOLE");
+  };
+  for (const bool pack : {false, true}) {
+    const std::string zip = zipOf(files, pack);
+    expectNotWhole(zip.substr(0, zip.size() * 6 / 10), "cut anywhere");
+    expectNotWhole(zip.substr(0, zip.find("PK\1\2")), "cut before its directory");
+    std::string spoilt = zip;
+    spoilt[zip.find("PK\3\4", 4) + 200] ^= 1;
+    expectNotWhole(spoilt, "one byte of one file");
+  }
+  std::string locked = zipOf(files);
+  const std::size_t second = locked.find("PK\3\4", 4);
+  locked[second + 6] |= 1;
+  const std::size_t in_directory = locked.find("PK\1\2", locked.find("PK\1\2") + 4);
+  locked[in_directory + 8] |= 1;
+  expectNotWhole(locked, "one file is locked");
+  std::string tar;
+  for (const auto& [name, bytes] : files) {
+    if (name != files.back().first) tar += tarOf(name, bytes);
+  }
+  expectNotWhole(tar, "a tar without its end");
+  const std::string packed = packedBy(Deflate::gzip, tar + std::string(1024, '\0'));
+  fs::remove_all(folder());
+  writeBytes(folder() / "a.tgz", packed.substr(0, packed.size() * 7 / 10));
+  EXPECT_FALSE(scan().bestSeries());
+  // What another one holds is whole.
+  fs::remove_all(folder());
+  const std::string other = zipOf({{"a", std::string(5000, 'x')}, {"b", std::string(5000, 'y')}});
+  writeBytes(folder() / "a.zip", zipOf(files));
+  writeBytes(folder() / "b.zip", other.substr(0, other.size() / 2));
+  EXPECT_EQ(import().hu, truth_.hu);
+}
+
+TEST_F(Archives, ThatAreLockedSaySo) {
+  const auto files = slices();
   writeBytes(folder() / "a.zip", zipOf(files, false, 1));
   const CtFolder locked = scan();
   EXPECT_TRUE(std::ranges::any_of(locked.report().skipped, [](const SkippedFiles& s) {

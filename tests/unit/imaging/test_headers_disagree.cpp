@@ -88,6 +88,57 @@ TEST(StackThatLooksRounded, RoundedStepsAreStillPutBack) {
   }
 }
 
+// Without a step that is stated many slices tell a rounding, and few leave a question; neither
+// hangs on whether their number is odd.
+TEST(StackThatLooksRounded, WithoutAStatedStepManySlicesTellAndFewAreAskedAbout) {
+  const auto at = [](double step, double grid, int count) {
+    std::vector<double> places;
+    for (int n = 0; n < count; ++n) places.push_back(std::round((step * n - 70.3) / grid) * grid);
+    return stackAt(places);
+  };
+  for (int count = 40; count < 60; ++count) {
+    for (const auto& [step, grid] :
+         {std::pair(1.5, 1.0), std::pair(1.25, 1.0), std::pair(2.25, 1.0), std::pair(0.75, 0.1),
+          std::pair(0.7, 0.5), std::pair(0.625, 0.1)}) {
+      StackInput input = at(step, grid, count);
+      const Stack stack = stackSlices(input);
+      EXPECT_EQ(codesOf(stack), "ROUNDED_POSITIONS ") << step << " " << count;
+      EXPECT_NEAR(stack.geometry.spacing_mm.z, step, 0.01 * step);
+      input.thickness_mm = step;
+      EXPECT_NEAR(stackSlices(input).geometry.spacing_mm.z, step, 1e-9);
+    }
+  }
+  for (const int count : {8, 9}) {
+    const Stack asked = stackSlices(at(1.5, 1.0, count));
+    ASSERT_EQ(codesOf(asked), "MISSING_SLICES ") << count;
+    const auto& options = asked.choices.front().options;
+    EXPECT_NE(std::ranges::find(options, "line"), options.end());
+  }
+}
+
+// GE's overlapped reconstruction: slices of 1.25 mm every 1 mm.
+TEST(StackThatLooksRounded, AGapIsNoRoundingToTheThickness) {
+  for (int gap = 1; gap < 7; ++gap) {
+    std::vector<double> places;
+    for (int n = 0; n < 8; ++n) {
+      if (n != gap) places.push_back(n);
+    }
+    StackInput input = stackAt(places);
+    input.thickness_mm = 1.25;
+    EXPECT_EQ(codesOf(stackSlices(input)), "MISSING_SLICES ") << gap;
+  }
+}
+
+TEST(StackThatLooksUneven, StepsOfTwoDecimalsAreEvenWhereverTheyBegin) {
+  for (const double begin : {0.0, -123.37, 17.21, 1000.01}) {
+    std::vector<double> places;
+    for (int n = 0; n < 100; ++n) {
+      places.push_back(std::round(100.0 * (begin + 2.0 / 3.0 * n)) / 100.0);
+    }
+    EXPECT_EQ(codesOf(stackSlices(stackAt(places))), "") << begin;
+  }
+}
+
 TEST(StackThatLooksTilted, ObliqueRowsAreNoTilt) {
   std::mt19937 random(2);
   std::uniform_real_distribution<double> any(-1.0, 1.0);
@@ -137,7 +188,8 @@ TEST(ValuesThatLookStored, CtOfLittleAirIsCt) {
 // What a header says, in its own RAS.
 struct Nifti {
   Index3 size{8, 6, 5};
-  std::optional<Mat4> sform, qform;  // a qform is a rotation by steps, its third axis mirrored or not
+  std::optional<Mat4> sform,
+      qform;  // a qform is a rotation by steps, its third axis mirrored or not
   Vec3 pixdim{1.0};
   bool labels = false;
 };
@@ -202,8 +254,8 @@ Mat4 anyAffine(std::mt19937& random, Vec3& steps) {
   steps = Vec3(step(random), step(random), step(random));
   // As scanners write them: nearly along the patient's axes, or askew.
   const double skew = random() % 3 == 0 ? 1.0 : 0.05;
-  const Mat3 turn = glm::mat3_cast(glm::normalize(
-      Quat(1.2, skew * any(random), skew * any(random), skew * any(random))));
+  const Mat3 turn = glm::mat3_cast(
+      glm::normalize(Quat(1.2, skew * any(random), skew * any(random), skew * any(random))));
   Mat4 affine(1.0);
   for (int axis = 0; axis < 3; ++axis) affine[axis] = glm::dvec4(turn[axis] * steps[axis], 0.0);
   affine[3] = glm::dvec4(200.0 * any(random), 200.0 * any(random), 400.0 * any(random), 1.0);
@@ -246,7 +298,8 @@ TEST_F(NiftiForms, EqualOnesAreReadAndContradictingOnesAskedAbout) {
           (*of.sform)[axis] *= 1.0 + (random() % 2 ? 0.2 : 1.0 / 3.0);
           break;
         case 1:
-          (*of.sform)[3] += glm::dvec4(glm::normalize(Vec3(truth[axis])) * (of.pixdim[axis] + 3.0), 0.0);
+          (*of.sform)[3] +=
+              glm::dvec4(glm::normalize(Vec3(truth[axis])) * (of.pixdim[axis] + 3.0), 0.0);
           break;
         default:
           (*of.sform)[0] = -(*of.sform)[0];
@@ -289,6 +342,65 @@ TEST_F(NiftiForms, EqualOnesAreReadAndContradictingOnesAskedAbout) {
   }
   EXPECT_EQ(equal, 200);
   EXPECT_EQ(contradicting, 100);
+}
+
+// b, c and d of a half turn leave a tenth of a degree open, as floats are rounded.
+TEST_F(NiftiForms, EqualOnesNearAHalfTurnAreReadHoweverLargeTheImage) {
+  std::mt19937 random(8);
+  std::uniform_real_distribution<double> any(-1.0, 1.0);
+  for (int n = 0; n < 60; ++n) {
+    Nifti of;
+    of.size = {1024, 2, 900};
+    of.pixdim = Vec3(0.3, 0.3, 0.5);
+    const double tilt = glm::radians(n % 3 == 0 ? 0.03 : n % 3 == 1 ? 0.3 : 1.0);
+    const Vec3 axis = glm::normalize(Vec3(any(random), any(random), any(random)));
+    const Mat3 turn = glm::mat3_cast(glm::angleAxis(tilt, axis));
+    Mat4 affine(1.0);
+    for (int a = 0; a < 3; ++a) {
+      const double sign = a == 0 || (a == 1 && n % 2 == 0) ? -1.0 : 1.0;
+      affine[a] = glm::dvec4(turn[a] * (sign * of.pixdim[a]), 0.0);
+    }
+    affine[3] = glm::dvec4(150.0, -180.0, 20.0, 1.0);
+    of.sform = of.qform = affine;
+    writeCt(of);
+    EXPECT_EQ(codes(scanned()).find("FORMS_DIFFER"), std::string::npos) << n;
+  }
+}
+
+TEST_F(NiftiForms, StepsHaveNoSign) {
+  Nifti of;
+  of.pixdim = Vec3(1.0, 2.0, 3.0);
+  Mat4 affine(1.0);
+  for (int a = 0; a < 3; ++a) affine[a] *= of.pixdim[a];
+  of.qform = affine;
+  writeCt(of);
+  const Result<Volume> plain = readVolume(folder() / "ct.nii");
+  of.pixdim.y = -2.0;
+  writeCt(of);
+  const Result<Volume> negative = readVolume(folder() / "ct.nii");
+  ASSERT_TRUE(plain.ok() && negative.ok());
+  EXPECT_EQ(negative->geometry.voxelToPatient(), plain->geometry.voxelToPatient());
+}
+
+TEST_F(NiftiForms, ALabelMapOfAnotherOrderOfVoxelsTakesTheFormOnTheCtAsWell) {
+  Nifti of;
+  of.pixdim = Vec3(1.0, 2.0, 3.0);
+  Mat4 affine(1.0);
+  for (int a = 0; a < 3; ++a) affine[a] *= of.pixdim[a];
+  of.sform = of.qform = affine;
+  writeCt(of);
+  const Result<Volume> ct = readVolume(folder() / "ct.nii");
+  of.labels = true;
+  (*of.sform)[3].y += (of.size[1] - 1) * of.pixdim.y;
+  (*of.sform)[1].y *= -1.0;  // rows counted from the other end
+  *of.qform = *of.sform;
+  (*of.qform)[3].x += 30.0;
+  writeBytes(temporary_ / "labels.nii", niftiBytes(of));
+  const auto fit = importStructures(temporary_ / "labels.nii", *ct);
+  ASSERT_TRUE(fit.ok()) << fit.error().sentence();
+  const auto said = std::ranges::find(fit->findings, "FORMS_DIFFER", &Finding::code);
+  ASSERT_NE(said, fit->findings.end());
+  EXPECT_NE(said->action.find("sform"), std::string::npos);
 }
 
 TEST_F(NiftiForms, ALabelMapTakesTheFormThatPutsItOnTheCt) {
@@ -356,7 +468,9 @@ TEST_F(NiftiForms, WhatStandsAroundTheScanBecomesAirAndStreaksOfMetalDoNot) {
   for (int n = 0; n < 20; ++n) {
     Volume volume = rampVolume({16, 16, 8});
     for (std::size_t at = 0; at < volume.hu.size(); ++at) {
-      volume.hu[at] = std::int16_t(at % 50 == 0 ? -1110 - int(random() % 900) : at % 3 ? 40 : -1000);
+      volume.hu[at] = std::int16_t(at % 50 == 0 ? -1110 - int(random() % 900)
+                                   : at % 3     ? 40
+                                                : -1000);
     }
     ASSERT_TRUE(writeVolume(volume, folder() / "ct.nii"));
     const Volume read = import();
@@ -369,9 +483,11 @@ TEST_F(NiftiForms, WhatStandsAroundTheScanBecomesAirAndStreaksOfMetalDoNot) {
 
 class HeadersDisagree : public SeriesFixture {
  protected:
-  void writeSlices(int bits_stored, E_TransferSyntax syntax = EXS_LittleEndianExplicit) {
+  void writeSlices(int bits_stored, E_TransferSyntax syntax = EXS_LittleEndianExplicit,
+                   int edge = 7) {
     for (int k = 0; k < 6; ++k) {
       Image image;
+      image.columns = image.rows = edge;
       image.position_mm.z = 100.0 + 2.0 * k;
       image.instance = k + 1;
       fillPattern(image, k);
@@ -383,7 +499,62 @@ class HeadersDisagree : public SeriesFixture {
       add(data, packing);
     }
   }
+  std::vector<std::vector<std::int16_t>> slices_[2];
 };
+
+TEST_F(HeadersDisagree, BitsOfTheCodestreamAreTakenWhereNoSignAndNoOverlayLiesInThem) {
+  constexpr E_TransferSyntax kSyntax = EXS_JPEG2000LosslessOnly;
+  const auto says12 = [](DcmDataset& data) {
+    data.putAndInsertUint16(DCM_BitsStored, 12);
+    data.putAndInsertUint16(DCM_HighBit, 11);
+  };
+  writeSlices(14, kSyntax, 32);
+  const Volume truth = import();
+  editAll(says12, kSyntax);
+  EXPECT_EQ(import().hu, truth.hu);
+  EXPECT_NE(find(chosen(), "BITS_STORED"), nullptr) << codes(chosen());
+  editAll([](DcmDataset& data) { data.putAndInsertUint16(DCM_PixelRepresentation, 1); }, kSyntax);
+  EXPECT_EQ(find(scan().report().series.front(), "BITS_STORED"), nullptr) << "signs above 12 bits";
+  fs::remove_all(folder());
+  writeSlices(14, kSyntax, 32);
+  editAll(
+      [&](DcmDataset& data) {
+        says12(data);
+        data.putAndInsertUint16(DcmTagKey(0x6000, 0x0100), 16);
+        data.putAndInsertUint16(DcmTagKey(0x6000, 0x0102), 12);
+      },
+      kSyntax);
+  EXPECT_EQ(find(scan().report().series.front(), "BITS_STORED"), nullptr) << "an overlay";
+}
+
+TEST_F(HeadersDisagree, SlicesThatRoundingPutTogetherStayInTheOrderOfTheScan) {
+  for (const bool up : {true, false}) {
+    fs::remove_all(folder());
+    constexpr int kCount = 20;
+    for (int k = 0; k < kCount; ++k) {
+      Image image;
+      const double z = std::nearbyint(100.0 + 0.5 * k);
+      image.position_mm.z = z;
+      image.instance = up ? k + 1 : kCount - k;
+      fillPattern(image, k);
+      DcmDataset data = makeImage(image);
+      put(data, DCM_SliceLocation, std::to_string(int(z)));
+      put(data, DCM_SpacingBetweenSlices, "0.5");
+      put(data, DCM_SliceThickness, "0.5");
+      add(data);
+    }
+    const Volume volume = import();
+    ASSERT_EQ(volume.geometry.size[2], kCount);
+    for (int k = 0; k < kCount; ++k) {
+      const auto from = volume.hu.begin() + std::ptrdiff_t(volume.geometry.indexOf(0, 0, k));
+      std::vector<std::int16_t> slice(from,
+                                      from + volume.geometry.size[0] * volume.geometry.size[1]);
+      slices_[up].push_back(std::move(slice));
+    }
+  }
+  EXPECT_EQ(slices_[0], slices_[1]);
+  EXPECT_NE(slices_[0][0], slices_[0][1]);
+}
 
 TEST_F(HeadersDisagree, BitsBeyondThoseThatTheHeaderSaysAreAskedAbout) {
   writeSlices(12);
@@ -413,8 +584,8 @@ TEST_F(HeadersDisagree, AnOverlayInTheHighBitsIsMaskedWithoutAWord) {
     data.putAndInsertUint16(DcmTagKey(0x6000, 0x0102), 12);
     Uint16* words = nullptr;
     unsigned long count = 0;
-    ASSERT_TRUE(data.findAndGetUint16Array(DCM_PixelData,
-                                           const_cast<const Uint16*&>(words), &count).good());
+    ASSERT_TRUE(data.findAndGetUint16Array(DCM_PixelData, const_cast<const Uint16*&>(words), &count)
+                    .good());
     std::vector<Uint16> marked(words, words + count);
     for (std::size_t n = 0; n < marked.size(); n += 3) marked[n] = Uint16(marked[n] | 0x1000);
     data.putAndInsertUint16Array(DCM_PixelData, marked.data(), count);
@@ -450,7 +621,7 @@ TEST_F(HeadersDisagree, SlopesOfAnotherSignAreAskedAbout) {
     if (++slices == 3) put(data, DCM_RescaleSlope, "-1");
   });
   EXPECT_EQ(expectRefused("SLOPES_DIFFER").slices.size(), 1u);
-  import({{"SLOPES_DIFFER", "accept"}});
+  import({{ "SLOPES_DIFFER", "accept" }});
   EXPECT_EQ(chosen().verdict, Verdict::repaired);
 }
 
@@ -492,10 +663,8 @@ TEST_F(HeadersDisagree, PatientsOfTwoSexesAreTwoPatientsAndOneThatIsNotToldIsNon
 }
 
 TEST_F(HeadersDisagree, ScansOfTwoVoltagesAreToldApartByThem) {
-  for (const auto& [first, second] :
-       std::vector<std::pair<const char*, const char*>>{{"80", "140"}, {"70", "150"},
-                                                        {"90", "150"}, {"100", "140"},
-                                                        {"80", "100"}}) {
+  for (const auto& [first, second] : std::vector<std::pair<const char*, const char*>>{
+           {"80", "140"}, {"70", "150"}, {"90", "150"}, {"100", "140"}, {"80", "100"}}) {
     fs::remove_all(folder());
     for (int n = 0; n < 12; ++n) {
       Image image;
@@ -511,7 +680,7 @@ TEST_F(HeadersDisagree, ScansOfTwoVoltagesAreToldApartByThem) {
     EXPECT_NE(choice.words[1].find(std::string("(") + first + " kV)"), std::string::npos)
         << choice.words[1];
     EXPECT_NE(choice.words[2].find(std::string("(") + second + " kV)"), std::string::npos);
-    import({{"PHASES", "2"}});
+    import({{ "PHASES", "2" }});
   }
 }
 
@@ -521,8 +690,8 @@ TEST_F(HeadersDisagree, PartsOfAnImageThatAreMissingAreNamed) {
     image.frames = 4;
     image.instance = number;
     fillPattern(image, 4 * number);
-    DcmDataset data = makeEnhanced(image, {Vec3(0, 0, z), Vec3(0, 0, z + 2), Vec3(0, 0, z + 4),
-                                           Vec3(0, 0, z + 6)});
+    DcmDataset data = makeEnhanced(
+        image, {Vec3(0, 0, z), Vec3(0, 0, z + 2), Vec3(0, 0, z + 4), Vec3(0, 0, z + 6)});
     put(data, DCM_ConcatenationUID, "1.2.3.9");
     data.putAndInsertUint16(DCM_InConcatenationNumber, Uint16(number));
     if (total > 0) data.putAndInsertUint16(DCM_InConcatenationTotalNumber, Uint16(total));
@@ -531,7 +700,7 @@ TEST_F(HeadersDisagree, PartsOfAnImageThatAreMissingAreNamed) {
   part(1, 3, 0);
   part(2, 3, 8);
   EXPECT_NE(expectRefused("INCOMPLETE").text.find("part 3 of 3 is missing"), std::string::npos);
-  import({{"INCOMPLETE", "accept"}});
+  import({{ "INCOMPLETE", "accept" }});
   EXPECT_EQ(chosen().verdict, Verdict::repaired);
   part(3, 3, 16);
   import();
@@ -544,7 +713,8 @@ TEST_F(HeadersDisagree, PartsOfAnImageThatAreMissingAreNamed) {
   part(1, 3, 0);
   part(3, 3, 16);
   const Finding gap = expectRefused("MISSING_SLICES");
-  EXPECT_NE(find(report_.series.front(), "INCOMPLETE")->text.find("part 2 of 3"), std::string::npos);
+  EXPECT_NE(find(report_.series.front(), "INCOMPLETE")->text.find("part 2 of 3"),
+            std::string::npos);
 }
 
 TEST_F(HeadersDisagree, AFileOfAnotherSyntaxThanItSaysIsNamedSo) {
@@ -559,8 +729,8 @@ TEST_F(HeadersDisagree, AFileOfAnotherSyntaxThanItSaysIsNamedSo) {
   const std::size_t at = bytes.find(implicit);
   ASSERT_NE(at, std::string::npos);
   bytes.replace(at, implicit.size(), std::string("1.2.840.10008.1.2.1\0", 20));
-  bytes[at - 2] = 20;                    // the element's length
-  bytes[140] = char(bytes[140] + 2);     // the group's
+  bytes[at - 2] = 20;                 // the element's length
+  bytes[140] = char(bytes[140] + 2);  // the group's
   writeBytes(file, bytes);
   const CtFolder ct = scan();
   ASSERT_EQ(ct.report().skipped.size(), 1u);

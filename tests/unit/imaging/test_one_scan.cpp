@@ -500,12 +500,17 @@ TEST_F(Rounded, PositionsWithASliceMissingHaveAGapThere) {
   }
 }
 
-// Five places 0, 1, 2, 4, 5 mm: one slice in six missing, or 1.25 mm rounded. The header tells.
+// Five places 0, 1, 2, 4, 5 mm: one slice in six missing, or 1.25 mm rounded. The step that the
+// header states tells; a thickness of 1.25 mm leaves both, and 40 slices of them one alone.
 TEST_F(Rounded, PositionsOrAGapIsToldByTheStepThatTheHeaderStates) {
   place(6, 1.0, 1.0, {4});
   expectRefused("MISSING_SLICES");
   EXPECT_EQ(find(report_.series.front(), "ROUNDED_POSITIONS"), nullptr);
   place(5, 1.25, 1.0);
+  expectAsked("MISSING_SLICES", "line");
+  EXPECT_NEAR(chosen().geometry.spacing_mm.z, 1.25, 1e-9);
+  place(5, 1.25, 1.0);
+  for (int n = 1; n <= 5; ++n) edit(slice(n), set(DCM_SpacingBetweenSlices, "1.25"));
   import();
   EXPECT_NE(find(chosen(), "ROUNDED_POSITIONS"), nullptr) << codes(chosen());
 }
