@@ -16,7 +16,7 @@ Status enoughRoom(const fs::path& folder, double bytes, const std::string& what)
   const fs::space_info room = fs::space(there, ec);
   if (ec || bytes <= double(room.available)) return {};
   const auto mb = [](double n) {
-    return std::to_string(std::int64_t(std::ceil(std::min(n, 1e18) / 1e6))) + " MB";
+    return std::to_string(std::int64_t(std::min(std::ceil(n / 1e6), 9e18))) + " MB";
   };
   return Error{"CANNOT_WRITE",
                "The disk has no room for " + what + ": it needs " + mb(bytes) + ", and " +
