@@ -222,7 +222,7 @@ Status place(const Affines& of, const Index3& size, const fs::path& file,
   if (of.qform && saysNothing(first) != saysNothing(*other)) {
     const bool qform = saysNothing(first);
     header.notes.push_back(std::string("The file's ") + (qform ? "sform" : "qform") +
-                           " says no place: its " + (qform ? "qform" : "sform") + " was taken.");
+                           " says no place: its " + (qform ? "qform" : "sform") + " was taken");
     return settled(qform ? *other : first);
   }
   const double apart_mm =

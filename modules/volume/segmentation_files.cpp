@@ -343,18 +343,24 @@ Result<Segmentation> readMasks(const fs::path& folder, const Progress& progress,
   }
   if (files.size() > std::size_t(kMostStructures)) return tooMany(files.size(), folder);
   std::ranges::sort(files);
+  constexpr const char* kTakeOut = "Take it out of the folder, which is to hold masks alone";
   Segmentation all;
   std::vector<int> values;
   for (std::size_t n = 0; n < files.size(); ++n) {
     const double count = double(files.size());
     const Progress part(progress, double(n) / count, double(n + 1) / count);
     Result<Segmentation> one = readFile(files[n], part, form);
-    if (!one) return one.error();
+    if (!one) {
+      Error error = one.error();
+      if (error.code != "CANCELLED") error.next = kTakeOut;
+      return error;
+    }
     const std::string name = structureName(withoutEndings(files[n]).filename().string());
     if (one->layers.size() > 1 || one->segments.size() > 1) {
-      return notLabels(
-          "Of a folder of masks each file holds one structure, and '" + name + "' holds several",
-          files[n]);
+      return Error{"NOT_LABELS",
+                   "Of a folder of masks each file holds one structure, and '" + name +
+                       "' holds several",
+                   files[n].string(), kTakeOut};
     }
     if (n == 0) all.geometry = one->geometry;
     constexpr double kSame = 0.01;  // of a voxel

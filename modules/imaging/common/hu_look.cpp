@@ -113,11 +113,46 @@ std::vector<std::string> HuLook::doubts(int lowest, int highest) const {
     said(mode.hu, mode.words);
     return doubts;
   }
-  if (first != 0 || share(0, 0) <= kClampedShare || air > kModes[0].most_air) return doubts;
-  for (const int hu : kStoredAir) {
-    if (3.0 * around(hu) <= 1.0) continue;
-    said(hu, kStored);
-    break;
+  if (first == 0 && share(0, 0) > kClampedShare && air <= kModes[0].most_air) {
+    for (const int hu : kStoredAir) {
+      if (3.0 * around(hu) <= 1.0) continue;
+      said(hu, kStored);
+      return doubts;
+    }
+  }
+  constexpr double kEnough = 1000.0;  // voxels, to tell by how they are spread
+  if (scanned < kEnough) return doubts;
+  // Most of a patient is soft tissue, and what lies below air is padding, of one value.
+  constexpr double kLeastTissue = 0.01, kLittleTissue = 0.05, kBelow = 0.1;
+  const double tissue = share(-200, 200);
+  std::uint64_t padding = 0;
+  for (int hu = kLowest; hu < kLowestOfAir; ++hu) padding = std::max(padding, count(hu, hu));
+  const double below = double(count(kLowest, kLowestOfAir - 1) - padding) / scanned;
+  if ((tissue < kLeastTissue && share(kLowestOfAir, -800) > 0.5) ||
+      (tissue < kLittleTissue && below > kBelow)) {
+    doubts.push_back("hardly any of the voxels (" + percent(tissue) +
+                     ") lie where tissue does, as of an intercept that was applied twice");
+    return doubts;
+  }
+  // Stored values without their intercept of -1024 have their tissue there, and no wide bone.
+  const double stored_tissue = share(850, 1150);
+  if (first >= 0 && share(0, 100) > 0.05 && stored_tissue > 0.15 &&
+      stored_tissue > 0.6 * share(500, 2500)) {
+    doubts.push_back("none lies below 0, and " + percent(stored_tissue) +
+                     " of the voxels lie between 850 and 1150, as of " + kStored);
+    return doubts;
+  }
+  // Both ends heaped up, within what tissue reaches, and all between them filled.
+  const auto heaped = [&](int end, int beside) {
+    return share(end, end) > 0.002 && count(end, end) > 5 * count(beside, beside);
+  };
+  int filled = 0;
+  for (int hu = first; hu <= last; ++hu) filled += count(hu, hu) > 0 ? 1 : 0;
+  if (first > -900 && last < 1000 && 4 * filled > last - first && last - first >= 100 &&
+      heaped(first, first + 1) && heaped(last, last - 1)) {
+    doubts.push_back("they end at " + std::to_string(first) + " and " + std::to_string(last) +
+                     ", where many lie: a window was burnt in, and air and bone are cut off");
+    return doubts;
   }
   return doubts;
 }

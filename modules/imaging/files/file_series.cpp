@@ -34,6 +34,20 @@ std::string shortNumber(double value) {
   return text;
 }
 
+// Where an axis goes in the patient, with how far it is askew.
+std::string wayOf(const Vec3& direction) {
+  constexpr const char* kWays[3][2] = {{"right", "left"}, {"front", "back"}, {"foot", "head"}};
+  int axis = 0;
+  for (int n = 1; n < 3; ++n) {
+    if (std::abs(direction[n]) > std::abs(direction[axis])) axis = n;
+  }
+  std::string way = kWays[axis][direction[axis] > 0.0];
+  const double askew_deg =
+      glm::degrees(std::acos(std::min(1.0, std::abs(direction[axis]) / glm::length(direction))));
+  if (askew_deg > 0.05) way += " (" + shortNumber(askew_deg) + " degrees askew)";
+  return way;
+}
+
 // Which of the ways in which a file says how it lies in the patient counts.
 Result<VolumeFileHeader> inChosenForm(VolumeFileHeader header, const std::filesystem::path& file,
                                       const Answers& answers, SeriesReport& report) {
@@ -44,13 +58,16 @@ Result<VolumeFileHeader> inChosenForm(VolumeFileHeader header, const std::filesy
                 {"Do not use the file"}};
   for (const VolumeFileHeader::Form& form : header.forms) {
     const GridGeometry& g = form.geometry;
-    const Vec3 middle = g.centre_mm();
-    char words[200];
+    const Vec3 middle = glm::round(g.centre_mm()) + Vec3(0.0);  // no -0
+    char words[240];
     std::snprintf(words, sizeof words,
-                  "The %s: steps of %.4g x %.4g x %.4g mm, %.0f mm along the slices, its middle at "
-                  "(%.0f, %.0f, %.0f) mm",
+                  "The %s: steps of %.4g x %.4g x %.4g mm, %.0f mm along the slices; columns go to "
+                  "%s, rows to %s, slices to %s; its middle at (%.0f, %.0f, %.0f) mm",
                   form.name.c_str(), g.spacing_mm.x, g.spacing_mm.y, g.spacing_mm.z,
-                  g.size[2] * g.spacing_mm.z, middle.x, middle.y, middle.z);
+                  g.size[2] * g.spacing_mm.z, wayOf(g.direction[0]).c_str(),
+                  wayOf(g.direction[1]).c_str(),
+                  wayOf(form.reversed_slices ? -g.direction[2] : g.direction[2]).c_str(), middle.x,
+                  middle.y, middle.z);
     choice.options.push_back(form.name);
     choice.words.emplace_back(words);
   }

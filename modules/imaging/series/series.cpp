@@ -26,15 +26,23 @@ bool near(const std::optional<std::array<double, kCount>>& a,
   return true;
 }
 
+// By ID and birth date.
+bool isSamePerson(const DicomHeader& a, const DicomHeader& b) {
+  constexpr std::size_t kId = 1, kBirth = 2;
+  return !a.patient[kId].empty() && a.patient[kId] == b.patient[kId] &&
+         !a.patient[kBirth].empty() && a.patient[kBirth] == b.patient[kBirth];
+}
+
 // What tells that two slices are of two patients; null where nothing does. What one of them leaves
-// empty tells nothing, as long as they have something in common.
+// empty tells nothing, as long as they have something in common. Names of one ID and birth date are
+// one name, spelled in two ways or changed.
 const char* otherPatient(const DicomHeader& a, const DicomHeader& b) {
   constexpr const char* kNames[] = {"patient's name", "patient's ID", "patient's birth date",
                                     "patient's sex"};
-  constexpr std::size_t kSex = 3;  // half of all have it in common
+  constexpr std::size_t kName = 0, kSex = 3;  // half of all have the sex in common
   bool common = std::equal(a.patient.begin(), a.patient.begin() + kSex, b.patient.begin());
   for (std::size_t n = 0; n < a.patient.size(); ++n) {
-    if (a.patient[n].empty() || b.patient[n].empty()) continue;
+    if (a.patient[n].empty() || b.patient[n].empty() || (n == kName && isSamePerson(a, b))) continue;
     if (a.patient[n] != b.patient[n]) return kNames[n];
     common |= n != kSex;
   }

@@ -247,8 +247,26 @@ double statedStep_mm(const Headers& slices) {
   return step_mm;
 }
 
-// By place, and at one place in the order of locations, which may be rounded as places are, and then
-// of instance numbers, whichever way each of them runs.
+// Whether instance numbers run on without a break, up or down, as the slices lie: none is missing.
+bool areNumberedOn(const Headers& taken, const Vec3& normal) {
+  std::vector<std::pair<double, int>> numbers;
+  for (const DicomHeader* h : taken) {
+    const auto number = parseInteger(h->instance_number);
+    if (!number) return false;
+    numbers.emplace_back(glm::dot(*h->position_mm, normal), *number);
+  }
+  if (numbers.size() < 3) return false;
+  std::ranges::sort(numbers);
+  const int step = numbers[1].second - numbers[0].second;
+  if (std::abs(step) != 1) return false;
+  for (std::size_t n = 1; n < numbers.size(); ++n) {
+    if (numbers[n].second - numbers[n - 1].second != step) return false;
+  }
+  return true;
+}
+
+// By place, and at one place in the order of locations, which may be rounded as places are, and
+// then of instance numbers, whichever way each of them runs.
 void orderAsScanned(Headers& slices, const Vec3& normal) {
   const auto place_mm = [&](const DicomHeader* h) { return glm::dot(*h->position_mm, normal); };
   const auto location_mm = [](const DicomHeader* h) { return h->location_mm.value_or(0.0); };
@@ -275,6 +293,18 @@ void checkBits(const Series& series, Findings& findings) {
                         " bits a pixel, and the compressed pixels have " +
                         std::to_string(one.format.bits_stored),
                     "All of their bits were taken", slices);
+}
+
+// Of one patient, by ID and birth date (series.cpp).
+void checkNames(const std::vector<DicomHeader>& slices, Findings& findings) {
+  std::set<std::string> names;
+  for (const DicomHeader& slice : slices) {
+    if (!slice.patient.front().empty()) names.insert(slice.patient.front());
+  }
+  if (names.size() < 2) return;
+  findings.notice("NAMES_DIFFER",
+                  "The patient's name is not the same in all slices; ID and birth date are",
+                  "Nothing was changed; look whether all of them are of one patient");
 }
 
 // Slices of one series whose values grow as HU do, and others whose values fall.
@@ -323,7 +353,11 @@ void checkConcatenation(const std::vector<DicomHeader>& slices, const Answers& a
   const std::string text = "The series was written in parts, of which " + listed(missing) +
                            (missing.size() == 1 ? " is missing" : " are missing");
   if (std::ranges::find(asked, "MISSING_SLICES", &Choice::code) != asked.end()) {
-    return findings.notice("INCOMPLETE", text, "Copy all files of the series again");
+    const std::string answer = answerTo(answers, "MISSING_SLICES");
+    return findings.notice("INCOMPLETE", text,
+                           answer.empty() || answer == "refuse"
+                               ? "Copy all files of the series again"
+                               : "The gap that they leave became what was chosen for it");
   }
   findings.askConsent({"INCOMPLETE",
                        "Not all parts of the series are there. Use those that are?",
@@ -428,6 +462,9 @@ SeriesPlan checkGeometry(Series& series, const Answers& answers, Findings& findi
     input.spacing_between_mm = typical.spacing_between_mm;
     input.thickness_mm = typical.thickness_mm;
     input.lost_text = lostText(lost);
+    if (const auto axes = axesOf(*first.orientation)) {
+      input.numbered_on = areNumberedOn(taken, (*axes)[2]);
+    }
     plan.stack = stackSlices(input, answers);
     report.geometry = plan.stack.geometry;
     report.tilt_deg = plan.stack.tilt_deg;
@@ -506,6 +543,7 @@ SeriesPlan assessSeries(Series& series, const Answers& answers) {
     checkSizes(series, findings);
     checkSlopes(answers, findings);
     checkBits(series, findings);
+    checkNames(series.slices, findings);
     plan = checkGeometry(series, answers, findings);
     plan.whole_words = answerTo(answers, "HIGH_BITS") == "use";
     checkConcatenation(series.slices, answers, report.choices, findings);

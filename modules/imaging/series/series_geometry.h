@@ -21,6 +21,7 @@ struct StackInput {
   std::string lost_text;     // which pixels are lost and why: ends the sentence on missing slices
   // As headers say it beside the positions; none: they do not.
   std::optional<double> spacing_between_mm{}, thickness_mm{};
+  bool numbered_on = false;  // instance numbers run on without a break as the slices lie
 };
 
 // A slice of the volume: a mixture of two slices of the stack, mostly one of them alone.

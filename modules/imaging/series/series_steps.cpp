@@ -196,9 +196,13 @@ void planGaps(Slices slices, const Steps& steps, const Answers& answers,
               Stack& stack) {
   std::int64_t missing = 0;
   const std::vector<std::string> places = missingPlaces(slices, steps, missing);
-  const std::string text = counted(std::uint64_t(missing), "slice", "is", "are") +
-                           " missing from a stack with a step of " + lengthText(steps.step_mm) +
-                           lost_text;
+  const std::string gaps = counted(std::uint64_t(missing), "slice", "is", "are") +
+                           " missing from a stack with a step of " + lengthText(steps.step_mm);
+  const std::string text = rounded ? "Either " + gaps +
+                                         ", or none is and the positions were rounded to " +
+                                         fixedText(grid_mm, 1) + " mm from steps of " +
+                                         fixedText(rounded->step_mm, 3) + " mm"
+                                   : gaps + lost_text;
   const Slices part =
       longestPart(slices, steps.step_mm,
                   steps.even ? stepTolerance_mm(steps.step_mm) : kJitter * steps.step_mm);
@@ -233,7 +237,10 @@ void planGaps(Slices slices, const Steps& steps, const Answers& answers,
   }
   const std::string answer = ask(std::move(choice), answers, stack.choices);
   if (answer == "line") {
-    stack.findings.push_back({"MISSING_SLICES", "repair", text, {},
+    stack.findings.push_back({"MISSING_SLICES",
+                              "repair",
+                              text,
+                              {},
                               "None is missing, as was chosen: positions that were rounded to " +
                                   fixedText(grid_mm, 1) + " mm were put back on even steps of " +
                                   fixedText(rounded->step_mm, 3) + " mm"});
@@ -254,9 +261,11 @@ void planGaps(Slices slices, const Steps& steps, const Answers& answers,
     return;
   }
   planAsTheyAre(slices, stack);
-  stack.findings.push_back({"MISSING_SLICES", "refusal", text, places,
-                            fillable ? "Copy or export the series again, or choose to fill in"
-                                     : "Copy or export the series again"});
+  stack.findings.push_back(
+      {"MISSING_SLICES", "refusal", text, places,
+       rounded    ? "Choose which it is: a series that is numbered without a break lacks none"
+       : fillable ? "Copy or export the series again, or choose to fill in"
+                  : "Copy or export the series again"});
 }
 
 void planUneven(const Slices& slices, const Steps& steps, const Answers& answers, Stack& stack) {
@@ -487,6 +496,11 @@ Rounded lineFor(const Slices& slices, const Steps& steps, const StackInput& inpu
   if (input.spacing_between_mm) between_mm = std::abs(*input.spacing_between_mm);
   const double n = double(slices.size());
   const auto half = std::int64_t(slices.size() / 2);
+  // Numbers without a break are a statement, too.
+  const double chance = !steps.even || input.numbered_on ? 1.0 : kChance;
+  // What is as thick as the steps are is stated to lie so.
+  const bool as_thick =
+      input.thickness_mm && std::abs(*input.thickness_mm - steps.step_mm) <= 0.01 * steps.step_mm;
   const std::int64_t most_missing = !steps.even ? half : between_mm ? steps.missing() - 1 : 0;
   Rounded rounded;
   // Of `lines` lines of its kind.
@@ -494,8 +508,7 @@ Rounded lineFor(const Slices& slices, const Steps& steps, const StackInput& inpu
     if (!line || !moved(line->slices, slices)) return false;
     if (steps.even && line->missing >= steps.missing()) return false;
     const bool stated = lines == 0.0;
-    const bool taken =
-        stated || tellsLongerSteps(slices, grid_mm, lines, steps.even ? kChance : 1.0);
+    const bool taken = stated || tellsLongerSteps(slices, grid_mm, lines, chance);
     if (taken && line->missing <= half) {
       rounded.taken = line;
       return true;
@@ -510,6 +523,7 @@ Rounded lineFor(const Slices& slices, const Steps& steps, const StackInput& inpu
     // Without a gap it leaves uneven steps no other reading.
     if (take(by_thickness, whole && !steps.even ? 0.0 : n)) return rounded;
   }
+  if (steps.even && as_thick && !between_mm) return rounded;
   take(lineOfAnyStep(slices, most_mm, between_mm, most_missing), between_mm ? n : n * n);
   return rounded;
 }

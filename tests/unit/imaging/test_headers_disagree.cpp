@@ -116,6 +116,27 @@ TEST(StackThatLooksRounded, WithoutAStatedStepManySlicesTellAndFewAreAskedAbout)
   }
 }
 
+TEST(StackThatLooksRounded, NumbersWithoutABreakLackNoSliceAndThickStepsAreNoLine) {
+  std::vector<double> places;
+  for (int n = 0; n < 16; ++n) places.push_back(std::round(1.25 * n));
+  StackInput input = stackAt(places);
+  input.thickness_mm = 1.25;
+  EXPECT_EQ(codesOf(stackSlices(input)), "MISSING_SLICES ");
+  input.numbered_on = true;
+  EXPECT_EQ(codesOf(stackSlices(input)), "ROUNDED_POSITIONS ");
+  places.clear();
+  for (int n = 0; n < 17; ++n) {
+    if (n != 9) places.push_back(n);
+  }
+  input = stackAt(places);
+  input.thickness_mm = 1.0;
+  const Stack gap = stackSlices(input);
+  ASSERT_EQ(codesOf(gap), "MISSING_SLICES ");
+  EXPECT_EQ(gap.findings[0].text.find("Either"), std::string::npos);
+  const auto& options = gap.choices.front().options;
+  EXPECT_EQ(std::ranges::find(options, "line"), options.end());
+}
+
 // GE's overlapped reconstruction: slices of 1.25 mm every 1 mm.
 TEST(StackThatLooksRounded, AGapIsNoRoundingToTheThickness) {
   for (int gap = 1; gap < 7; ++gap) {
@@ -180,6 +201,66 @@ TEST(ValuesThatLookStored, CtOfLittleAirIsCt) {
     look.add(hu);
     const auto [low, high] = std::ranges::minmax(hu);
     EXPECT_TRUE(look.doubts(low, high).empty()) << look.doubts(low, high).front();
+  }
+}
+
+// Air, fat, organs and bone of `count` voxels, with noise.
+std::vector<std::int16_t> patientLike(std::mt19937& random, double air, int count = 30000) {
+  std::vector<std::int16_t> hu;
+  std::normal_distribution<double> noise(0.0, 12.0);
+  std::uniform_real_distribution<double> share(0.0, 1.0), bone(250.0, 1600.0);
+  for (int n = 0; n < count; ++n) {
+    const double at = share(random);
+    const double mean = at < air                        ? -1000.0
+                        : at < air + 0.3 * (1.0 - air)  ? -100.0
+                        : at < air + 0.92 * (1.0 - air) ? 45.0
+                                                        : bone(random);
+    hu.push_back(std::int16_t(std::lround(std::max(-1024.0, mean + noise(random)))));
+  }
+  return hu;
+}
+
+std::vector<std::string> doubtsOf(const std::vector<std::int16_t>& hu) {
+  HuLook look;
+  look.add(hu);
+  const auto [low, high] = std::ranges::minmax(hu);
+  return look.doubts(low, high);
+}
+
+TEST(ValuesThatAreNoHu, OfAnInterceptThatWasAppliedTwiceOrNeverOrOfAWindowAreDoubted) {
+  std::mt19937 random(9);
+  for (int n = 0; n < 20; ++n) {
+    const std::vector<std::int16_t> truth = patientLike(random, 0.3 + 0.02 * n);
+    EXPECT_TRUE(doubtsOf(truth).empty()) << doubtsOf(truth).front();
+    const auto changed = [&](auto change) {
+      std::vector<std::int16_t> hu = truth;
+      for (std::int16_t& value : hu) value = std::int16_t(change(value));
+      const auto doubts = doubtsOf(hu);
+      return doubts.empty() ? std::string() : doubts.front();
+    };
+    EXPECT_NE(changed([](int hu) { return hu - 1024; }).find("twice"), std::string::npos);
+    EXPECT_NE(changed([](int hu) { return hu + 1024; }).find("without their intercept"),
+              std::string::npos);
+    EXPECT_NE(changed([](int hu) { return std::clamp(hu, -160, 240); }).find("window"),
+              std::string::npos);
+  }
+}
+
+TEST(ValuesThatLookStored, CropsOfAHeadOrALungAreCt) {
+  std::mt19937 random(10);
+  std::normal_distribution<double> noise(0.0, 10.0);
+  std::uniform_real_distribution<double> share(0.0, 1.0), bone(300.0, 1800.0);
+  for (int n = 0; n < 20; ++n) {
+    std::vector<std::int16_t> head, lung;
+    for (int voxel = 0; voxel < 20000; ++voxel) {
+      const double at = share(random);
+      head.push_back(std::int16_t(
+          std::lround(std::max(1.0, (at < 0.3 + 0.02 * n ? bone(random) : 35.0) + noise(random)))));
+      lung.push_back(
+          std::int16_t(std::lround((at < 0.03 + 0.01 * n ? 40.0 : -860.0) + 3.0 * noise(random))));
+    }
+    EXPECT_TRUE(doubtsOf(head).empty()) << doubtsOf(head).front();
+    EXPECT_TRUE(doubtsOf(lung).empty()) << doubtsOf(lung).front();
   }
 }
 
@@ -621,7 +702,7 @@ TEST_F(HeadersDisagree, SlopesOfAnotherSignAreAskedAbout) {
     if (++slices == 3) put(data, DCM_RescaleSlope, "-1");
   });
   EXPECT_EQ(expectRefused("SLOPES_DIFFER").slices.size(), 1u);
-  import({{ "SLOPES_DIFFER", "accept" }});
+  import({{"SLOPES_DIFFER", "accept"}});
   EXPECT_EQ(chosen().verdict, Verdict::repaired);
 }
 

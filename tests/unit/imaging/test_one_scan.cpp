@@ -53,6 +53,7 @@ TEST_F(OneScan, IsOfOnePatient) {
         std::pair(DCM_PatientBirthDate, "19700101")}) {
     anew({7, 5, 10});
     editAll(set(DCM_PatientBirthDate, "19800202"));
+    if (tag == DCM_PatientName) editAll(set(DCM_PatientID, ""));
     editSome({6, 7, 8, 9, 10}, set(tag, value));
     const CtFolder folder = scan();
     ASSERT_EQ(folder.report().series.size(), 2u) << value;
@@ -92,6 +93,19 @@ TEST_F(OneScan, IsOfOnePatientHoweverTheNameIsWritten) {
     put(data, DCM_PatientName, "M\xFCLLER");
   });
   EXPECT_EQ(only().verdict, Verdict::pass) << codes(only());
+}
+
+TEST_F(OneScan, IsOfOnePatientByIdAndBirthDateThoughTheNameHasChanged) {
+  editAll([](DcmDataset& data) {
+    put(data, DCM_PatientID, "4711");
+    put(data, DCM_PatientBirthDate, "19700101");
+    put(data, DCM_PatientName, "MUELLER^EVA");
+  });
+  editSome({2, 4}, set(DCM_PatientName, "MEIER^EVA"));
+  EXPECT_EQ(only().verdict, Verdict::pass) << codes(only());
+  EXPECT_NE(find(only(), "NAMES_DIFFER"), nullptr) << codes(only());
+  editSome({2, 4}, set(DCM_PatientBirthDate, "19700102"));
+  EXPECT_EQ(scan().report().series.size(), 2u);
 }
 
 TEST_F(OneScan, IsOfOnePatientThoughSomeSlicesSayLessOfHim) {
