@@ -31,7 +31,7 @@ Error locked(const std::string& what, const char* option) {
 }
 
 // Puts the command line's choices into the scene.
-Status applyChoices(const RunArguments& arguments, const Policy& policy, Scene& scene) {
+Status applyChoices(const RunArguments& arguments, const Policy& policy, Scene& scene, Rig& rig) {
   const Locks locks = locksOf(policy, scene);
   const bool other_rate = arguments.rate_hz.value_or(scene.rate_hz) != scene.rate_hz;
   const bool other_controller =
@@ -49,9 +49,11 @@ Status applyChoices(const RunArguments& arguments, const Policy& policy, Scene& 
   if (!arguments.arms_file.empty()) {
     Result<std::vector<NamedDevice>> arms = readArmsFile(arguments.arms_file);
     if (!arms) return arms.error();
-    if (Status used = useArms(scene, *arms, arguments.arms_file); !used) return used;
-    Scene asked = scene;  // what is not there is said before a case is opened
-    if (Status there = readArmDynamics(asked); !there) return there;
+    Result<Rig> moved = rigWith(scene, *arms, arguments.arms_file);
+    if (!moved) return moved.error();
+    rig = *std::move(moved);
+    Rig asked = rig;  // what is not there is said before a case is opened
+    if (Status there = readArmDynamics(scene, asked); !there) return there;
   }
   if (arguments.controller.empty()) return {};
   if (const auto kind = kindOf(kControllerNames, arguments.controller)) {
@@ -157,13 +159,10 @@ Result<RunOutcome> runExercise(const RunArguments& arguments, const Policy& poli
   Result<Scene> scene = readScene(arguments.scene);
   if (!scene) return scene.error();
   if (Status may = checkScene(policy, *scene, arguments.scene); !may) return may.error();
-  if (scene->names_devices) {
-    spdlog::warn(
-        "The exercise names devices, as exercises did before; they are used unless --arms is "
-        "given");
-  }
-  if (Status chosen = applyChoices(arguments, policy, *scene); !chosen) return chosen.error();
   SessionOptions options;
+  if (Status chosen = applyChoices(arguments, policy, *scene, options.rig); !chosen) {
+    return chosen.error();
+  }
   const std::string script_file =
       arguments.operator_file.empty() ? scene->operator_file : arguments.operator_file;
   if (!script_file.empty()) {

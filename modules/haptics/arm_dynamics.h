@@ -19,6 +19,7 @@ struct ArmDynamics {
   // itself (device_rules.h).
   double continuous_force_N = 3.3;
   double thermal_s = 0.0;
+  bool operator==(const ArmDynamics&) const = default;
 };
 
 constexpr int kMaxDelayTicks = 16;  // periods, at any rate

@@ -35,6 +35,7 @@ struct WorkspaceMap {
   Vec3 toDevice_m(const Vec3& patient_mm) const {
     return glm::conjugate(rotation) * (patient_mm - centre_mm) / (1000.0 * motion_scale);
   }
+  bool operator==(const WorkspaceMap&) const = default;
 };
 
 inline constexpr NumberOf<WorkspaceMap> kWorkspaceMapNumbers[] = {

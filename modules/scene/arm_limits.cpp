@@ -6,17 +6,19 @@
 
 namespace trephine {
 
-double mostForce_N(const SceneArm& arm) {
-  return arm.dynamics ? std::min(arm.max_force_N, arm.dynamics->peak_force_N) : arm.max_force_N;
+double mostForce_N(const SceneArm& arm, const std::optional<ArmDynamics>& dynamics) {
+  return dynamics ? std::min(arm.max_force_N, dynamics->peak_force_N) : arm.max_force_N;
 }
 
-std::optional<ArmsLimit> armsLimit(const Scene& scene) {
+std::optional<ArmsLimit> armsLimit(const Scene& scene, const Rig& rig) {
   std::optional<ArmsLimit> limit;
-  for (const SceneArm& arm : scene.arms) {
-    if (!arm.dynamics) continue;
-    const Renderable most = renderableOn(arm, scene.rate_hz);
+  for (std::size_t i = 0; i < scene.arms.size() && i < rig.arms.size(); ++i) {
+    const SceneArm& arm = scene.arms[i];
+    const std::optional<ArmDynamics>& dynamics = rig.arms[i].dynamics;
+    if (!dynamics) continue;
+    const Renderable most = renderableOn(arm, dynamics, scene.rate_hz);
     const double scale = arm.map.fixed ? arm.map.fixed->force_scale : arm.map.force_scale;
-    const double force_N = mostForce_N(arm) / scale;
+    const double force_N = mostForce_N(arm, dynamics) / scale;
     if (!limit) {
       limit = ArmsLimit{most, force_N};
       continue;

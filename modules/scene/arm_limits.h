@@ -11,7 +11,7 @@
 namespace trephine {
 
 // The most that is sent to an arm: what the scene allows, and the device, where that was asked.
-double mostForce_N(const SceneArm& arm);
+double mostForce_N(const SceneArm& arm, const std::optional<ArmDynamics>& dynamics);
 
 // Of the weakest of the arms, in the tissue's own numbers.
 struct ArmsLimit {
@@ -19,7 +19,7 @@ struct ArmsLimit {
   double force_N = 0.0;  // that a tissue may push with
 };
 // None where the dynamics of no arm are known.
-std::optional<ArmsLimit> armsLimit(const Scene& scene);
+std::optional<ArmsLimit> armsLimit(const Scene& scene, const Rig& rig);
 
 // Newtons, which are clamped under every controller.
 bool isForce(const TissueNumber& number);

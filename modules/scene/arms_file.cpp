@@ -15,11 +15,6 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t kMostArms = std::size_t(kMaxArms);
 
-// What a simulated arm is like where nobody says otherwise.
-std::string usualArm() {
-  return (resourceFolder() / "devices" / "omni.json").string();
-}
-
 }  // namespace
 
 ArmDevice readDevice(JsonReader& item, const fs::path& folder) {
@@ -37,19 +32,6 @@ ArmDevice readDevice(JsonReader& item, const fs::path& folder) {
     item.fail("config", "The file '" + config + "' is not there", "Check the name");
   }
   return device;
-}
-
-void addSimulatedDevices(Scene& scene) {
-  const std::string config = usualArm();
-  std::uint32_t place = 0;
-  for (SceneArm& arm : scene.arms) {
-    if (!arm.device.plugin.empty()) continue;
-    const auto taken = [&](const SceneArm& other) {
-      return other.device.plugin == kSimulated && other.device.place == place;
-    };
-    while (std::ranges::any_of(scene.arms, taken)) ++place;
-    arm.device = {kSimulated, place, config};
-  }
 }
 
 Result<std::vector<NamedDevice>> readArmsFile(const fs::path& file) {
@@ -76,56 +58,54 @@ Result<std::vector<NamedDevice>> readArmsFile(const fs::path& file) {
   return devices;
 }
 
-Status useArms(Scene& scene, const std::vector<NamedDevice>& devices, const std::string& where) {
-  Scene with = scene;
-  for (SceneArm& arm : with.arms) arm.device = {};
+Result<Rig> rigWith(const Scene& scene, const std::vector<NamedDevice>& devices,
+                    const std::string& where) {
+  Rig rig;
+  rig.arms.resize(scene.arms.size());
   for (const NamedDevice& of : devices) {
     if (of.arm == kPedal) {
-      with.pedal = of.device;
+      rig.pedal = of.device;
       continue;
     }
-    const auto arm = std::ranges::find(with.arms, of.arm, &SceneArm::name);
-    if (arm == with.arms.end()) {
+    const auto arm = std::ranges::find(scene.arms, of.arm, &SceneArm::name);
+    if (arm == scene.arms.end()) {
       std::string names;
       for (const SceneArm& one : scene.arms) names += (names.empty() ? "" : ", ") + one.name;
       return Error{"NO_SUCH_ARM", "The scene has no arm '" + of.arm + "'", where,
                    "Its arms are: " + names};
     }
-    arm->device = of.device;
-    if (of.device.plugin == kSimulated && of.device.config.empty()) {
-      arm->device.config = usualArm();
-    }
+    ArmDevice& device = rig.arms[std::size_t(arm - scene.arms.begin())].device;
+    device = of.device;
+    if (device.plugin == kSimulated && device.config.empty()) device.config = usualArmFile();
   }
   // The simulated ones that others need not have, in their places.
-  for (std::size_t i = 0; i < with.arms.size(); ++i) {
-    const auto has = [&](const SceneArm& arm) {
-      return arm.device.plugin == kSimulated && arm.device.place == scene.arms[i].device.place;
+  const Rig simulated = simulatedRig(scene);
+  for (std::size_t i = 0; i < rig.arms.size(); ++i) {
+    const ArmDevice& own = simulated.arms[i].device;
+    const auto has = [&](const Rig::Arm& arm) {
+      return arm.device.plugin == kSimulated && arm.device.place == own.place;
     };
-    const bool was_simulated = scene.arms[i].device.plugin == kSimulated;
-    if (!with.arms[i].device.plugin.empty() || !was_simulated) continue;
-    if (std::ranges::none_of(with.arms, has)) with.arms[i].device = scene.arms[i].device;
+    if (rig.arms[i].device.plugin.empty() && std::ranges::none_of(rig.arms, has)) {
+      rig.arms[i].device = own;
+    }
   }
-  addSimulatedDevices(with);
-  for (const SceneArm& one : with.arms) {
-    for (const SceneArm& other : with.arms) {
-      const ArmDevice &a = one.device, &b = other.device;
-      if (&one == &other || a.plugin != b.plugin || a.place != b.place) continue;
+  addSimulatedArms(rig, scene.arms.size());
+  for (std::size_t i = 0; i < rig.arms.size(); ++i) {
+    const ArmDevice& a = rig.arms[i].device;
+    for (std::size_t j = i + 1; j < rig.arms.size(); ++j) {
+      const ArmDevice& b = rig.arms[j].device;
+      if (a.plugin != b.plugin || a.place != b.place) continue;
       return Error{"BAD_SCENE",
-                   "The arms '" + one.name + "' and '" + other.name + "' would have one device, '" +
-                       a.plugin + "' " + std::to_string(a.place),
+                   "The arms '" + scene.arms[i].name + "' and '" + scene.arms[j].name +
+                       "' would have one device, '" + a.plugin + "' " + std::to_string(a.place),
                    where, "Give each arm a device of its own"};
     }
+    if (!rig.pedal || a.plugin != rig.pedal->plugin || a.place != rig.pedal->place) continue;
+    return Error{"BAD_SCENE",
+                 "The arm '" + scene.arms[i].name + "' and the pedal would have one device", where,
+                 "Give each a device of its own"};
   }
-  for (const SceneArm& arm : with.arms) {
-    if (!with.pedal || arm.device.plugin != with.pedal->plugin ||
-        arm.device.place != with.pedal->place) {
-      continue;
-    }
-    return Error{"BAD_SCENE", "The arm '" + arm.name + "' and the pedal would have one device",
-                 where, "Give each a device of its own"};
-  }
-  scene = std::move(with);
-  return {};
+  return rig;
 }
 
 }  // namespace trephine

@@ -30,6 +30,7 @@ struct Landmark {
   double run_mm = 1.0;    // how long the ray must stay in the tissue to count
   bool is_place = false;  // the third way
   Vec3 at_mm{0.0};
+  bool operator==(const Landmark&) const = default;
 };
 
 // Origin on the surface; +z back along the ray, out of the patient; +y towards the patient's head
@@ -43,6 +44,7 @@ struct LandmarkFrame {
   // along -z does not hide its own tip. +y is up.
   Vec3 viewDirection() const { return rotation * glm::normalize(Vec3(0.0, 0.45, -1.0)); }
   Vec3 viewUp() const { return rotation * Vec3(0.0, 1.0, 0.0); }
+  bool operator==(const LandmarkFrame&) const = default;
 };
 
 // The rotation whose +z is `outward` (see LandmarkFrame).

@@ -96,8 +96,9 @@ std::vector<LandmarkFrame> armFrames(const Scene& scene,
   return frames;
 }
 
-Renderable renderableOn(const SceneArm& arm, double rate_hz) {
-  const ArmDynamics dynamics = arm.dynamics.value_or(ArmDynamics{});
+Renderable renderableOn(const SceneArm& arm, const std::optional<ArmDynamics>& known,
+                        double rate_hz) {
+  const ArmDynamics dynamics = known.value_or(ArmDynamics{});
   WorkspaceMap map;
   map.motion_scale = arm.map.motion_scale;
   map.force_scale = arm.map.force_scale;
@@ -109,12 +110,13 @@ Impedance demandedOf(const Scene& scene, const Tissue& tissue) {
   return demandedOf(scene.laws, tissueTable({{}, {tissue}}).classes[0]);
 }
 
-std::vector<BoundedTissue> boundedTissues(const Scene& scene) {
+std::vector<BoundedTissue> boundedTissues(const Scene& scene, const Rig& rig) {
   std::vector<BoundedTissue> bounded;
   if (scene.controller != ControllerKind::bounded) return bounded;
-  for (const SceneArm& arm : scene.arms) {
-    if (!arm.dynamics) continue;
-    const Renderable most = renderableOn(arm, scene.rate_hz);
+  for (std::size_t i = 0; i < scene.arms.size() && i < rig.arms.size(); ++i) {
+    const SceneArm& arm = scene.arms[i];
+    if (!rig.arms[i].dynamics) continue;
+    const Renderable most = renderableOn(arm, rig.arms[i].dynamics, scene.rate_hz);
     for (const Tissue& tissue : scene.tissues.tissues) {
       const Impedance demanded = demandedOf(scene, tissue);
       const Impedance felt{std::min(demanded.damping, most.b_max),
@@ -127,7 +129,7 @@ std::vector<BoundedTissue> boundedTissues(const Scene& scene) {
   return bounded;
 }
 
-HapticParameters hapticParameters(const Scene& scene) {
+HapticParameters hapticParameters(const Scene& scene, const Rig& rig) {
   HapticParameters parameters;
   parameters.period_s = 1.0 / scene.rate_hz;
   parameters.laws = scene.laws;
@@ -135,8 +137,10 @@ HapticParameters hapticParameters(const Scene& scene) {
   parameters.removal = scene.removal;
   parameters.controller = scene.controller;
   parameters.tissues = tissueTable(scene.tissues);
-  for (const SceneArm& arm : scene.arms) {
-    ArmDynamics dynamics = arm.dynamics.value_or(ArmDynamics{});
+  for (std::size_t i = 0; i < scene.arms.size(); ++i) {
+    const SceneArm& arm = scene.arms[i];
+    ArmDynamics dynamics =
+        (i < rig.arms.size() ? rig.arms[i].dynamics : std::nullopt).value_or(ArmDynamics{});
     dynamics.peak_force_N = arm.max_force_N;
     std::vector<Tool> others;
     for (const std::string& id : arm.other_tools) others.push_back(scene.findTool(id)->tool);

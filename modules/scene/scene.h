@@ -14,6 +14,7 @@
 #include "haptics/haptic_core.h"
 #include "scene/landmark.h"
 #include "scene/locks.h"
+#include "scene/rig.h"
 #include "scene/scene_card.h"
 #include "scene/scene_outline.h"
 #include "scene/scene_tool.h"
@@ -30,30 +31,23 @@ struct SceneMap {
   std::optional<WorkspaceMap> fixed;
   double motion_scale = 1.0;
   double force_scale = 1.0;
-};
-
-// What moves an arm: the workstation's, and an exercise says nothing of it.
-struct ArmDevice {
-  std::string plugin;       // "simulated"
-  std::uint32_t place = 0;  // in the plugin's enumeration
-  std::string config;       // file of the plugin's configuration, empty for none
-  bool operator==(const ArmDevice&) const = default;
+  bool operator==(const SceneMap&) const = default;
 };
 
 struct SceneArm {
   std::string name;                   // "left", "right"
-  ArmDevice device;  // a simulated one, unless a recording or an older file names it
   std::string tool;                   // a tool's id: in hand at first
   std::vector<std::string> other_tools;  // ids of those that it may be given; kMostTools in all
   SceneMap map;
   double max_force_N = 3.3;           // no more than this, whatever the device can give
-  std::optional<ArmDynamics> dynamics;  // of the device that moved it: in recordings
+  bool operator==(const SceneArm&) const = default;
 };
 
 struct SceneView {
   std::string landmark;       // looked at from outside; empty: the whole case from the front
   double distance_mm = 350.0;
   TissueLooks looks;  // to start with; a person may change them
+  bool operator==(const SceneView&) const = default;
 };
 
 struct Scene {
@@ -69,7 +63,6 @@ struct Scene {
   std::vector<Landmark> landmarks;
   std::vector<SceneTool> tools;
   std::vector<SceneArm> arms;
-  std::optional<ArmDevice> pedal;  // the workstation's
   std::vector<LawKind> laws;
   ForceAt force_at = ForceAt::tip;
   RemovalKind removal = RemovalKind::work;
@@ -80,12 +73,12 @@ struct Scene {
   std::optional<SceneCard> card;        // said before it begins
   std::optional<SceneOutline> outline;  // drawn on the tissue
   Locks locks;                          // what is not changed while it is practised
-  bool names_devices = false;           // by a file from when exercises did: saving leaves them out
 
   const SceneTool* findTool(const std::string& id) const;
   // The tools of an arm by number, as ArmParameters counts them; null beyond the last.
   const SceneTool* toolOf(std::size_t arm, std::size_t number) const;
   const Landmark* findLandmarkById(const std::string& id) const;
+  bool operator==(const Scene&) const = default;
 };
 
 // The scene's card in this language, "en" or "zh_TW", or in English where it has no other; null
@@ -99,18 +92,22 @@ const CardText* cardFor(const Scene& scene, std::string_view language);
 void useCase(Scene& scene, const std::string& case_source);
 
 // Files that a scene names are found beside it. Errors: MISSING_FILE, BAD_JSON, BAD_FIELD (file,
-// field and value named), BAD_TISSUE, BAD_SCENE. Arms without a device get simulated ones, one
-// each.
+// field and value named), BAD_TISSUE, BAD_SCENE.
 Result<Scene> readScene(const std::filesystem::path& file);
 Result<Scene> parseScene(const Json& json, const std::filesystem::path& file);
-// A scene as toJson() gives it, from a file that may be anybody's: one that names a file is refused
-// before any is opened. `where` is named in errors.
-Result<Scene> parseSceneAlone(const Json& json, const std::string& where);
-
-// Self-contained: tissues inline and none for elsewhere, no file names, the plugin that moved each
-// arm, no label map, and a case only where it is a phantom (a path could name a patient). What a
-// recording keeps.
+// Self-contained: tissues inline and none for elsewhere, no file names, no label map, and a case only
+// where it is a phantom (a path could name a patient).
 Json toJson(const Scene& scene);
+
+// What a recording keeps: the scene as toJson() gives it, with what moved each arm.
+struct RecordedScene {
+  Scene scene;
+  Rig rig;
+};
+Json toJson(const RecordedScene& recorded);
+// From a file that may be anybody's: one that names a file is refused before any is opened. `where`
+// is named in errors.
+Result<RecordedScene> parseRecordedScene(const Json& json, const std::string& where);
 
 // As a file that readScene() reads: everything, tissues inline and those for elsewhere beside them,
 // files named from the root. Neither the labels of a case nor the devices of its arms are a
@@ -143,8 +140,10 @@ Scene withFixedMaps(const Scene& scene, const std::vector<PlacedLandmark>& landm
 std::vector<LandmarkFrame> armFrames(const Scene& scene,
                                      const std::vector<PlacedLandmark>& landmarks);
 
-// What an arm renders at the scene's rate, in the tissue's own numbers.
-Renderable renderableOn(const SceneArm& arm, double rate_hz);
+// What an arm renders at the scene's rate, in the tissue's own numbers; of an arm whose dynamics are
+// not known, as the usual one.
+Renderable renderableOn(const SceneArm& arm, const std::optional<ArmDynamics>& dynamics,
+                        double rate_hz);
 
 // Damping and stiffness of a tissue, summed over the laws that the scene names.
 Impedance demandedOf(const Scene& scene, const Tissue& tissue);
@@ -154,10 +153,11 @@ struct BoundedTissue {
   std::string arm, tissue;
   Impedance demanded, felt;
 };
-// Empty under another controller than `bounded`. Needs the arms' dynamics.
-std::vector<BoundedTissue> boundedTissues(const Scene& scene);
+// Empty under another controller than `bounded`. Of arms whose dynamics are known.
+std::vector<BoundedTissue> boundedTissues(const Scene& scene, const Rig& rig);
 
-// What the core needs of a scene whose maps are fixed.
-HapticParameters hapticParameters(const Scene& scene);
+// What the core needs of a scene whose maps are fixed. Arms whose dynamics are not known are as the
+// usual one.
+HapticParameters hapticParameters(const Scene& scene, const Rig& rig = {});
 
 }  // namespace trephine

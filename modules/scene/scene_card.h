@@ -17,11 +17,13 @@ struct CardText {
   std::string goal;                // what is to be reached
   std::vector<std::string> steps;  // one after the other; at least one
   std::string hands;               // which tool in which hand, and how to move it
+  bool operator==(const CardText&) const = default;
 };
 
 struct SceneCard {
   CardText en;
   std::optional<CardText> zh_TW;  // Traditional Chinese
+  bool operator==(const SceneCard&) const = default;
 };
 
 SceneCard readSceneCard(JsonReader card);

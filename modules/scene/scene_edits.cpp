@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "scene/scene_structures.h"
+
 namespace trephine {
 
 void SceneHistory::begin(Scene scene) {
@@ -43,7 +45,12 @@ const Scene& SceneHistory::redo() {
 }
 
 bool sameScene(const Scene& a, const Scene& b) {
-  return sceneFile(a) == sceneFile(b);
+  const auto exercise = [](Scene scene) {
+    scene.tissues = unplaced(std::move(scene.tissues));
+    if (scene.tissues_elsewhere) scene.tissues_elsewhere = unplaced(*std::move(scene.tissues_elsewhere));
+    return scene;
+  };
+  return exercise(a) == exercise(b);
 }
 
 SceneMap movedTo(const Scene& scene, std::size_t arm, const std::string& landmark,

@@ -46,8 +46,8 @@ class SceneHistory {
 // Older steps go: a scene with everything is some 20 KB.
 constexpr std::size_t kMostSteps = 500;
 
-// The same file (sceneFile): equal in everything that is felt, cut, drawn or said; neither the
-// labels that a case gives to structures nor what devices say of their arms count.
+// The same exercise: equal in everything that is felt, cut, drawn or said; the labels that a case
+// gives to structures do not count.
 bool sameScene(const Scene& a, const Scene& b);
 
 // The map of an arm that goes with `landmark` from now on, or with "" is fixed where it is in this

@@ -31,24 +31,24 @@ SceneMap readMap(JsonReader map) {
   return out;
 }
 
-// `delay_ticks`: of older recordings, which have it in periods.
-SceneArm readArm(JsonReader& item, const fs::path& folder, int& delay_ticks) {
+SceneArm readArm(JsonReader& item) {
   SceneArm arm;
   arm.name = item.text("name");
-  if (item.has("device")) {
-    JsonReader device = item.object("device");
-    arm.device = readDevice(device, folder);
-  }
   arm.tool = item.text("tool");
   if (item.has("other_tools")) arm.other_tools = item.texts("other_tools", kMostTools - 1);
   arm.map = readMap(item.object("map"));
   readNumbers(item, kArmNumbers, arm);
+  return arm;
+}
+
+// What moved an arm, of a recording.
+Rig::Arm readRigArm(JsonReader& item, const fs::path& folder) {
+  Rig::Arm arm;
+  JsonReader device = item.object("device");
+  arm.device = readDevice(device, folder);
   if (item.has("dynamics")) {
     JsonReader dynamics = item.object("dynamics");
     readNumbers(dynamics, kArmDynamicsNumbers, arm.dynamics.emplace());
-    if (dynamics.has("delay_ticks")) {
-      delay_ticks = int(dynamics.integer("delay_ticks", kDelaySamples));
-    }
   }
   return arm;
 }
@@ -134,6 +134,21 @@ void checkToolsOf(JsonReader& reader, const Scene& scene, const SceneArm& arm) {
   }
 }
 
+// Of a recording: a device moves one arm, and its delay is one that the loop knows.
+void checkRig(JsonReader& reader, const Scene& scene, const Rig& rig) {
+  std::set<std::string> devices;
+  for (std::size_t i = 0; i < rig.arms.size(); ++i) {
+    const auto& [device, dynamics] = rig.arms[i];
+    const std::string& name = scene.arms[i].name;
+    if (!devices.insert(device.plugin + "/" + std::to_string(device.place)).second) {
+      reader.fail("arms", "The arm '" + name + "' uses a device that another arm uses");
+    }
+    if (!dynamics || kDelaySamples.holds(delaySamples(*dynamics, 1.0 / scene.rate_hz))) continue;
+    reader.fail("arms", "The delay of the arm '" + name + "' is longer than " +
+                            std::to_string(kMaxDelayTicks) + " periods of the rate");
+  }
+}
+
 // What one field cannot say: names that must exist, things that must be there once.
 void checkReferences(JsonReader& reader, const Scene& scene) {
   for (const Landmark& landmark : scene.landmarks) {
@@ -153,12 +168,7 @@ void checkReferences(JsonReader& reader, const Scene& scene) {
   checkNamesDiffer(reader, "tools", scene.tools, [](const auto& t) { return t.id; });
   checkNamesDiffer(reader, "arms", scene.arms, [](const auto& a) { return a.name; });
   checkNamesDiffer(reader, "laws", scene.laws, [](LawKind law) { return nameOf(kLawNames, law); });
-  std::set<std::string> devices;
   for (const SceneArm& arm : scene.arms) {
-    const ArmDevice& device = arm.device;
-    if (!devices.insert(device.plugin + "/" + std::to_string(device.place)).second) {
-      reader.fail("arms", "The arm '" + arm.name + "' uses a device that another arm uses");
-    }
     checkToolsOf(reader, scene, arm);
     if (!arm.map.fixed && !scene.findLandmarkById(arm.map.landmark)) {
       reader.fail("arms", "The arm '" + arm.name + "' names the unknown landmark '" +
@@ -184,9 +194,8 @@ Result<TissueSet> readTissues(const Json& value, const fs::path& folder, const s
   return set;
 }
 
-}  // namespace
-
-Result<Scene> parseScene(const Json& json, const fs::path& file) {
+// `rig`: of a recording, which says what moved the arms; null: an exercise, which does not.
+Result<Scene> parse(const Json& json, const fs::path& file, Rig* rig) {
   const fs::path folder = file.parent_path();
   JsonReader reader(json, file.string());
   Scene scene;
@@ -220,12 +229,10 @@ Result<Scene> parseScene(const Json& json, const fs::path& file) {
     scene.landmarks.push_back(readLandmark(item));
   for (JsonReader& item : reader.objects("tools", kMostInAList))
     scene.tools.push_back(readSceneTool(item, folder));
-  std::vector<int> delay_ticks;
   for (JsonReader& item : reader.objects("arms", kMostInAList)) {
-    scene.names_devices = scene.names_devices || item.has("device");
-    scene.arms.push_back(readArm(item, folder, delay_ticks.emplace_back(0)));
+    scene.arms.push_back(readArm(item));
+    if (rig) rig->arms.push_back(readRigArm(item, folder));
   }
-  addSimulatedDevices(scene);
   for (const std::string& name : reader.texts("laws", kMostInAList)) {
     if (auto kind = kindOf(kLawNames, name)) {
       scene.laws.push_back(*kind);
@@ -270,20 +277,10 @@ Result<Scene> parseScene(const Json& json, const fs::path& file) {
   if (reader.has("outline")) scene.outline = readSceneOutline(reader.object("outline"));
   if (reader.has("locks")) scene.locks = readLocks(reader);
   if (reader.ok()) checkReferences(reader, scene);
-  for (std::size_t i = 0; reader.ok() && i < scene.arms.size(); ++i) {
-    if (!scene.arms[i].dynamics) continue;
-    ArmDynamics& dynamics = *scene.arms[i].dynamics;
-    if (delay_ticks[i] > 0) dynamics.delay_s = delay_ticks[i] / scene.rate_hz;
-    if (!kDelaySamples.holds(delaySamples(dynamics, 1.0 / scene.rate_hz))) {
-      reader.fail("arms", "The delay of the arm '" + scene.arms[i].name + "' is longer than " +
-                              std::to_string(kMaxDelayTicks) + " periods of the rate");
-    }
-  }
+  if (rig && reader.ok()) checkRig(reader, scene, *rig);
   if (Status status = reader.finish(); !status) return status.error();
   return scene;
 }
-
-namespace {
 
 // The key of a text that would name a file; empty where there is none.
 std::string namedFile(const Json& json) {
@@ -311,12 +308,20 @@ std::string namedFile(const Json& json) {
 
 }  // namespace
 
-Result<Scene> parseSceneAlone(const Json& json, const std::string& where) {
+Result<RecordedScene> parseRecordedScene(const Json& json, const std::string& where) {
   if (const std::string key = json.is_object() ? namedFile(json) : ""; !key.empty()) {
     return Error{"BAD_FIELD", "It names a file, which no scene of a recording does",
                  where + ": " + key, "Choose a recording that this program made"};
   }
-  return parseScene(json, where);
+  RecordedScene recorded;
+  Result<Scene> scene = parse(json, where, &recorded.rig);
+  if (!scene) return scene.error();
+  recorded.scene = *std::move(scene);
+  return recorded;
+}
+
+Result<Scene> parseScene(const Json& json, const fs::path& file) {
+  return parse(json, file, nullptr);
 }
 
 Result<Scene> readScene(const fs::path& file) {
@@ -328,7 +333,6 @@ Result<Scene> readScene(const fs::path& file) {
 Json sceneFile(const Scene& scene) {
   Scene plain = scene;
   plain.tissues = unplaced(std::move(plain.tissues));
-  for (SceneArm& arm : plain.arms) arm.dynamics.reset();
   Json json = toJson(plain);
   const auto name = [](Json& in, const char* key, const std::string& file) {
     if (!file.empty()) in[key] = file;
@@ -348,7 +352,6 @@ Json sceneFile(const Scene& scene) {
     writeNumbers(tool, kLookNumbers, look);
     tool["axis"] = {look.axis.x, look.axis.y, look.axis.z};
   }
-  for (Json& arm : json["arms"]) arm.erase("device");
   if (scene.view.distance_mm != SceneView{}.distance_mm || !scene.view.landmark.empty()) {
     writeNumbers(json["view"], kViewNumbers, scene.view);
   }
@@ -362,6 +365,18 @@ Status checkEdited(const Scene& scene) {
   // Nobody wrote a file that a schema could help with.
   if (error.next.find("schema") != std::string::npos) error.next = "It stays as it was";
   return error;
+}
+
+Json toJson(const RecordedScene& recorded) {
+  Json json = toJson(recorded.scene);
+  for (std::size_t i = 0; i < recorded.rig.arms.size() && i < json["arms"].size(); ++i) {
+    const auto& [device, dynamics] = recorded.rig.arms[i];
+    Json& arm = json["arms"][i];
+    arm["device"]["plugin"] = device.plugin;
+    writeNumbers(arm["device"], kDeviceNumbers, device);
+    if (dynamics) writeNumbers(arm["dynamics"], kArmDynamicsNumbers, *dynamics);
+  }
+  return json;
 }
 
 Json toJson(const Scene& scene) {
@@ -383,7 +398,7 @@ Json toJson(const Scene& scene) {
   }
   for (const SceneTool& t : scene.tools) tools.push_back(toJson(t));
   for (const SceneArm& a : scene.arms) {
-    Json map, device{{"plugin", a.device.plugin}};
+    Json map;
     if (a.map.fixed) {
       const Quat& q = a.map.fixed->rotation;
       writeNumbers(map, kWorkspaceMapNumbers, *a.map.fixed);
@@ -392,11 +407,9 @@ Json toJson(const Scene& scene) {
       map["landmark"] = a.map.landmark;
       writeNumbers(map, kSceneMapNumbers, a.map);
     }
-    writeNumbers(device, kDeviceNumbers, a.device);
-    Json arm{{"name", a.name}, {"device", device}, {"tool", a.tool}, {"map", map}};
+    Json arm{{"name", a.name}, {"tool", a.tool}, {"map", map}};
     if (!a.other_tools.empty()) arm["other_tools"] = a.other_tools;
     writeNumbers(arm, kArmNumbers, a);
-    if (a.dynamics) writeNumbers(arm["dynamics"], kArmDynamicsNumbers, *a.dynamics);
     arms.push_back(arm);
   }
   for (LawKind law : scene.laws) laws.push_back(nameOf(kLawNames, law));

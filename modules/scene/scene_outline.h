@@ -23,12 +23,14 @@ struct SceneOutline {
   struct Frame {
     std::string landmark;
     LandmarkFrame at;
+    bool operator==(const Frame&) const = default;
   };
 
   std::vector<Vec3> points_mm;  // patient frame; 2 to kOutlinePoints, joined by straight lines
   bool closed = false;          // the last is joined to the first
   double width_mm = 1.0;
   std::optional<Frame> frame;  // none: the points are of one patient
+  bool operator==(const SceneOutline&) const = default;
 };
 
 SceneOutline readSceneOutline(JsonReader outline);

@@ -17,6 +17,7 @@ struct ToolLook {
   std::filesystem::path mesh;
   Vec3 tip_mm{0.0};            // in the mesh's frame
   Vec3 axis{0.0, 0.0, 1.0};    // from the tip to the handle; unit
+  bool operator==(const ToolLook&) const = default;
 };
 
 inline constexpr Names<ToolKind, 3> kToolNames{
@@ -28,6 +29,10 @@ struct SceneTool {
   std::string id;
   Tool tool;
   ToolLook look;
+  // A tool is what it was made from.
+  bool operator==(const SceneTool& other) const {
+    return id == other.id && tool.made_from == other.tool.made_from && look == other.look;
+  }
 };
 
 // A scene's tool: `id` and either `file`, a tool file beside the scene, some of whose numbers the

@@ -61,18 +61,18 @@ Result<std::unique_ptr<Device>> openDevice(const std::string& plugin_name,
   return error;
 }
 
-Status openDevices(Scene& scene, std::vector<LoopDevice>& devices,
+Status openDevices(Scene& scene, Rig& rig, std::vector<LoopDevice>& devices,
                    std::vector<TrephineCapabilities>& capabilities) {
   std::map<std::pair<std::string, std::string>, std::vector<std::size_t>> arms_by_device;
   for (std::size_t i = 0; i < scene.arms.size(); ++i) {
-    const ArmDevice& device = scene.arms[i].device;
+    const ArmDevice& device = rig.arms[i].device;
     arms_by_device[{device.plugin, device.config}].push_back(i);
   }
   capabilities.resize(scene.arms.size());
   for (const auto& [key, arms] : arms_by_device) {
     const auto& [name, config] = key;
     std::vector<std::uint32_t> device_arms;
-    for (std::size_t arm : arms) device_arms.push_back(scene.arms[arm].device.place);
+    for (std::size_t arm : arms) device_arms.push_back(rig.arms[arm].device.place);
     Result<std::unique_ptr<Device>> device = openDevice(name, device_arms, config);
     if (!device) return device.error();
     for (std::size_t i = 0; i < arms.size(); ++i) {
@@ -94,8 +94,8 @@ Status openDevices(Scene& scene, std::vector<LoopDevice>& devices,
     const bool real = !(*device)->takesTargets();
     devices.push_back({*std::move(device), arms, false, real});
   }
-  if (scene.pedal) {
-    const ArmDevice& of = *scene.pedal;
+  if (rig.pedal) {
+    const ArmDevice& of = *rig.pedal;
     Result<std::unique_ptr<Device>> pedal = openDevice(of.plugin, {of.place}, of.config);
     if (!pedal) return pedal.error();
     if ((*pedal)->capabilities(0).input_dof != 0) {
@@ -108,18 +108,19 @@ Status openDevices(Scene& scene, std::vector<LoopDevice>& devices,
   for (const LoopDevice& of : devices) {
     for (std::size_t i = 0; i < of.arms.size(); ++i) {
       SceneArm& arm = scene.arms[of.arms[i]];
+      Rig::Arm& moved = rig.arms[of.arms[i]];
       const TrephineCapabilities& able = capabilities[of.arms[i]];
       const double delay_s = delayOf(of, able);
       if (delay_s * scene.rate_hz > kMaxDelayTicks) {
         return Error{"BAD_SCENE",
-                     "The " + arm.name + " arm's device '" + arm.device.plugin + "' answers " +
+                     "The " + arm.name + " arm's device '" + moved.device.plugin + "' answers " +
                          plainNumber(1e3 * delay_s) + " ms late, more than " +
                          std::to_string(kMaxDelayTicks) + " periods of the scene's " +
                          plainNumber(scene.rate_hz) + " Hz",
                      "rate_hz", "Lower the scene's rate_hz, or use another device"};
       }
       arm.max_force_N = std::min(arm.max_force_N, able.peak_force_N);
-      arm.dynamics =
+      moved.dynamics =
           ArmDynamics{able.apparent_mass_kg,   able.encoder_step_m, arm.max_force_N, delay_s,
                       able.continuous_force_N, able.thermal_s};
     }
@@ -142,15 +143,14 @@ Result<ArmDevice> deviceOf(const FoundArm& wanted, const std::string& arm, const
                "", "Plug it in, or choose another under Devices"};
 }
 
-Status readArmDynamics(Scene& scene, std::vector<Vec3>* workspaces_mm) {
+Status readArmDynamics(const Scene& scene, Rig& rig, std::vector<Vec3>* workspaces_mm) {
   std::vector<LoopDevice> devices;
   std::vector<TrephineCapabilities> capabilities;
   Scene asked = scene;
   for (SceneArm& arm : asked.arms) arm.max_force_N = kPeakForce_N.high;
-  if (Status opened = openDevices(asked, devices, capabilities); !opened) return opened;
-  for (std::size_t i = 0; i < scene.arms.size(); ++i) {
-    scene.arms[i].dynamics = asked.arms[i].dynamics;
-  }
+  Rig answered = rig;
+  if (Status opened = openDevices(asked, answered, devices, capabilities); !opened) return opened;
+  rig = std::move(answered);
   if (!workspaces_mm) return {};
   workspaces_mm->clear();
   for (const TrephineCapabilities& of : capabilities) {

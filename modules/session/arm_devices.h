@@ -20,17 +20,17 @@ Result<std::unique_ptr<Device>> openDevice(const std::string& plugin,
                                            const std::string& config);
 
 // Opens one device for each plugin and file of configuration, holding all of the scene's arms that
-// it moves, without starting it; and the pedal, where there is one.
-// `capabilities` has one an arm afterwards; the arms' dynamics and their force limits [N] are those
-// of the devices. Errors: those of the devices, BAD_SCENE where a device cannot do what the scene
+// it moves by `rig`, without starting it; and the pedal, where there is one.
+// `capabilities` has one an arm afterwards; the dynamics of the rig's arms and the force limits [N]
+// of the scene's are those of the devices. Errors: those of the devices, BAD_SCENE where a device cannot do what the scene
 // asks of it. Any thread that has them alone.
-Status openDevices(Scene& scene, std::vector<LoopDevice>& devices,
+Status openDevices(Scene& scene, Rig& rig, std::vector<LoopDevice>& devices,
                    std::vector<TrephineCapabilities>& capabilities);
 
-// Asks the plugins of the scene's arms what those arms are, without starting them: fills in the
-// arms' dynamics, with the most that the devices give; what the scene asks for stays. And how far
-// each arm reaches: the full extents of its workspace, device axes, mm. Errors: as above.
-Status readArmDynamics(Scene& scene, std::vector<Vec3>* workspaces_mm = nullptr);
+// Asks the plugins of a rig what its arms are, without starting them: fills in their dynamics, with
+// the most that the devices give. And how far each arm reaches: the full extents of its workspace,
+// device axes, mm. `scene` is what it is for. Errors: as above.
+Status readArmDynamics(const Scene& scene, Rig& rig, std::vector<Vec3>* workspaces_mm = nullptr);
 
 // A device that a workstation has chosen for the scene's arm of that name, as it is plugged in now.
 // Errors: NO_DEVICE, or why its plugin cannot be asked.

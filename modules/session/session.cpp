@@ -96,7 +96,9 @@ Status Session::set(const Scene& scene, const Case& of, const SessionOptions& op
   controllers_.emplace_back(controllerName(scene.controller));
 
   std::vector<LoopDevice> devices;
-  if (Status opened = openDevices(scene_, devices, capabilities_); !opened) return opened;
+  rig_ = options.rig;
+  addSimulatedArms(rig_, scene_.arms.size());
+  if (Status opened = openDevices(scene_, rig_, devices, capabilities_); !opened) return opened;
 
   const double needed_mb = exerciseMb(volume.geometry.voxelCount(), rt::LockedMemory::wasHeld());
   if (Status enough = enoughMemory(needed_mb, "The exercise", "the case"); !enough) return enough;
@@ -105,13 +107,13 @@ Status Session::set(const Scene& scene, const Case& of, const SessionOptions& op
   structures_ = of.structures;
   grid_ = std::make_shared<Grid>(Volume(volume), of.labels);
   warnOfAbsentLabels(scene.tissues, of.labels.get());
-  for (const BoundedTissue& b : boundedTissues(scene_)) {
+  for (const BoundedTissue& b : boundedTissues(scene_, rig_)) {
     spdlog::warn("'{}' is firmer than the {} arm shows: of {:.4g} N s/m and {:.4g} N/m, {:.4g} and "
                  "{:.4g} are felt",
                  b.tissue, b.arm, b.demanded.damping, b.demanded.stiffness, b.felt.damping,
                  b.felt.stiffness);
   }
-  core_ = std::make_unique<HapticCore>(hapticParameters(scene_), *grid_->takeWriter());
+  core_ = std::make_unique<HapticCore>(hapticParameters(scene_, rig_), *grid_->takeWriter());
   const std::filesystem::path beside = options.recording.parent_path();
   const Result<std::filesystem::path> journal_folder = beside.empty() ? temporaryFolder() : beside;
   if (!journal_folder) return journal_folder.error();
@@ -144,7 +146,7 @@ Status Session::set(const Scene& scene, const Case& of, const SessionOptions& op
 
   if (!options.recording.empty()) {
     recording_file_ = options.recording;
-    const RecordingHeader header{toJson(scene_), sha256_before_, grid_->geometry(), buildName(),
+    const RecordingHeader header{toJson(RecordedScene{scene_, rig_}), sha256_before_, grid_->geometry(), buildName(),
                                  of.labels ? labelsSha256(*of.labels) : ""};
     Result<std::unique_ptr<SessionRecorder>> recorder =
         SessionRecorder::create(options.recording, header, scene_.arms.size());
@@ -309,7 +311,7 @@ void Session::leaveBehind(std::size_t held, bool watchdog_ended) {
   }
   const bool pedal = stuck.arms.empty();
   const std::string plugin =
-      pedal ? scene_.pedal->plugin : scene_.arms[stuck.arms.front()].device.plugin;
+      pedal ? rig_.pedal->plugin : rig_.arms[stuck.arms.front()].device.plugin;
   left_behind_ = Error{
       "DEVICE_STUCK",
       (pedal                   ? "The pedal stopped answering and was left behind"

@@ -42,6 +42,7 @@ struct SessionOptions {
   // Nothing is cut, whatever the tissues say, and pokes() tells what was felt.
   bool poke = false;
   LoopProbe* probe = nullptr;  // looks on; it outlives the session
+  Rig rig{};  // what moves the arms; those that it lacks are simulated
 };
 
 class Session {
@@ -56,6 +57,7 @@ class Session {
   Session& operator=(const Session&) = delete;
 
   const Scene& scene() const { return scene_; }  // maps fixed, forces within the arms' limits
+  const Rig& rig() const { return rig_; }        // with the dynamics of its devices
   const std::vector<PlacedLandmark>& landmarks() const { return landmarks_; }
   Grid& grid() { return *grid_; }
   // What was cut, also when the session is gone.
@@ -199,6 +201,7 @@ class Session {
   void noteFailure(const Error& error);
 
   Scene scene_;
+  Rig rig_;
   std::vector<PlacedLandmark> landmarks_;
   std::vector<TrephineCapabilities> capabilities_;
   std::string sha256_before_, sha256_after_;

@@ -60,10 +60,6 @@ void cite(Tissue& tissue, const Tissue& before, const TissueSet& declared) {
 
 }  // namespace
 
-bool sameSet(const TissueSet& a, const TissueSet& b) {
-  return toJson(a) == toJson(b);
-}
-
 std::vector<HuRange> freeHu(const TissueSet& set, HuRange span) {
   std::vector<HuRange> held, free;
   for (const Tissue& t : set.tissues) {

@@ -11,9 +11,6 @@ namespace trephine {
 // The source of a number that a person set here.
 inline constexpr const char* kOwnSource = "tuned here, uncited";
 
-// Sources included.
-bool sameSet(const TissueSet& a, const TissueSet& b);
-
 // Both ends included.
 struct HuRange {
   int low = 0;

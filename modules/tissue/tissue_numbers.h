@@ -23,6 +23,7 @@ constexpr Range kMechanicsRange{0, 1e9};
 struct SourcedNumber {
   double value = 0.0;
   std::string source;
+  bool operator==(const SourcedNumber&) const = default;
 };
 
 // `Number` is what a file always gives, `MaybeNumber` what it may give.

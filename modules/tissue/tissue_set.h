@@ -43,6 +43,7 @@ struct Tissue : SetNumbers {
   struct Shell {
     std::string of;
     double thickness_mm = 1.0;
+    bool operator==(const Shell&) const = default;
   };
   std::optional<Shell> shell{};
   bool isAnywhere() const { return !label && structure.empty(); }
@@ -52,6 +53,7 @@ struct Tissue : SetNumbers {
   // A tool stops at a solid tissue until it is cut; absent: solid from kSolidFrom_N_per_m on.
   std::optional<bool> solid;
   bool isSolid() const { return solid.value_or(stiffness_N_per_m.value >= kSolidFrom_N_per_m); }
+  bool operator==(const Tissue&) const = default;
 };
 
 // Whether the two are known in the same voxels, so that their HU must differ.
@@ -65,6 +67,10 @@ struct TissueSet {
   std::string elsewhere_file{};
 
   const Tissue* find(const std::string& id) const;
+  // Sources included; where a set for elsewhere was read from is not a part of it.
+  bool operator==(const TissueSet& other) const {
+    return name == other.name && tissues == other.tissues;
+  }
 };
 
 // Every rule that a set must keep, whether read from a file or typed in a panel: 1 to kMaxTissues

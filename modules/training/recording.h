@@ -11,17 +11,10 @@
 
 namespace trephine {
 
-constexpr int kRecordingVersion = 8;
-// Up to 4 a tool was where its arm was, in bone too: nothing of that can be replayed.
-constexpr int kOldestRecordingVersion = 5;
-// Up to 5 the fields `observer_J` and `alpha` held credit and learnt scale under the controller
-// `bounded`. A reader puts these where they are now.
-constexpr int kLastWithoutCredit = 5;
-// Up to 6 no command was of one arm: a reader finds none named.
-// Up to 7 an arm had one tool; nothing else of the file changed.
+constexpr int kRecordingVersion = 8;  // no older one is read
 
 struct RecordingHeader {
-  Json scene;                 // toJson(Scene) with fixed maps and the controller at the start
+  Json scene;                 // toJson(RecordedScene) with fixed maps and the controller at the start
   std::string volume_sha256;  // before the first tick
   GridGeometry geometry;
   std::string build;

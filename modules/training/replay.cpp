@@ -178,14 +178,15 @@ Result<ReplayResult> replay(const SessionReader& recording, const Volume& volume
                      std::to_string(recording.end()->dropped) + " entries",
                  "the recording", "Record again on a machine with less load"};
   }
-  Result<Scene> scene = parseSceneAlone(header.scene, "the recording");
-  if (!scene) return scene.error();
+  const Result<RecordedScene> recorded = parseRecordedScene(header.scene, "the recording");
+  if (!recorded) return recorded.error();
+  const Scene& scene = recorded->scene;
   Result<std::vector<Event>> events = recording.events();
   if (!events) return events.error();
   Result<std::vector<CarveRecord>> carves = recording.carves();
   if (!carves) return carves.error();
 
-  Result<RecordedLabels> fitted = recordedLabels(header, scene->tissues, labels);
+  Result<RecordedLabels> fitted = recordedLabels(header, scene.tissues, labels);
   if (!fitted) return fitted.error();
 
   const double needed_mb = exerciseMb(volume.geometry.voxelCount());
@@ -194,7 +195,7 @@ Result<ReplayResult> replay(const SessionReader& recording, const Volume& volume
   }
   // The same voxels may come from a file that rounds their place.
   Grid grid(Volume{header.geometry, volume.hu}, fitted->placed);
-  HapticCore core(hapticParameters(*scene), *grid.takeWriter());
+  HapticCore core(hapticParameters(scene, recorded->rig), *grid.takeWriter());
   const Result<std::filesystem::path> temporary = temporaryFolder();
   if (!temporary) return temporary.error();
   Result<std::unique_ptr<JournalFile>> journal_file = JournalFile::create(*temporary);

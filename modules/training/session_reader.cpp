@@ -104,32 +104,6 @@ std::vector<std::string> datasetNames() {
   return names;
 }
 
-// The controller that acts in each tick: the scene's at first, then as the commands say.
-class ControllerInForce {
- public:
-  ControllerInForce(const Json& scene, const std::vector<Event>& events) : events_(events) {
-    const auto named = scene.find("controller");
-    for (const auto& [name, kind] : kControllerNames) {
-      if (named != scene.end() && *named == name) kind_ = kind;
-    }
-  }
-  // Asked tick after tick.
-  ControllerKind at(std::uint64_t tick) {
-    for (; next_ < events_.size() && events_[next_].tick <= tick; ++next_) {
-      const Event& event = events_[next_];
-      const bool changes =
-          event.kind == EventKind::command && event.command.kind == CommandKind::controller;
-      if (changes) kind_ = ControllerKind(event.command.value);
-    }
-    return kind_;
-  }
-
- private:
-  const std::vector<Event>& events_;
-  std::size_t next_ = 0;
-  ControllerKind kind_ = ControllerKind::bounded;
-};
-
 // A grid that this program opened: what it can be is asked where a case is read.
 Result<GridGeometry> readGeometry(JsonReader reader) {
   constexpr double kAny = 1e300;
@@ -159,7 +133,6 @@ struct SessionReader::File {
   hid_t ticks = -1, carves = -1, events = -1;
   std::vector<hid_t> arms;
   std::uint64_t tick_count = 0;
-  int version = kRecordingVersion;
   RecordingHeader header;
   std::optional<RecordingEnd> end;
 
@@ -259,11 +232,11 @@ Result<std::unique_ptr<SessionReader>> SessionReader::open(const std::filesystem
                      std::to_string(kRecordingVersion),
                  path.string(), "Open it with a newer Trephine"};
   }
-  if (version < kOldestRecordingVersion) {
+  if (version < kRecordingVersion) {
     return Error{"OLDER_VERSION",
                  "The recording has version " + std::to_string(version) +
                      " of trephine.session, and this program reads from " +
-                     std::to_string(kOldestRecordingVersion) + " on",
+                     std::to_string(kRecordingVersion) + " on",
                  path.string(), "Open it with the Trephine that made it"};
   }
   const auto scene = readText(f.file, "scene");
@@ -278,7 +251,6 @@ Result<std::unique_ptr<SessionReader>> SessionReader::open(const std::filesystem
   Result<Json> volume_json = parseJson(*volume, path.string());
   if (!volume_json) return f.bad("The recording is damaged: its volume cannot be read");
   JsonReader volume_reader(*volume_json, path.string(), "volume");
-  f.version = version;
   f.header.scene = *std::move(scene_json);
   makePlainLines(f.header.scene);
   f.header.volume_sha256 = volume_reader.text("sha256");
@@ -333,10 +305,7 @@ const std::optional<RecordingEnd>& SessionReader::end() const { return file_->en
 
 Result<std::vector<TickRecord>> SessionReader::ticks(std::uint64_t first, std::uint64_t count) const {
   std::vector<TickRecord> out;
-  if (file_->read(first, count, out)) {
-    if (Status moved = moveCredit(out); !moved) return moved.error();
-    return out;
-  }
+  if (file_->read(first, count, out)) return out;
   // The first tick that cannot be read lies in [damaged, last].
   std::uint64_t damaged = first, last = first + count - 1;
   while (damaged < last) {
@@ -348,22 +317,6 @@ Result<std::vector<TickRecord>> SessionReader::ticks(std::uint64_t first, std::u
     }
   }
   return file_->bad("The recording is damaged from tick " + std::to_string(damaged) + " on");
-}
-
-// Of a recording of version 5: credit and learnt scale of `bounded` into their own fields.
-Status SessionReader::moveCredit(std::vector<TickRecord>& ticks) const {
-  if (file_->version > kLastWithoutCredit) return {};
-  const Result<std::vector<Event>> recorded = events();
-  if (!recorded) return recorded.error();
-  ControllerInForce controller(file_->header.scene, *recorded);
-  for (TickRecord& tick : ticks) {
-    if (controller.at(tick.tick) != ControllerKind::bounded) continue;
-    for (ArmRecord& arm : tick.arms) {
-      arm.credit_J = std::exchange(arm.observer_J, 0.0);
-      arm.learnt_scale = std::exchange(arm.alpha, 0.0);
-    }
-  }
-  return {};
 }
 
 Result<std::vector<Event>> SessionReader::events() const {

@@ -1,5 +1,4 @@
-// Reads a recording, also one that was cut short or is still being written. Older versions come out
-// as the newest has them.
+// Reads a recording, also one that was cut short or is still being written.
 #pragma once
 
 #include <filesystem>
@@ -33,15 +32,13 @@ class SessionReader {
   // Nothing when the recording was cut short.
   const std::optional<RecordingEnd>& end() const;
 
-  // Ticks [first, first + count). Errors: BAD_RECORDING, with the first tick that cannot be read,
-  // or where version 5's events cannot.
+  // Ticks [first, first + count). Errors: BAD_RECORDING, with the first tick that cannot be read.
   Result<std::vector<TickRecord>> ticks(std::uint64_t first, std::uint64_t count) const;
   Result<std::vector<Event>> events() const;
   Result<std::vector<CarveRecord>> carves() const;
 
  private:
   SessionReader();
-  Status moveCredit(std::vector<TickRecord>& ticks) const;
   struct File;
   std::unique_ptr<File> file_;
 };

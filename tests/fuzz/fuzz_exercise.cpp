@@ -88,8 +88,9 @@ void expectSaid(const Error& error) {
 }
 
 // What was accepted must be fit to be felt.
-void run(const Scene& scene, const OperatorScript& script) {
-  const SessionOptions options{{}, script};
+void run(const Scene& scene, const OperatorScript& script, const Rig& rig = {}) {
+  SessionOptions options{{}, script};
+  options.rig = rig;
   Result<std::unique_ptr<Session>> session =
       Session::create(scene, test::placed(scene, smallHead()), options);
   if (!session) return expectSaid(session.error());
@@ -105,11 +106,11 @@ void run(const Scene& scene, const OperatorScript& script) {
   toText(report);
 }
 
-void runScene(const Result<Scene>& scene) {
+void runScene(const Result<Scene>& scene, const Rig& rig = {}) {
   if (!scene) return expectSaid(scene.error());
   const Result<OperatorScript> script = dive(*scene);
   if (!script) return expectSaid(script.error());
-  run(*scene, *script);
+  run(*scene, *script, rig);
 }
 
 // The shipped scene of the burr, with one of its files replaced by the input.
@@ -117,9 +118,12 @@ void runWith(const Files& files, Kind kind) {
   Json scene = *readJsonFile(files.scene("burr-hole.json"));
   if (kind == kTool) scene["tools"][0]["file"] = "../tools/input.json";
   if (kind == kTissues) scene["tissues"] = "../tissues/input.json";
-  if (kind == kDevice)
-    scene["arms"][0]["device"] = {{"plugin", "simulated"}, {"config", "../devices/input.json"}};
-  runScene(parseScene(scene, files.scene("burr-hole.json")));
+  Rig rig;
+  if (kind == kDevice) {
+    const fs::path config = files.root() / "devices" / "input.json";
+    rig.arms.push_back({{kSimulated, 0, config.string()}, {}});
+  }
+  runScene(parseScene(scene, files.scene("burr-hole.json")), rig);
 }
 
 void runScript(const Files& files, const fs::path& file) {

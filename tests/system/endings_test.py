@@ -211,14 +211,16 @@ class Stuck(EndingTest):
         scene = resources / "scenes" / "cranium.json"
         head = small_head(scene.parent / "head.nii.gz")
         text = json.loads(scene.read_text()) | {"case": head.name}
-        for place, arm in enumerate(text["arms"]):
-            arm["device"] = {"plugin": "simulated", "arm": place, "config": str(arms)}
         scene.write_text(json.dumps(text))
+        moved = [{"name": arm["name"], "plugin": "simulated", "arm": place, "config": str(arms)}
+                 for place, arm in enumerate(text["arms"])]
+        self.arms = self.folder / "arms.json"
+        self.arms.write_text(json.dumps({"format": "trephine.arms", "version": 1, "arms": moved}))
         return scene
 
     def test_a_run_lists_the_faults_and_exits_4(self):
         scene = self.scene_with(block_after_s=0.5, block_for_s=3600)
-        process = self.start(LAB, "run", scene, "--realtime", "--seconds", 3000, "--out",
+        process = self.start(LAB, "run", scene, "--arms", self.arms, "--realtime", "--seconds", 3000, "--out",
                              self.folder / "out", "--json")
         code, answer = self.end(process)
         self.assertEqual(code, 4)
@@ -228,7 +230,7 @@ class Stuck(EndingTest):
     @unittest.skipUnless(os.environ.get("DISPLAY"), "needs a display")
     def test_an_exercise_that_nobody_watches_ends_and_lists_them(self):
         scene = self.scene_with(block_after_s=0.5, block_for_s=3600)
-        process = self.start(WINDOW, "--exercise", scene, "--seconds", 3000, "--out",
+        process = self.start(WINDOW, "--exercise", scene, "--arms", self.arms, "--seconds", 3000, "--out",
                              self.folder / "out", "--json")
         code, answer = self.end(process)
         self.assertEqual(code, 0)

@@ -42,7 +42,7 @@ Result<ExerciseOutcome> runExercise(const ExerciseOptions& options, const Progre
   if (!options.arms.empty()) {
     Result<std::vector<NamedDevice>> read = readArmsFile(options.arms);
     if (!read) return read.error();
-    if (Status used = useArms(*scene, *read, options.arms); !used) return used.error();
+    if (Result<Rig> rig = rigWith(*scene, *read, options.arms); !rig) return rig.error();
     arms = *std::move(read);
   }
   if (Status made = makeFolder(options.out); !made) return made.error();

@@ -519,7 +519,7 @@ void PrepareWorkspace::saveInCase(Bench::Next then) {
         in_case_ = changes;
         if (tissues) {
           workstation_.tissuesSaved(*tissues);
-          tissues_touched_ = !sameSet(*tissues, workstation_.scene()->tissues);
+          tissues_touched_ = *tissues != workstation_.scene()->tissues;
         }
         if (then) then();
       });

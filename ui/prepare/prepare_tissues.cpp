@@ -67,7 +67,7 @@ void PrepareWorkspace::showTab() {
 void PrepareWorkspace::showRenderable(ControllerKind in_force) {
   const Scene& scene = *workstation_.scene();
   tissues_->setRenderable(
-      armsLimit(withForceLimit(scene)),
+      armsLimit(withForceLimit(scene), workstation_.rig()),
       [scene](const Tissue& tissue) { return demandedOf(scene, tissue); }, scene.laws,
       scene.removal, in_force);
 }
@@ -113,7 +113,7 @@ void PrepareWorkspace::showSeen() {
   }
   SeenTissues seen = withStructures(set, looks, rows, structure_looks_);
   structures_->showLooks(seen.structures);
-  if (seen_ && sameSet(seen_->tissues, seen.tissues) && seen_->looks == seen.looks) return;
+  if (seen_ && seen_->tissues == seen.tissues && seen_->looks == seen.looks) return;
   seen_ = std::move(seen);
   view_->setTissues(seen_->tissues, seen_->looks);
 }

@@ -470,11 +470,7 @@ void ToolsPanel::addArm() {
   };
   more.name = !named("left") ? "left" : !named("right") ? "right" : "arm-3";
   for (int n = 3; named(more.name); ++n) more.name = "arm-" + std::to_string(n);
-  more.device = {};
-  editScene(arm_problem_, "add arm", [&](Scene& scene) {
-    scene.arms.push_back(more);
-    addSimulatedDevices(scene);
-  });
+  editScene(arm_problem_, "add arm", [&](Scene& scene) { scene.arms.push_back(more); });
   arm_->setCurrentIndex(arm_->count() - 1);
   showArm();
   emit armChosen();

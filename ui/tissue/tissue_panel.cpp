@@ -640,7 +640,7 @@ Status TissuePanel::apply(const Tissue& wanted, const QString& what) {
 }
 
 Status TissuePanel::applySet(const TissueSet& set, const QString& what) {
-  if (sameSet(set, tissues_)) return {};
+  if (set == tissues_) return {};
   if (Status valid = validate(set, ""); !valid) return valid;
   tissues_ = set;
   set_name_->setText(toQt(tissues_.name));

@@ -40,7 +40,7 @@ void chooseArm(const std::string& arm, const std::optional<FoundArm>& device) {
                             : QStringList());
 }
 
-Status useArms(Scene& scene, const ArmsOfPlace& chosen) {
+Result<Rig> rigOf(const Scene& scene, const ArmsOfPlace& chosen) {
   std::vector<NamedDevice> devices;
   std::optional<FoundArms> here;
   std::vector<std::string> names;
@@ -54,7 +54,7 @@ Status useArms(Scene& scene, const ArmsOfPlace& chosen) {
     if (!device) return device.error();
     devices.push_back({name, *std::move(device)});
   }
-  return devices.empty() ? Status() : useArms(scene, devices, "Devices");
+  return rigWith(scene, devices, "Devices");
 }
 
 Scene withForceLimit(Scene scene) {

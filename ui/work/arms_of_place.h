@@ -17,9 +17,9 @@ using ArmsOfPlace = std::map<std::string, FoundArm>;
 ArmsOfPlace armsOfThisPlace();
 void chooseArm(const std::string& arm, const std::optional<FoundArm>& device);
 
-// The scene's arms of these names move by these devices. It asks what is plugged in: not on the
-// window's thread. Errors: those of deviceOf().
-Status useArms(Scene& scene, const ArmsOfPlace& chosen);
+// The scene's arms of these names moved by these devices, the others simulated. It asks what is
+// plugged in: not on the window's thread. Errors: those of deviceOf() and rigWith().
+Result<Rig> rigOf(const Scene& scene, const ArmsOfPlace& chosen);
 
 // No arm gives more than the settings allow.
 Scene withForceLimit(Scene scene);

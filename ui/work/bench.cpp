@@ -54,7 +54,6 @@ Bench::Bench(QMainWindow& window, std::filesystem::path recordings, const Policy
     if (carved_) showWholeCase();
   });
   connect(&workstation_, &Workstation::saved, this, &Bench::say);
-  connect(&workstation_, &Workstation::noticed, this, &Bench::say);
   connect(&workstation_, &Workstation::failed, this, [this](const Error& error) {
     once_open_ = Place::prepare;
     report(error);

@@ -17,15 +17,11 @@ namespace trephine {
 
 namespace {
 
-bool wantsRealArms(const Scene& scene, const ArmsOfPlace& chosen) {
-  const auto is_real = [](const SceneArm& arm) { return arm.device.plugin != kSimulated; };
-  return !chosen.empty() || std::ranges::any_of(scene.arms, is_real);
-}
-
 // Arms are opened by one at a time; who wants none of them need not wait.
-Status armsAreFree(std::unique_lock<std::timed_mutex>& lock, const Scene& scene,
+Status armsAreFree(std::unique_lock<std::timed_mutex>& lock, const Rig& rig,
                    const ArmsOfPlace& chosen) {
-  if (!wantsRealArms(scene, chosen)) return {};
+  const auto is_real = [](const Rig::Arm& arm) { return arm.device.plugin != kSimulated; };
+  if (chosen.empty() && std::ranges::none_of(rig.arms, is_real)) return {};
   if (lock.try_lock_for(std::chrono::seconds(10))) return {};
   return Error{
       "ARMS_BUSY", "Looking for arms has not come to an end: a device does not answer", "",
@@ -85,9 +81,9 @@ void Workstation::begin(const std::filesystem::path& recordings,
   if (!arms_) {
     practised = withForceLimit(std::move(practised));
     chosen = armsOfThisPlace();
-  } else if (Status used = useArms(practised, *arms_, {}); !used) {
-    return fail(used.error());
   }
+  Result<Rig> rig = rigWith(practised, arms_.value_or(std::vector<NamedDevice>()), {});
+  if (!rig) return fail(rig.error());
   setPhase(Phase::starting);
   // The name is the time: nothing of the patient, nothing of the folder.
   const std::string stem =
@@ -97,17 +93,19 @@ void Workstation::begin(const std::filesystem::path& recordings,
   const TissueTable tissues = tissueTable(scene_->tissues);
   const bool again = case_->misfit || !(placed_with_ == tissues);
   running_.run(
-      [scene = std::move(practised), chosen, opens = opens_arms_, of = *case_, again, recordings,
-       stem, poke, script = std::move(script)](
+      [scene = std::move(practised), rig = *std::move(rig), chosen, opens = opens_arms_,
+       of = *case_, again, recordings, stem, poke, script = std::move(script)](
           const Progress& progress) mutable -> Result<std::unique_ptr<Session>> {
         std::unique_lock lock(*opens, std::defer_lock);
-        if (Status had = armsAreFree(lock, scene, chosen); !had) return had.error();
-        if (Status used = useArms(scene, chosen); !used) return used.error();
+        if (Status had = armsAreFree(lock, rig, chosen); !had) return had.error();
+        Result<Rig> used = chosen.empty() ? Result<Rig>(std::move(rig)) : rigOf(scene, chosen);
+        if (!used) return used.error();
         if (Status made = poke ? Status() : makeFolder(recordings); !made) return made.error();
         const Result<Case> placed = again ? placedIn(scene, of, progress, hideNamesOf) : of;
         if (!placed) return placed.error();
         const auto file = poke ? std::filesystem::path() : freshFile(recordings, stem, ".h5");
-        return Session::create(scene, *placed, {file, script, true, poke});
+        return Session::create(scene, *placed,
+                               {file, script, true, poke, nullptr, *std::move(used)});
       },
       [this, seconds, tissues](Result<std::unique_ptr<Session>> created) {
         if (!created) return notStarted(created.error());
@@ -177,15 +175,8 @@ void Workstation::lendArms(bool lent) {
 // As simulated, at once, and then as chosen. An arm that is not there now may be when the exercise
 // starts, which then says so.
 void Workstation::readArms() {
-  Scene simulated = *scene_;
-  for (SceneArm& arm : simulated.arms) {
-    if (arm.device.plugin != kSimulated) arm.device = {};
-  }
-  addSimulatedDevices(simulated);
-  if (!readArmDynamics(simulated, &workspaces_mm_)) workspaces_mm_.clear();
-  for (std::size_t i = 0; i < scene_->arms.size(); ++i) {
-    scene_->arms[i].dynamics = simulated.arms[i].dynamics;
-  }
+  rig_ = simulatedRig(*scene_);
+  if (!readArmDynamics(*scene_, rig_, &workspaces_mm_)) workspaces_mm_.clear();
   emit armsAnswered();
   askArms();
 }
@@ -194,31 +185,29 @@ void Workstation::askArms() {
   const ArmsOfPlace chosen = arms_ ? ArmsOfPlace() : armsOfThisPlace();
   const bool free = phase_ == Phase::ready || phase_ == Phase::empty;
   if (!scene_ || !free || lent_) return;
-  if (!wantsRealArms(*scene_, chosen)) return;
+  if (chosen.empty()) return;
   if (asking_.busy()) {
     ask_again_ = true;
     return;
   }
   asking_.run(
-      [scene = *scene_, chosen, opens = opens_arms_](
-          const Progress&) mutable -> Result<std::pair<Scene, std::vector<Vec3>>> {
+      [scene = *scene_, chosen,
+       opens = opens_arms_](const Progress&) -> Result<std::pair<Rig, std::vector<Vec3>>> {
         std::unique_lock lock(*opens, std::defer_lock);
-        if (Status had = armsAreFree(lock, scene, chosen); !had) return had.error();
-        if (Status used = useArms(scene, chosen); !used) return used.error();
+        if (Status had = armsAreFree(lock, {}, chosen); !had) return had.error();
+        Result<Rig> rig = rigOf(scene, chosen);
+        if (!rig) return rig.error();
         std::vector<Vec3> workspaces_mm;
-        if (Status asked = readArmDynamics(scene, &workspaces_mm); !asked) return asked.error();
-        return std::pair(std::move(scene), std::move(workspaces_mm));
+        if (Status asked = readArmDynamics(scene, *rig, &workspaces_mm); !asked) {
+          return asked.error();
+        }
+        return std::pair(*std::move(rig), std::move(workspaces_mm));
       },
-      [this](Result<std::pair<Scene, std::vector<Vec3>>> asked) {
+      [this, arms = scene_->arms](Result<std::pair<Rig, std::vector<Vec3>>> asked) {
         if (std::exchange(ask_again_, false)) return askArms();
         const auto name = &SceneArm::name;
-        if (!asked || !scene_ ||
-            !std::ranges::equal(asked->first.arms, scene_->arms, {}, name, name)) {
-          return;
-        }
-        for (std::size_t i = 0; i < scene_->arms.size(); ++i) {
-          scene_->arms[i].dynamics = asked->first.arms[i].dynamics;
-        }
+        if (!asked || !scene_ || !std::ranges::equal(arms, scene_->arms, {}, name, name)) return;
+        rig_ = std::move(asked->first);
         workspaces_mm_ = std::move(asked->second);
         emit armsAnswered();
       });

@@ -99,6 +99,8 @@ class Workstation : public QObject {
   void lendArms(bool lent);
   // Held while arms are opened.
   const std::shared_ptr<std::timed_mutex>& opensArms() const { return opens_arms_; }
+  // What moves the arms of scene() here, as far as it has been asked.
+  const Rig& rig() const { return rig_; }
   // How far each arm of scene() reaches, device axes, mm; empty where an arm is not there.
   const std::vector<Vec3>& workspaces_mm() const { return workspaces_mm_; }
 
@@ -229,7 +231,6 @@ class Workstation : public QObject {
   void savingProgressed(double fraction, const QString& step);
   void savingEnded();
   void saved(const QString& what);
-  void noticed(const QString& what);  // to know, and nothing to do
   void failed(const trephine::Error& error);
 
  private:
@@ -276,6 +277,7 @@ class Workstation : public QObject {
 
   Policy policy_;
   std::optional<std::vector<NamedDevice>> arms_;
+  Rig rig_;
   std::vector<Vec3> workspaces_mm_;
   bool unlocked_ = false;
   Phase phase_ = Phase::empty;

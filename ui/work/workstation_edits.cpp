@@ -25,26 +25,12 @@ void keepCase(Scene& scene, const Scene& of) {
 }
 
 bool samePlaces(const Scene& a, const Scene& b) {
-  const auto places = [](const Scene& scene) {
-    Json json = toJson(scene).at("landmarks");
-    json.push_back(scene.structures);
-    json.push_back(scene.anatomy);  // whether the case is one for it is said with its places
-    for (const Tissue& t : scene.tissues.tissues) {
-      json.push_back({t.id, t.structure, t.shell ? t.shell->of : "",
-                      t.shell ? t.shell->thickness_mm : 0.0});
-    }
-    return json;
+  const auto same_place = [](const Tissue& one, const Tissue& other) {
+    return one.id == other.id && one.structure == other.structure && one.shell == other.shell;
   };
-  return places(a) == places(b);
-}
-
-bool sameLandmark(const Landmark& a, const Landmark& b) {
-  const auto whole = [](const Landmark& landmark) {
-    Scene scene;
-    scene.landmarks = {landmark};
-    return toJson(scene).at("landmarks");
-  };
-  return whole(a) == whole(b);
+  // Whether the case is one for the anatomy is said with its places.
+  return a.landmarks == b.landmarks && a.structures == b.structures && a.anatomy == b.anatomy &&
+         std::ranges::equal(a.tissues.tissues, b.tissues.tissues, same_place);
 }
 
 // The files beside the scene: what a save copies into the exercise's folder.
@@ -55,22 +41,17 @@ bool sameFiles(const Scene& a, const Scene& b) {
              [](const SceneTool& t) { return t.look.mesh; });
 }
 
-bool sameElsewhere(const Scene& a, const Scene& b) {
-  const auto &one = a.tissues_elsewhere, &other = b.tissues_elsewhere;
-  return one && other ? sameSet(*one, *other) : one.has_value() == other.has_value();
-}
-
 bool sameDevices(const Scene& a, const Scene& b) {
   return a.rate_hz == b.rate_hz &&
          std::ranges::equal(a.arms, b.arms, [](const SceneArm& one, const SceneArm& other) {
-           return one.name == other.name && one.device == other.device;
+           return one.name == other.name;
          });
 }
 
 }  // namespace
 
 Status Workstation::mayEdit(const Scene& wanted) const {
-  if (!sameSet(wanted.tissues, scene_->tissues)) {
+  if (wanted.tissues != scene_->tissues) {
     if (Status may = notLocked(Lock::tissues, "The tissues are"); !may) return may;
   }
   const auto id = &Tissue::id;
@@ -137,11 +118,11 @@ bool Workstation::take(Scene wanted) {
   const bool places_stay = samePlaces(wanted, *scene_);
   const bool devices_stay = sameDevices(wanted, *scene_);
   const bool live_alone = sameScene(withLiveOf(wanted, *scene_), *scene_);
-  if (!sameElsewhere(wanted, *scene_)) {
+  if (wanted.tissues_elsewhere != scene_->tissues_elsewhere) {
     one_set_ = !wanted.tissues_elsewhere;
     elsewhere_ = wanted.tissues_elsewhere;
   }
-  const bool new_set = !sameSet(wanted.tissues, scene_->tissues);
+  const bool new_set = wanted.tissues != scene_->tissues;
   const bool new_controller = wanted.controller != scene_->controller;
   const ControllerKind controller = wanted.controller;
   scene_ = std::move(wanted);
@@ -167,7 +148,7 @@ void Workstation::placeEdited() {
 
 bool Workstation::isEntry(const Landmark& landmark) const {
   const Landmark* of_file = opened_scene_.findLandmarkById(landmark.id);
-  return landmark.is_place && of_file && !sameLandmark(landmark, *of_file);
+  return landmark.is_place && of_file && landmark != *of_file;
 }
 
 const Landmark* Workstation::entry() const {
@@ -262,7 +243,6 @@ void Workstation::exerciseSaved(const std::filesystem::path& file) {
   for (std::size_t i = 0; i < scene_->tools.size() && i < saved->tools.size(); ++i) {
     scene_->tools[i].look.mesh = saved->tools[i].look.mesh;
   }
-  scene_->names_devices = false;
   opened_scene_ = *scene_;
   declared_tissues_ = scene_->tissues;
   replaced ? history_.begin(*scene_) : history_.settle(*scene_);
@@ -284,10 +264,7 @@ Scene Workstation::asEdited(Scene file, bool another_case) const {
     const Landmark* of_file = file.findLandmarkById(landmark.id);
     if (another_case && of_file && isEntry(landmark)) landmark = *of_file;
   }
-  const auto outline = [](const Scene& scene) {
-    return scene.outline ? toJson(*scene.outline) : Json();
-  };
-  if (outline(opened_scene_) == outline(*scene_)) out.outline = file.outline;
+  if (opened_scene_.outline == scene_->outline) out.outline = file.outline;
   out.tissues = file.tissues;
   out.tissues_elsewhere = file.tissues_elsewhere;
   if (one_set_) out.tissues_elsewhere.reset();

@@ -64,8 +64,6 @@ Result<Scene> Workstation::allowedScene(const std::filesystem::path& file, const
   Result<Scene> scene = readScene(file);
   if (!scene) return scene;
   if (Status may = policy ? checkScene(*policy, *scene, file) : Status(); !may) return may.error();
-  // An arm that is not there now may be when the exercise starts, which then asks again.
-  (void)readArmDynamics(*scene);
   return scene;
 }
 
@@ -421,11 +419,6 @@ void Workstation::opened(Result<Opened> outcome) {
   if (outcome->no_structures) fail(*outcome->no_structures);
   if (outcome->no_tissues && may_edit) fail(*outcome->no_tissues);
   if (case_->misfit) fail(*case_->misfit);
-  if (scene_->names_devices) {
-    emit noticed(
-        tr("This exercise names devices, as exercises did before: it is run on them where nothing "
-           "else is chosen under Devices, and saving it leaves them out."));
-  }
   readArms();
 }
 

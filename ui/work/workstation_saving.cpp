@@ -22,7 +22,7 @@ Error busySaving() {
 }  // namespace
 
 bool Workstation::tissuesEdited() const {
-  return scene_ && !sameSet(scene_->tissues, declared_tissues_);
+  return scene_ && scene_->tissues != declared_tissues_;
 }
 
 void Workstation::saveTissues(const std::filesystem::path& file, std::function<void()> then) {

@@ -72,21 +72,18 @@ Status plugIn(Subject& subject) {
 }
 
 // The first moves the right arm.
-Status moveBy(Scene& scene, const std::vector<FoundArm>& arms) {
+Result<Rig> rigOf(const Scene& scene, const std::vector<FoundArm>& arms) {
   std::vector<NamedDevice> devices;
   for (std::size_t i = 0; i < arms.size() && i < scene.arms.size(); ++i) {
     const std::string side = scene.arms.size() > 1 ? kSides[i] : scene.arms[0].name;
     devices.push_back({side, {arms[i].plugin, arms[i].place, deviceFile(arms[i].plugin)}});
   }
-  return useArms(scene, devices, "the arms");
+  return rigWith(scene, devices, "the arms");
 }
 
 Result<Scene> sceneOn(const std::vector<FoundArm>& arms) {
   const char* name = arms.size() > 1 ? "cranium.json" : "cranium-one-arm.json";
-  Result<Scene> scene = readScene(resourceFolder() / "scenes" / name);
-  if (!scene) return scene;
-  if (Status moved = moveBy(*scene, arms); !moved) return moved.error();
-  return scene;
+  return readScene(resourceFolder() / "scenes" / name);
 }
 
 std::int64_t hostTime_ns() {
@@ -164,8 +161,11 @@ Status runClosedLoop(const Subject& subject, double seconds, DeviceRow& row,
   const Result<Case> of = openCase(*scene);
   if (!of) return of.error();
   LoopWatch watch(std::size_t((seconds + 10.0) * kRate_hz));
+  Result<Rig> rig = rigOf(*scene, subject.arms);
+  if (!rig) return rig.error();
   SessionOptions options;
   options.probe = &watch;
+  options.rig = *rig;
   Result<std::unique_ptr<Session>> session = Session::create(*scene, *of, options);
   if (!session) return session.error();
   if (Status started = (*session)->start(seconds); !started) return started;
@@ -203,7 +203,7 @@ Status runClosedLoop(const Subject& subject, double seconds, DeviceRow& row,
   for (std::size_t arm = 0; subject.bench && arm < subject.arms.size(); ++arm) {
     std::vector<LoopWatch::Tick> ticks;
     for (std::size_t i = 0; i < watch.ticks(arm); ++i) ticks.push_back(watch.tick(arm, i));
-    addAnswers(ticks, *subject.bench, scene->arms[arm].device.place, answers);
+    addAnswers(ticks, *subject.bench, rig->arms[arm].device.place, answers);
   }
   const bool told = answers.told > 0;
   row.at_the_arm = answers.felt > 0;
@@ -424,6 +424,9 @@ Result<DeviceTrial> tryDevice(const TrialOptions& options, const fs::path& recor
   SessionOptions session_options;
   session_options.probe = &watch;
   session_options.recording = recording;
+  Result<Rig> rig = rigOf(*scene, subject.arms);
+  if (!rig) return rig.error();
+  session_options.rig = *std::move(rig);
   Result<std::unique_ptr<Session>> session = Session::create(*scene, *of, session_options);
   if (!session) return session.error();
   if (Status started = (*session)->start(30.0); !started) return started.error();

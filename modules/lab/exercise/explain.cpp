@@ -91,7 +91,7 @@ double removalNs() {
 }
 
 // What a run of the scene's own script in its own case would warn of: of its beginning alone.
-Result<Json> warningsAtStart(Scene& scene, const Progress& progress) {
+Result<Json> warningsAtStart(Scene& scene, const Rig& rig, const Progress& progress) {
   if (scene.case_source.empty() || scene.operator_file.empty()) return Json(nullptr);
   Result<OperatorScript> script = readOperatorScript(scene.operator_file, scene);
   if (!script) return script.error();
@@ -104,7 +104,7 @@ Result<Json> warningsAtStart(Scene& scene, const Progress& progress) {
     return enough.error();
   }
   Grid grid(Volume(*of->volume), of->labels);
-  HapticCore core(hapticParameters(fixed), *grid.takeWriter());
+  HapticCore core(hapticParameters(fixed, rig), *grid.takeWriter());
   std::array<OperatorSetPoint, kMaxArms> set_points{};
   ScriptOperator(*script, fixed, armFrames(scene, of->landmarks))
       .setPoints(0, set_points.data(), scene.arms.size());
@@ -174,11 +174,14 @@ std::vector<std::pair<std::string, std::string>> sceneSettings(const Scene& scen
 
 Result<Json> explainScene(Scene scene, const std::vector<RecommendedSetting>& recommended,
                           const Progress& progress) {
-  if (Status asked = readArmDynamics(scene); !asked) return asked.error();
-  for (SceneArm& arm : scene.arms) arm.max_force_N = mostForce_N(arm);
-  const Result<Json> warnings = warningsAtStart(scene, Progress(progress, 0.0, 0.5));
+  Rig rig = simulatedRig(scene);
+  if (Status asked = readArmDynamics(scene, rig); !asked) return asked.error();
+  for (std::size_t i = 0; i < scene.arms.size(); ++i) {
+    scene.arms[i].max_force_N = mostForce_N(scene.arms[i], rig.arms[i].dynamics);
+  }
+  const Result<Json> warnings = warningsAtStart(scene, rig, Progress(progress, 0.0, 0.5));
   if (!warnings) return warnings.error();
-  HapticParameters parameters = hapticParameters(scene);
+  HapticParameters parameters = hapticParameters(scene, rig);
   for (int i = 0; i < parameters.tissues.count; ++i) {
     parameters.tissues.classes[std::size_t(i)].cuttable = 0;
   }
@@ -197,10 +200,10 @@ Result<Json> explainScene(Scene scene, const std::vector<RecommendedSetting>& re
   for (std::size_t i = 0; i < scene.arms.size(); ++i) {
     const SceneArm& arm = scene.arms[i];
     const Tool& tool = parameters.arms[i].tool;
-    const Renderable most = renderableOn(arm, scene.rate_hz);
+    const Renderable most = renderableOn(arm, rig.arms[i].dynamics, scene.rate_hz);
     arms.push_back(
         {{"name", arm.name},
-         {"plugin", arm.device.plugin},
+         {"plugin", rig.arms[i].device.plugin},
          {"tool", arm.tool},
          {"other_tools", arm.other_tools},
          {"points", tool.points_m.size()},
@@ -306,7 +309,7 @@ Result<Json> explainScene(Scene scene, const std::vector<RecommendedSetting>& re
   for (const Tissue& tissue : scene.tissues.tissues) tissues.push_back(tissue.id);
   for (LawKind kind : scene.laws) laws.push_back(nameOf(kLawNames, kind));
   Json bounded = Json::array();
-  for (const BoundedTissue& b : boundedTissues(scene)) {
+  for (const BoundedTissue& b : boundedTissues(scene, rig)) {
     bounded.push_back({{"arm", b.arm},
                        {"tissue", b.tissue},
                        {"damping_Ns_per_m", b.demanded.damping},

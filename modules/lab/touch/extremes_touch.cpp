@@ -287,7 +287,7 @@ Volume bonyBlock() {
 // ---- what does not shake, soften or stay away
 
 ExtremeRow atRest(const PlacedScene& liver) {
-  HapticParameters parameters = withoutMotors(liver.scene);
+  HapticParameters parameters = withoutMotors(hapticParameters(liver.scene, liver.rig));
   std::vector<RigArm> arms;
   std::vector<HoldPath> paths;
   const TissueTable tissues = tissueTable(liver.scene.tissues);

@@ -18,8 +18,11 @@ Result<PlacedScene> placeScene(const std::string& name, const std::string& case_
                                const Progress& progress) {
   Result<Scene> scene = readScene(resourceFolder() / "scenes" / (name + ".json"));
   if (!scene) return scene.error();
-  if (Status asked = readArmDynamics(*scene); !asked) return asked.error();
-  for (SceneArm& arm : scene->arms) arm.max_force_N = mostForce_N(arm);
+  Rig rig = simulatedRig(*scene);
+  if (Status asked = readArmDynamics(*scene, rig); !asked) return asked.error();
+  for (std::size_t i = 0; i < scene->arms.size(); ++i) {
+    scene->arms[i].max_force_N = mostForce_N(scene->arms[i], rig.arms[i].dynamics);
+  }
   if (!case_source.empty()) useCase(*scene, case_source);
   const Result<Case> of = openCase(*scene, progress);
   if (!of) return of.error();
@@ -29,7 +32,7 @@ Result<PlacedScene> placeScene(const std::string& name, const std::string& case_
     return Error{warning.code, warning.text, "scene '" + name + "'",
                  "Choose a case of the scene's anatomy"};
   }
-  return PlacedScene{withFixedMaps(*scene, of->landmarks), of->volume, of->labels,
+  return PlacedScene{withFixedMaps(*scene, of->landmarks), std::move(rig), of->volume, of->labels,
                      armFrames(*scene, of->landmarks)};
 }
 
@@ -39,8 +42,7 @@ Tool withoutMotor(const Tool& tool) {
   return off;
 }
 
-HapticParameters withoutMotors(const Scene& scene) {
-  HapticParameters parameters = hapticParameters(scene);
+HapticParameters withoutMotors(HapticParameters parameters) {
   for (ArmParameters& arm : parameters.arms) arm.tool = withoutMotor(arm.tool);
   parameters.journal_voxels = 1 << 20;
   parameters.journal_seconds = 4096;

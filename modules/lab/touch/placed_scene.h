@@ -17,7 +17,8 @@ namespace trephine {
 std::vector<std::string> shippedScenes();
 
 struct PlacedScene {
-  Scene scene;  // maps fixed, dynamics of the devices that it names
+  Scene scene;  // maps fixed
+  Rig rig;      // simulated arms, with their dynamics
   std::shared_ptr<const Volume> volume;
   std::shared_ptr<const LabelMap> labels;  // null: none
   std::vector<LandmarkFrame> frames;  // by arm: its landmark
@@ -26,8 +27,8 @@ struct PlacedScene {
 Result<PlacedScene> placeScene(const std::string& name, const std::string& case_source,
                                const Progress& progress);
 
-// What the core needs of it, every tool's motor switched off, with a small journal.
-HapticParameters withoutMotors(const Scene& scene);
+// Every tool's motor switched off, with a small journal.
+HapticParameters withoutMotors(HapticParameters parameters);
 Tool withoutMotor(const Tool& tool);
 
 // The arm that a claim describes, held by a hand.

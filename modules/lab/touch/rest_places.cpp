@@ -22,7 +22,7 @@ HoldCell cellOf(const std::string& name, const PlacedScene& placed,
                 const std::shared_ptr<const Volume>& volume, const Impedance& hand) {
   HoldCell cell;
   cell.scene = name;
-  cell.parameters = withoutMotors(placed.scene);
+  cell.parameters = withoutMotors(hapticParameters(placed.scene, placed.rig));
   cell.volume = volume;
   cell.labels = placed.labels;
   for (std::size_t i = 0; i < placed.scene.arms.size(); ++i) {
@@ -129,7 +129,7 @@ void addBlocks(const Scene& scene, const std::vector<const SceneTool*>& tools,
           cell.tools = {tool->id};
           cell.volume = volume;
           cell.labels = labels;
-          cell.parameters = withoutMotors(scene);
+          cell.parameters = withoutMotors(hapticParameters(scene));
           cell.parameters.laws = laws;
           cell.parameters.arms = {{withoutMotor(tool->tool), WorkspaceMap{}, 3.3, arm.dynamics}};
           cell.rig = {rigArmOf(arm.dynamics, {4.0, 600.0})};

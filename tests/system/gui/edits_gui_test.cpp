@@ -102,7 +102,7 @@ class EditsGuiTest : public test::WindowTest {
       }
     }
     showTissues();
-    QVERIFY(sameSet(workstation().scene()->tissues, tissues));
+    QVERIFY(workstation().scene()->tissues == tissues);
     QCOMPARE(controller->currentIndex(), controller_was);
     QCOMPARE(scenes->currentIndex(), scene_was);
     QCOMPARE(find<QTabWidget>("prepareTabs")->currentIndex(), 0);

@@ -253,7 +253,8 @@ class ExerciseGuiTest : public test::WindowTest {
     find<QToolButton>("addArm")->click();
     QCOMPARE(scene().arms.size(), std::size_t(3));
     QCOMPARE(scene().arms[2].name, std::string("left"));
-    QCOMPARE(scene().arms[2].device.place, 2u);
+    QCOMPARE(workstation().rig().arms.size(), std::size_t(3));
+    QCOMPARE(workstation().rig().arms[2].device.place, 2u);
     QVERIFY2(!find<QLabel>("armProblem")->isVisible(),
              qPrintable(find<QLabel>("armProblem")->text()));
     find<QToolButton>("removeArm")->click();

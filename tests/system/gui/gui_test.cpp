@@ -313,8 +313,9 @@ class GuiTest : public test::WindowTest {
     auto* felt = find<QLabel>("tissueFelt");
     QVERIFY(!felt->isVisible());
     const std::optional<Scene>& scene = workstation().scene();
-    QVERIFY(scene->arms[0].dynamics.has_value());
-    const double most = renderableOn(scene->arms[0], scene->rate_hz).k_max;
+    const Rig& rig = workstation().rig();
+    QVERIFY(rig.arms[0].dynamics.has_value());
+    const double most = renderableOn(scene->arms[0], rig.arms[0].dynamics, scene->rate_hz).k_max;
     auto* box = find<QDoubleSpinBox>("stiffness");
     const double before = box->value();
     box->setValue(1e6);

@@ -304,16 +304,11 @@ class OddSavesGuiTest : public test::WindowTest {
   void anArmThatGoesAwayIsSaidWithWhatToDoAndNothingIsLost() {
     const std::filesystem::path folder = toPath(temporary_.path());
     const std::filesystem::path file = test::sceneOn(test::coarseCranium(2), folder, "vanishing");
-    Json scene = *readJsonFile(file);
     Json device = *readJsonFile(resourceFolder() / "devices" / "omni.json");
     device["vanish_after_s"] = 1.5;
     QVERIFY(writeTextFile(folder / "vanishing-arm.json", device.dump()));
-    for (std::size_t i = 0; i < 2; ++i) {
-      scene["arms"][i]["device"] = {{"plugin", "simulated"},
-                                    {"arm", i},
-                                    {"config", (folder / "vanishing-arm.json").string()}};
-    }
-    QVERIFY(writeTextFile(file, scene.dump()));
+    const std::string config = (folder / "vanishing-arm.json").string();
+    workstation().setArms({{"left", {kSimulated, 0, config}}, {"right", {kSimulated, 1, config}}});
     QSignalSpy opened(&workstation(), &Workstation::caseOpened);
     window_->open(file);
     QVERIFY(opened.count() == 1 || opened.wait(kLong_ms));

@@ -153,7 +153,7 @@ class PrepareGuiTest : public test::WindowTest {
     QCOMPARE(find<QSpinBox>("huLow")->value(), tissue("bone").hu_min);
     QCOMPARE(QString::fromStdString(tissue("bone").hu_source), QString(kOwnSource));
     find<QAction>("undo")->trigger();
-    QVERIFY(sameSet(tissues(), before));
+    QVERIFY(tissues() == before);
     QCOMPARE(listText("bone"), share);
     QTRY_VERIFY(differing(window_->view().grab().toImage(), head) < 0.01);
     find<QAction>("redo")->trigger();
@@ -210,7 +210,7 @@ class PrepareGuiTest : public test::WindowTest {
     key(&histogram(), Qt::Key_0);
     QCOMPARE(histogram().xOf(low), shown);
     undoAll();
-    QVERIFY(sameSet(tissues(), before));
+    QVERIFY(tissues() == before);
   }
 
   void aRangeThatAnotherHoldsIsRefusedBesideItsFieldAndHatched() {
@@ -221,7 +221,7 @@ class PrepareGuiTest : public test::WindowTest {
     QVERIFY(problem->isVisible());
     QVERIFY(problem->text().contains("overlap"));
     QVERIFY2(problem->text().contains("\"Bone\""), qPrintable(problem->text()));
-    QVERIFY(sameSet(tissues(), before));
+    QVERIFY(tissues() == before);
     const QImage band = histogram().grab().toImage();
     QVERIFY(pixelsOf(band, colours::kBad, 40) > 20);
     keepGrab("prepare-overlap.png");
@@ -242,7 +242,7 @@ class PrepareGuiTest : public test::WindowTest {
     QCOMPARE(tissues().tissues[0].name, std::string("Air of sinuses"));
     QVERIFY(listText(tissues().tissues[0].id.c_str()).startsWith("Air of sinuses"));
     QTest::mouseClick(find<QToolButton>("removeTissue"), Qt::LeftButton);
-    QVERIFY(sameSet(tissues(), before));
+    QVERIFY(tissues() == before);
     // What a landmark of the exercise is on goes, and it is said where it is on now.
     QString said;
     const auto listening = connect(window_->findChild<Bench*>(), &Bench::said, this,
@@ -255,7 +255,7 @@ class PrepareGuiTest : public test::WindowTest {
     QTRY_VERIFY_WITH_TIMEOUT(!workstation().isOpening(), kLong_ms);
     undoAll();
     QTRY_VERIFY_WITH_TIMEOUT(!workstation().isOpening(), kLong_ms);
-    QVERIFY(sameSet(tissues(), before));
+    QVERIFY(tissues() == before);
   }
 
   void everyNumberOfTheMechanicsReachesTheScene() {
@@ -347,13 +347,13 @@ class PrepareGuiTest : public test::WindowTest {
     QTRY_VERIFY_WITH_TIMEOUT(!workstation().isSaving(), kLong_ms);
     undoAll();
     QTRY_VERIFY_WITH_TIMEOUT(!workstation().isOpening(), kLong_ms);
-    QVERIFY(sameSet(tissues(), before));
+    QVERIFY(tissues() == before);
     choose("importSet");
     auto* import = find<QFileDialog>("importSetDialog");
     emit import->fileSelected(file);
     import->close();
     QTRY_VERIFY_WITH_TIMEOUT(!workstation().isOpening(), kLong_ms);
-    QVERIFY(sameSet(tissues(), mine));
+    QVERIFY(tissues() == mine);
     undoAll();
     QTRY_VERIFY_WITH_TIMEOUT(!workstation().isOpening(), kLong_ms);
   }
@@ -373,7 +373,7 @@ class PrepareGuiTest : public test::WindowTest {
     const Error error = failed[0][0].value<Error>();
     QVERIFY2(error.what.find('2') != std::string::npos, error.what.c_str());
     for (QMessageBox* box : window_->findChildren<QMessageBox*>()) box->close();
-    QVERIFY(sameSet(tissues(), before));
+    QVERIFY(tissues() == before);
   }
 
   // The force that a poke meets is the tissue's, an edit is felt while it goes on, and nothing is

@@ -443,7 +443,7 @@ class TrainGuiTest : public test::TrainTest {
     others.tissues.back().hu_max += 10;
     workstation().setTissues(others);
     workstation().setController(ControllerKind::off);
-    QVERIFY(sameSet(workstation().scene()->tissues, tissues));
+    QVERIFY(workstation().scene()->tissues == tissues);
     QVERIFY(workstation().scene()->controller == ControllerKind::bounded);
     for (QMessageBox* box : window_->findChildren<QMessageBox*>("errorDialog")) box->close();
     rest();
@@ -472,7 +472,7 @@ class TrainGuiTest : public test::TrainTest {
     QTRY_VERIFY(window_->findChild<QMessageBox*>("unsavedTissues"));
     find<QMessageBox>("unsavedTissues")->button(QMessageBox::Discard)->click();
     QTRY_VERIFY(workstation().anyLocked());
-    QVERIFY(sameSet(workstation().scene()->tissues, tissues));
+    QVERIFY(workstation().scene()->tissues == tissues);
     QVERIFY(workstation().scene()->controller == ControllerKind::bounded);
     QCOMPARE(find<QLabel>("locked")->text(), "Locked");
     QVERIFY(!find<QComboBox>("controller")->isEnabled());

@@ -40,60 +40,62 @@ struct ArmsFile : ::testing::Test {
   test::TemporaryFolder folder;
 };
 
-TEST_F(ArmsFile, GivesTheArmsOfItsNamesTheirDevicesAndTheOthersKeepTheirs) {
+TEST_F(ArmsFile, GivesTheArmsOfItsNamesTheirDevicesAndTheOthersSimulatedOnes) {
   const auto devices = read(twoArms());
   ASSERT_TRUE(devices) << devices.error().sentence();
-  Scene scene = twoArmedScene();
-  const Scene before = scene;
-  ASSERT_TRUE(useArms(scene, *devices, "arms.json").ok());
-  EXPECT_EQ(scene.arms[0].device.plugin, "woodenhaptics");
-  EXPECT_EQ(scene.arms[0].device.place, 1u);
-  EXPECT_EQ(scene.arms[0].device.config, (folder / "open.json").string());
-  EXPECT_EQ(scene.arms[1].device.plugin, "simulated");
-  EXPECT_EQ(scene.arms[1].device.place, 0u);
-  EXPECT_EQ(scene.arms[1].device.config, (resourceFolder() / "devices" / "omni.json").string())
+  const Scene scene = twoArmedScene();
+  const auto rig = rigWith(scene, *devices, "arms.json");
+  ASSERT_TRUE(rig.ok());
+  EXPECT_EQ(rig->arms[0].device,
+            (ArmDevice{"woodenhaptics", 1, (folder / "open.json").string()}));
+  EXPECT_EQ(rig->arms[1].device, (ArmDevice{"simulated", 0, usualArmFile()}))
       << "a simulated one without a file is the usual one";
-  scene = before;
-  ASSERT_TRUE(useArms(scene, {(*devices)[0]}, "arms.json").ok());
-  EXPECT_EQ(scene.arms[1].device, before.arms[1].device);
+  const auto one = rigWith(scene, {(*devices)[0]}, "arms.json");
+  ASSERT_TRUE(one.ok());
+  EXPECT_EQ(one->arms[1], simulatedRig(scene).arms[1]);
 }
 
 TEST_F(ArmsFile, ASimulatedArmThatIsTakenIsMadeUpForByTheNext) {
-  Scene scene = twoArmedScene();
-  ASSERT_EQ(scene.arms[1].device.place, 1u);
-  ASSERT_TRUE(useArms(scene, {{"left", {"simulated", 1, "mine.json"}}}, "arms.json").ok());
-  EXPECT_EQ(scene.arms[0].device, (ArmDevice{"simulated", 1, "mine.json"}));
-  EXPECT_EQ(scene.arms[1].device.plugin, "simulated");
-  EXPECT_EQ(scene.arms[1].device.place, 0u);
-}
-
-TEST(SceneDevices, EachArmOfAnExerciseHasASimulatedOneUntilTheWorkstationNamesAnother) {
   const Scene scene = twoArmedScene();
-  const std::string omni = (resourceFolder() / "devices" / "omni.json").string();
-  EXPECT_FALSE(scene.names_devices);
-  for (std::uint32_t i = 0; i < 2; ++i) {
-    EXPECT_EQ(scene.arms[i].device, (ArmDevice{"simulated", i, omni}));
-  }
-  Json json = sceneFile(scene);
-  for (const Json& arm : json["arms"]) EXPECT_FALSE(arm.contains("device"));
+  ASSERT_EQ(simulatedRig(scene).arms[1].device.place, 1u);
+  const auto rig = rigWith(scene, {{"left", {"simulated", 1, "mine.json"}}}, "arms.json");
+  ASSERT_TRUE(rig.ok());
+  EXPECT_EQ(rig->arms[0].device, (ArmDevice{"simulated", 1, "mine.json"}));
+  EXPECT_EQ(rig->arms[1].device, (ArmDevice{"simulated", 0, usualArmFile()}));
 }
 
-TEST(SceneDevices, ADeviceInAnOlderExerciseIsItsArmsDefaultAndSavingLeavesItOut) {
-  Json json = sceneFile(twoArmedScene());
-  json["arms"][0]["device"] = {{"plugin", "simulated"}, {"arm", 1}};
-  const Result<Scene> scene = parseScene(json, "older.json");
-  ASSERT_TRUE(scene) << scene.error().sentence();
-  EXPECT_TRUE(scene->names_devices);
-  EXPECT_EQ(scene->arms[0].device, (ArmDevice{"simulated", 1, ""}));
-  EXPECT_EQ(scene->arms[1].device.place, 0u) << "the next that nobody has";
-  EXPECT_FALSE(sceneFile(*scene)["arms"][0].contains("device"));
-  EXPECT_EQ(toJson(*scene)["arms"][0]["device"]["arm"], 1) << "a recording says what moved it";
+TEST(SceneDevices, AnExerciseSaysNothingOfThemAndARecordingDoes) {
+  const Scene scene = twoArmedScene();
+  for (const Json& written : {sceneFile(scene), toJson(scene)}) {
+    for (const Json& arm : written["arms"]) EXPECT_FALSE(arm.contains("device"));
+  }
+  Json named = sceneFile(scene);
+  named["arms"][0]["device"] = {{"plugin", "simulated"}, {"arm", 1}};
+  const Result<Scene> refused = parseScene(named, "exercise.json");
+  ASSERT_FALSE(refused.ok());
+  EXPECT_NE(refused.error().sentence().find("device"), std::string::npos);
+
+  RecordedScene recorded{scene, simulatedRig(scene)};
+  recorded.rig.arms[0].dynamics = ArmDynamics{0.1, 1e-5, 3.3, 0.0031, 3.3, 0.0};
+  const auto again = parseRecordedScene(toJson(recorded), "the recording");
+  ASSERT_TRUE(again.ok()) << again.error().sentence();
+  EXPECT_EQ(toJson(*again), toJson(recorded));
+  EXPECT_EQ(again->rig.arms[1].device.place, 1u);
+  EXPECT_EQ(again->rig.arms[0].dynamics->delay_s, 0.0031);
+  // More periods than the loop can know of.
+  recorded.rig.arms[0].dynamics->delay_s = 0.017;
+  EXPECT_FALSE(parseRecordedScene(toJson(recorded), "the recording").ok());
+  recorded.rig = simulatedRig(scene);
+  recorded.rig.arms[1].device.place = 0;
+  const auto twice = parseRecordedScene(toJson(recorded), "the recording");
+  ASSERT_FALSE(twice.ok());
+  EXPECT_NE(twice.error().what.find("'right' uses a device that another arm uses"),
+            std::string::npos);
 }
 
 TEST_F(ArmsFile, AnArmThatTheSceneDoesNotHaveIsNamedWithThoseThatItHas) {
-  Scene scene = twoArmedScene();
-  const Status used = useArms(scene, {{"middle", {"simulated", 0, ""}}}, "arms.json");
-  ASSERT_FALSE(used);
+  const auto used = rigWith(twoArmedScene(), {{"middle", {"simulated", 0, ""}}}, "arms.json");
+  ASSERT_FALSE(used.ok());
   EXPECT_EQ(used.error().code, "NO_SUCH_ARM");
   for (const char* part : {"'middle'", "left, right", "arms.json"}) {
     EXPECT_NE(used.error().sentence().find(part), std::string::npos) << used.error().sentence();
@@ -101,10 +103,10 @@ TEST_F(ArmsFile, AnArmThatTheSceneDoesNotHaveIsNamedWithThoseThatItHas) {
 }
 
 TEST_F(ArmsFile, TwoArmsCannotHaveOneDevice) {
-  Scene scene = twoArmedScene();
-  const Status used = useArms(
-      scene, {{"left", {"openhaptics", 0, ""}}, {"right", {"openhaptics", 0, ""}}}, "arms.json");
-  ASSERT_FALSE(used);
+  const auto used = rigWith(twoArmedScene(),
+                            {{"left", {"openhaptics", 0, ""}}, {"right", {"openhaptics", 0, ""}}},
+                            "arms.json");
+  ASSERT_FALSE(used.ok());
   EXPECT_NE(used.error().what.find("one device, 'openhaptics' 0"), std::string::npos);
 }
 

@@ -131,11 +131,6 @@ TEST(Scene, NamesFileFieldAndValueOfWhatIsWrong) {
        "arms[0].other_tools", "7"},
       {"bad scale", [](Json& s) { s["arms"][0]["map"]["motion_scale"] = -1; }, "motion_scale",
        "-1"},
-      {"same device",
-       [](Json& s) {
-         s["arms"][0]["device"] = s["arms"][1]["device"] = {{"plugin", "touch"}};
-       },
-       "arms", "right"},
       {"long tool", [](Json& s) { s["tools"][0]["length_mm"] = 2000; }, "tools[0].length_mm",
        "1000"},
       {"no points", [](Json& s) { s["tools"][0]["points"] = 0; }, "tools[0].points", "0"},
@@ -185,11 +180,6 @@ TEST(Scene, NamesFileFieldAndValueOfWhatIsWrong) {
        "arms[0].map.rotation_wxyz", "0.5"},
       {"no force", [](Json& s) { s["arms"][0]["map"]["force_scale"] = 1e-308; },
        "arms[0].map.force_scale", "1e-308"},
-      {"no device arm",
-       [](Json& s) {
-         s["arms"][0]["device"] = {{"plugin", "touch"}, {"arm", -3}};
-       },
-       "arms[0].device.arm", "-3"},
       {"strong arm", [](Json& s) { s["arms"][0]["max_force_N"] = 1e300; }, "arms[0].max_force_N",
        "1e+300"},
       {"outward",
@@ -225,11 +215,6 @@ TEST(Scene, AFileNameThatCannotBeIsAnErrorLikeAMissingFile) {
   const std::string name = std::string(300, 'x') + ".json";
   const Bad cases[] = {
       {"operator", [](Json&) {}, "operator", ""},
-      {"device",
-       [](Json& s) {
-         s["arms"][0]["device"] = {{"plugin", "touch"}, {"config", s["operator"]}};
-       },
-       "config", ""},
       {"mesh",
        [](Json& s) {
          s["tools"][0] = {{"id", "blade"}, {"kind", "blade"}, {"length_mm", 16}, {"points", 16}};
@@ -258,33 +243,14 @@ TEST(Scene, IsWrittenWithEveryNumberThatItIsReadWith) {
   json["arms"][0]["map"]["motion_scale"] = 2.0;
   json["arms"][0]["map"]["force_scale"] = 0.5;
   json["arms"][0]["map"]["offset_mm"] = {1.0, 2.0, 3.0};
-  json["arms"][0]["dynamics"] = {
-      {"apparent_mass_kg", 0.1}, {"encoder_step_m", 1e-5}, {"delay_s", 0.0031}};
   const Result<Scene> scene = parseScene(json, shippedFile());
   ASSERT_TRUE(scene.ok()) << scene.error().sentence();
   const Json written = toJson(*scene);
   for (const char* at :
        {"/rate_hz", "/view/distance_mm", "/landmarks/0/run_mm", "/arms/0/max_force_N",
-        "/arms/0/map/motion_scale", "/arms/0/map/force_scale", "/arms/0/map/offset_mm",
-        "/arms/0/dynamics/apparent_mass_kg", "/arms/0/dynamics/encoder_step_m",
-        "/arms/0/dynamics/delay_s"}) {
+        "/arms/0/map/motion_scale", "/arms/0/map/force_scale", "/arms/0/map/offset_mm"}) {
     EXPECT_EQ(written.at(Json::json_pointer(at)), json.at(Json::json_pointer(at))) << at;
   }
-}
-
-TEST(Scene, OfAnOlderRecordingHasItsDelayInPeriodsAndNoneHasMoreThanSixteen) {
-  Json json = shipped();
-  json["arms"][0]["dynamics"] = {
-      {"apparent_mass_kg", 0.1}, {"encoder_step_m", 1e-5}, {"delay_ticks", 0}};
-  const Result<Scene> scene = parseScene(json, shippedFile());
-  ASSERT_TRUE(scene.ok()) << scene.error().sentence();
-  EXPECT_EQ(scene->arms[0].dynamics->delay_s, 0.0);
-  json["arms"][0]["dynamics"]["delay_ticks"] = 2;
-  json["rate_hz"] = 2000.0;
-  EXPECT_EQ(parseScene(json, shippedFile())->arms[0].dynamics->delay_s, 0.001);
-  json["arms"][0]["dynamics"].erase("delay_ticks");
-  json["arms"][0]["dynamics"]["delay_s"] = 0.0085;  // 17 periods
-  EXPECT_FALSE(parseScene(json, shippedFile()).ok());
 }
 
 TEST(Scene, SaysHowTissuesLookAndIsWrittenWithIt) {

@@ -21,9 +21,11 @@ Error errorWithDeviceFile(const std::function<void(Json&)>& change, double rate_
   change(device);
   EXPECT_TRUE(writeTextFile(folder / "device.json", device.dump()));
   Scene scene = *readScene(resourceFolder() / "scenes" / "cranium-one-arm.json");
-  scene.arms[0].device.config = (folder / "device.json").string();
   scene.rate_hz = rate_hz;
-  const auto session = Session::create(scene, test::placed(scene, smallHead()), {});
+  SessionOptions options;
+  options.rig = simulatedRig(scene);
+  options.rig.arms[0].device.config = (folder / "device.json").string();
+  const auto session = Session::create(scene, test::placed(scene, smallHead()), options);
   return session ? Error{} : session.error();
 }
 
@@ -38,14 +40,16 @@ TEST(Session, NamesFileFieldAndValueOfAWrongDeviceFile) {
 
 TEST(Session, RefusesADeviceFileNestedWithoutEndAndOneThatIsAPipe) {
   test::TemporaryFolder folder;
-  Scene scene = *readScene(resourceFolder() / "scenes" / "cranium-one-arm.json");
+  const Scene scene = *readScene(resourceFolder() / "scenes" / "cranium-one-arm.json");
+  SessionOptions options;
+  options.rig = simulatedRig(scene);
   const std::size_t depth = 100'000;
   ASSERT_TRUE(writeTextFile(folder / "deep.json", R"({"format": )" + std::string(depth, '[') +
                                                       std::string(depth, ']') + "}"));
   ASSERT_EQ(::mkfifo((folder / "pipe.json").c_str(), 0600), 0);
   for (const char* name : {"deep.json", "pipe.json"}) {
-    scene.arms[0].device.config = (folder / name).string();
-    const auto session = Session::create(scene, test::placed(scene, smallHead()), {});
+    options.rig.arms[0].device.config = (folder / name).string();
+    const auto session = Session::create(scene, test::placed(scene, smallHead()), options);
     ASSERT_FALSE(session.ok()) << name;
     EXPECT_NE(session.error().where.find(name), std::string::npos) << session.error().sentence();
   }
@@ -62,9 +66,11 @@ TEST(Session, RefusesARateThatTheDeviceCannotKeep) {
 }
 
 TEST(Session, SaysWhenAPluginIsMissing) {
-  Scene scene = cranium();
-  scene.arms[0].device.plugin = scene.arms[1].device.plugin = "nosuch";
-  auto session = Session::create(scene, test::placed(scene, smallHead()), {});
+  const Scene scene = cranium();
+  SessionOptions options;
+  options.rig = simulatedRig(scene);
+  for (Rig::Arm& arm : options.rig.arms) arm.device.plugin = "nosuch";
+  auto session = Session::create(scene, test::placed(scene, smallHead()), options);
   ASSERT_FALSE(session.ok());
   EXPECT_EQ(session.error().code, "NO_PLUGIN");
 }

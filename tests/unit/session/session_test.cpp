@@ -407,14 +407,19 @@ std::string arms(const std::filesystem::path& folder, const Json& more) {
   return file.string();
 }
 
+// Simulated arms by that file.
+Rig rigOf(const Scene& scene, const std::string& config) {
+  Rig rig = simulatedRig(scene);
+  for (Rig::Arm& arm : rig.arms) arm.device.config = config;
+  return rig;
+}
+
 TEST(Session, NamesTheArmsThatWereLostInItsReport) {
   test::TemporaryFolder folder;
-  Scene scene = cranium();
-  for (SceneArm& arm : scene.arms) {
-    arm.device.config = arms(folder.path(), {{"vanish_after_s", 0.3}});
-  }
-  auto session =
-      *Session::create(scene, test::placed(scene, smallHead()), scripted(folder / "s.h5"));
+  const Scene scene = cranium();
+  SessionOptions options = scripted(folder / "s.h5");
+  options.rig = rigOf(scene, arms(folder.path(), {{"vanish_after_s", 0.3}}));
+  auto session = *Session::create(scene, test::placed(scene, smallHead()), options);
   ASSERT_TRUE(session->freewheel(0.5).ok());
   const RunReport report = session->report();
   ASSERT_EQ(report.faults.size(), 2u);
@@ -425,7 +430,6 @@ TEST(Session, NamesTheArmsThatWereLostInItsReport) {
   EXPECT_NE(toText(report).find("FAULT at 0.300 s, left: the arm did not answer"),
             std::string::npos);
 
-  scene = cranium();
   auto sound = *Session::create(scene, test::placed(scene, smallHead()), scripted());
   ASSERT_TRUE(sound->freewheel(0.5).ok());
   EXPECT_TRUE(sound->report().faults.empty());
@@ -560,12 +564,10 @@ TEST(Session, KeepsAScriptsCommandsWhileItsVoxelsAreRead) {
 // A device that returns late: force away, back, and the same in the replay.
 TEST(Session, AStallIsAFaultInTheReportAndReplaysIdentically) {
   test::TemporaryFolder folder;
-  Scene scene = cranium();
-  for (SceneArm& arm : scene.arms) {
-    arm.device.config = arms(folder.path(), {{"block_after_s", 0.3}, {"block_for_s", 0.1}});
-  }
-  auto session =
-      *Session::create(scene, test::placed(scene, smallHead()), scripted(folder / "s.h5"));
+  const Scene scene = cranium();
+  SessionOptions options = scripted(folder / "s.h5");
+  options.rig = rigOf(scene, arms(folder.path(), {{"block_after_s", 0.3}, {"block_for_s", 0.1}}));
+  auto session = *Session::create(scene, test::placed(scene, smallHead()), options);
   ASSERT_TRUE(session->start(0.6).ok());
   ASSERT_TRUE(waitUntil([&] { return session->finished(); }));
   ASSERT_TRUE(session->stop().ok());

@@ -17,22 +17,27 @@ Volume block() {
   return test::shells(64, 1.5, {{40, 1200}});
 }
 
+Scene cranium() {
+  return *readScene(resourceFolder() / "scenes" / "cranium.json");
+}
+
 // Arms whose reading blocks at 0.3 s for `block_s`.
-Scene scene(const std::filesystem::path& folder, double block_s) {
-  Scene scene = *readScene(resourceFolder() / "scenes" / "cranium.json");
+Rig blocking(const std::filesystem::path& folder, double block_s) {
   Json json = *readJsonFile(resourceFolder() / "devices" / "omni.json");
   json.update({{"block_after_s", 0.3}, {"block_for_s", block_s}});
   std::ofstream(folder / "arms.json") << json.dump();
-  for (SceneArm& arm : scene.arms) arm.device.config = (folder / "arms.json").string();
-  return scene;
+  Rig rig = simulatedRig(cranium());
+  for (Rig::Arm& arm : rig.arms) arm.device.config = (folder / "arms.json").string();
+  return rig;
 }
 
 TEST(StuckDevice, IsLeftBehindByStopAndNotOfferedAgain) {
   test::TemporaryFolder folder;
   constexpr double kBlock_s = 3.0;
-  const Scene blocking = scene(folder.path(), kBlock_s);
-  const OperatorScript script = *readOperatorScript(blocking.operator_file, blocking);
-  auto made = Session::create(blocking, test::placed(blocking, block()), {folder / "s.h5", script});
+  const Scene scene = cranium();
+  SessionOptions options{folder / "s.h5", *readOperatorScript(scene.operator_file, scene)};
+  options.rig = blocking(folder.path(), kBlock_s);
+  auto made = Session::create(scene, test::placed(scene, block()), options);
   ASSERT_TRUE(made.ok()) << made.error().sentence();
   auto session = *std::move(made);
   ASSERT_TRUE(session->start(60.0).ok());
@@ -48,8 +53,9 @@ TEST(StuckDevice, IsLeftBehindByStopAndNotOfferedAgain) {
   EXPECT_EQ(session->leftBehind()->code, "DEVICE_STUCK");
   EXPECT_NE(session->leftBehind()->what.find("'left'"), std::string::npos);
 
-  const auto again = Session::create(scene(folder.path(), 0.0),
-                                     test::placed(scene(folder.path(), 0.0), block()), {});
+  SessionOptions without;
+  without.rig = blocking(folder.path(), 0.0);
+  const auto again = Session::create(scene, test::placed(scene, block()), without);
   ASSERT_FALSE(again.ok());
   EXPECT_EQ(again.error().code, "DEVICE_STUCK");
   EXPECT_EQ(test::threadsNamed("haptic").size(), 1u) << "the call still blocks";

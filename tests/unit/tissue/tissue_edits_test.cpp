@@ -36,7 +36,7 @@ TEST(FreeHu, ATissueOfALabelHoldsNothingWhereTheLabelIsNot) {
 
 TEST(SameSet, SeesNumbersSourcesLabelsAndColours) {
   const TissueSet set{"", {tissue("soft", 0, 200)}};
-  EXPECT_TRUE(sameSet(set, set));
+  EXPECT_TRUE(TissueSet(set) == set);
   for (const auto& change : std::vector<void (*)(Tissue&)>{
            [](Tissue& t) { t.hu_min = 1; }, [](Tissue& t) { t.label = 3; },
            [](Tissue& t) { t.colour.x = 0.25; }, [](Tissue& t) { t.damping_Ns_per_m.value = 3.0; },
@@ -46,7 +46,7 @@ TEST(SameSet, SeesNumbersSourcesLabelsAndColours) {
            }}) {
     TissueSet other = set;
     change(other.tissues[0]);
-    EXPECT_FALSE(sameSet(set, other));
+    EXPECT_FALSE(set == other);
   }
 }
 
@@ -100,7 +100,7 @@ TEST(WithThreshold, WhatMovesIsTunedHereAndCitesItsSourceAgainWhereItIsAsDeclare
   EXPECT_EQ(moved.tissues[1].hu_source, kOwnSource);
   EXPECT_EQ(moved.tissues[2].hu_source, "a book");
   const TissueSet back = withThreshold(moved, 1, RangeEnd::low, 100, true, set);
-  EXPECT_TRUE(sameSet(back, set));
+  EXPECT_TRUE(back == set);
 }
 
 TEST(OverlapsOf, AreTheSharedHuOfTheSamePlace) {

@@ -182,7 +182,8 @@ TEST(ForeignRecording, WhoseSceneNamesAFileOpensNone) {
   ASSERT_EQ(::mkfifo((folder / "pipe").c_str(), 0600), 0);
   const std::string pipe = (folder / "pipe").string();
   const auto replayed = [&](const std::function<void(Json&)>& change) {
-    Json scene = toJson(test::sceneWithOneArm());
+    const Scene one_arm = test::sceneWithOneArm();
+    Json scene = toJson(RecordedScene{one_arm, simulatedRig(one_arm)});
     change(scene);
     const auto file = folder / "a.h5";
     std::filesystem::remove(file);

@@ -17,7 +17,7 @@ void record(const fs::path& file, const std::vector<std::uint64_t>& pauses_and_r
   Scene scene = test::sceneWithOneArm();
   scene.case_source = case_source;
   auto recorder = SessionRecorder::create(
-      file, {toJson(scene), "sha of the voxels", test::slab().geometry, "test"}, 1);
+      file, {toJson(RecordedScene{scene, simulatedRig(scene)}), "sha of the voxels", test::slab().geometry, "test"}, 1);
   ASSERT_TRUE(recorder.ok()) << recorder.error().sentence();
   std::size_t next = 0;
   for (std::uint64_t t = 0; t < 200; ++t) {

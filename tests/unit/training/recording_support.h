@@ -39,7 +39,6 @@ inline Scene sceneWithOneArm() {
   scene.tools.push_back({"blade", makeBlade(0.008, 17), {}});
   SceneArm arm;
   arm.name = "right";
-  arm.device.plugin = "simulated";
   arm.tool = "blade";
   arm.map.fixed = WorkspaceMap{};
   scene.arms.push_back(arm);
@@ -54,7 +53,7 @@ inline void recordRun(const std::filesystem::path& file, std::uint64_t ticks, bo
   Grid grid(slab());
   HapticCore core(hapticParameters(scene), *grid.takeWriter());
   auto recorder = SessionRecorder::create(
-      file, {toJson(scene), volumeSha256(slab()), grid.geometry(), "test"}, 1);
+      file, {toJson(RecordedScene{scene, simulatedRig(scene)}), volumeSha256(slab()), grid.geometry(), "test"}, 1);
   ASSERT_TRUE(recorder.ok()) << recorder.error().sentence();
   for (std::uint64_t t = 0; t < ticks; ++t) {
     TickInput input;

@@ -287,7 +287,7 @@ TEST_F(LooksTest, EveryTissueHasAChoiceWithANameThatCanBeReadOut) {
 TEST_F(LooksTest, AreNoChangeOfATissue) {
   choose("bone", TissueLook::hidden);
   EXPECT_EQ(changes_, 0);
-  EXPECT_TRUE(sameSet(panel_.tissues(), twoTissues()));
+  EXPECT_TRUE(panel_.tissues() == twoTissues());
   EXPECT_TRUE(find<QListWidget>(panel_, "tissueList").item(1)->toolTip().contains("not drawn"));
 }
 
@@ -378,7 +378,7 @@ TEST_F(TissuePanelTest, ANumberPutBackCitesItsSourceAgain) {
   find<QSpinBox>(panel_, "huLow").setValue(201);
   find<QDoubleSpinBox>(panel_, "damping").setValue(7.0);
   find<QDoubleSpinBox>(panel_, "damping").setValue(1.0);
-  EXPECT_TRUE(sameSet(panel_.tissues(), twoTissues()));
+  EXPECT_TRUE(panel_.tissues() == twoTissues());
 }
 
 TEST_F(PanelTest, NoCaseIsOpenedWhileAnExerciseRunsOrAnotherIsBeingOpened) {

@@ -420,7 +420,7 @@ TEST_F(EditedTissuesTest, AreSavedAsASetThatScenesCanName) {
   EXPECT_FALSE(failed_);
   const Result<TissueSet> saved = readTissueSet(folder_ / "mine.json");
   ASSERT_TRUE(saved) << saved.error().sentence();
-  EXPECT_TRUE(sameSet(*saved, workstation_.scene()->tissues));
+  EXPECT_TRUE(*saved == workstation_.scene()->tissues);
   EXPECT_FALSE(workstation_.tissuesEdited());
 }
 
