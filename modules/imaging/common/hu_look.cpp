@@ -120,7 +120,7 @@ std::vector<std::string> HuLook::doubts(int lowest, int highest) const {
       return doubts;
     }
   }
-  constexpr double kEnough = 1000.0;  // voxels, to tell by how they are spread
+  constexpr double kEnough = 300.0;  // voxels, to tell by how they are spread
   if (scanned < kEnough) return doubts;
   // Most of a patient is soft tissue, and what lies below air is padding, of one value.
   constexpr double kLeastTissue = 0.01, kLittleTissue = 0.05, kBelow = 0.1;
@@ -132,6 +132,12 @@ std::vector<std::string> HuLook::doubts(int lowest, int highest) const {
       (tissue < kLittleTissue && below > kBelow)) {
     doubts.push_back("hardly any of the voxels (" + percent(tissue) +
                      ") lie where tissue does, as of an intercept that was applied twice");
+    return doubts;
+  }
+  constexpr int kWater = -20;  // with its noise
+  if (highest < kWater) {
+    doubts.push_back("none lies above " + std::to_string(highest) +
+                     ", and tissue lies near 0: as of an intercept that was applied twice");
     return doubts;
   }
   // Stored values without their intercept of -1024 have their tissue there, and no wide bone.
@@ -148,7 +154,7 @@ std::vector<std::string> HuLook::doubts(int lowest, int highest) const {
   };
   int filled = 0;
   for (int hu = first; hu <= last; ++hu) filled += count(hu, hu) > 0 ? 1 : 0;
-  if (first > -900 && last < 1000 && 4 * filled > last - first && last - first >= 100 &&
+  if (first > -900 && last < 1000 && 8 * filled > last - first && last - first >= 100 &&
       heaped(first, first + 1) && heaped(last, last - 1)) {
     doubts.push_back("they end at " + std::to_string(first) + " and " + std::to_string(last) +
                      ", where many lie: a window was burnt in, and air and bone are cut off");

@@ -239,6 +239,8 @@ TEST(ValuesThatAreNoHu, OfAnInterceptThatWasAppliedTwiceOrNeverOrOfAWindowAreDou
       return doubts.empty() ? std::string() : doubts.front();
     };
     EXPECT_NE(changed([](int hu) { return hu - 1024; }).find("twice"), std::string::npos);
+    EXPECT_NE(changed([](int hu) { return std::min(hu, 900) - 1024; }).find("twice"),
+              std::string::npos);
     EXPECT_NE(changed([](int hu) { return hu + 1024; }).find("without their intercept"),
               std::string::npos);
     EXPECT_NE(changed([](int hu) { return std::clamp(hu, -160, 240); }).find("window"),
