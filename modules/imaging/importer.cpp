@@ -164,24 +164,65 @@ void sayWhatLabelsAreFor(SeriesReport& series) {
   }
 }
 
+// A finding that stays however the series is looked at.
+void keepFinding(Series& series, Finding finding) {
+  auto& findings = series.report.findings;
+  findings.insert(findings.begin() + std::ptrdiff_t(series.findings_kept++), std::move(finding));
+  series.report.verdict = verdictOf(findings);
+}
+
 // Its slices may lie among what was not looked at; where some of that lies beside them, they most
 // probably do.
 void addStoppedScan(const ScannedFiles& files, Series& series) {
-  SeriesReport& report = series.report;
   const int left = files.not_looked_at;
   const bool beside = std::ranges::any_of(series.slices, [&](const DicomHeader& slice) {
     return files.folders_left.contains(slice.file.parent_path());
   });
-  report.findings.insert(report.findings.begin() + std::ptrdiff_t(series.findings_kept++),
-                         {"SCAN_STOPPED",
-                          beside ? "refusal" : "repair",
-                          (left == 1 ? "1 file was" : std::to_string(left) + " files were") +
-                              " not looked at, since the search was ended early: " +
-                              (beside ? "the rest of this series is probably among them"
-                                      : "slices of this series may be among them"),
-                          {},
-                          "Open the folder again and let the search come to its end"});
-  report.verdict = verdictOf(report.findings);
+  keepFinding(series, {"SCAN_STOPPED",
+                       beside ? "refusal" : "repair",
+                       (left == 1 ? "1 file was" : std::to_string(left) + " files were") +
+                           " not looked at, since the search was ended early: " +
+                           (beside ? "the rest of this series is probably among them"
+                                   : "slices of this series may be among them"),
+                       {},
+                       "Open the folder again and let the search come to its end"});
+}
+
+// Where a folder holds CT of several patients, or of several days of one: which of them each series
+// is of, since nothing else that is shown tells them apart.
+void saySeveral(std::vector<Series>& all) {
+  std::vector<Series*> scans;
+  for (Series& series : all) {
+    const bool scan = !series.slices.empty() && isCt(series.slices.front()) &&
+                      !isLocalizer(series.slices.front());
+    if (scan) scans.push_back(&series);
+  }
+  std::vector<const DicomHeader*> patients;
+  std::vector<std::size_t> patient_of;
+  std::set<std::string> days;
+  for (const Series* series : scans) {
+    const DicomHeader& one = series->slices.front();
+    const auto known = std::ranges::find_if(
+        patients, [&](const DicomHeader* other) { return otherPatient(*other, one) == nullptr; });
+    patient_of.push_back(std::size_t(known - patients.begin()));
+    if (known == patients.end()) patients.push_back(&one);
+    if (!one.acquired.empty()) days.insert(one.acquired);
+  }
+  const auto say = [](Series& series, const char* code, const char* what, std::size_t number,
+                      std::size_t of) {
+    keepFinding(series, {code,
+                         "notice",
+                         "The folder holds CT of " + std::to_string(of) + " " + what +
+                             ": this one is of number " + std::to_string(number + 1),
+                         {},
+                         "Make sure that it is the one that is wanted"});
+  };
+  for (std::size_t n = 0; n < scans.size(); ++n) {
+    if (patients.size() > 1) say(*scans[n], "PATIENTS", "patients", patient_of[n], patients.size());
+    const auto day = days.find(scans[n]->slices.front().acquired);
+    if (patients.size() > 1 || days.size() < 2 || day == days.end()) continue;
+    say(*scans[n], "DAYS", "days", std::size_t(std::distance(days.begin(), day)), days.size());
+  }
 }
 
 // Slices of it may be among what could not be unpacked.
@@ -191,16 +232,12 @@ void addNotWhole(const UnpackedArchives& unpacked, Series& series) {
       return slice.file.parent_path() == archive.folder;
     });
     if (!from_it) continue;
-    SeriesReport& report = series.report;
-    report.findings.insert(
-        report.findings.begin() + std::ptrdiff_t(series.findings_kept++),
-        {"ARCHIVE_NOT_WHOLE",
-         "refusal",
-         "It comes from " + archive.why + ": some of its slices may not be there",
-         {},
-         "Copy or download the archive again, or unpack it by hand and import the folder"});
-    report.verdict = verdictOf(report.findings);
-    return;
+    return keepFinding(
+        series, {"ARCHIVE_NOT_WHOLE",
+                 "refusal",
+                 "It comes from " + archive.why + ": some of its slices may not be there",
+                 {},
+                 "Copy or download the archive again, or unpack it by hand and import the folder"});
   }
 }
 
@@ -390,7 +427,9 @@ Result<CtFolder> CtFolder::scan(const std::filesystem::path& path, const Progres
     report.skipped.push_back(
         {"not looked at, since the search was ended early", files->not_looked_at});
   }
-  for (Series& series : groupSeries(std::move(files->headers), progress)) {
+  std::vector<Series> grouped = groupSeries(std::move(files->headers), progress);
+  saySeveral(grouped);
+  for (Series& series : grouped) {
     if (files->not_looked_at > 0) addStoppedScan(*files, series);
     if (contents.unpacked) addNotWhole(*contents.unpacked, series);
     contents.sources.push_back({std::move(series), {}});

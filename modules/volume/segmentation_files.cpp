@@ -112,7 +112,8 @@ Result<Layers> layersOf(const fs::path& file, const Progress& progress, const st
     constexpr double kMost = 1e15;  // that the number below holds
     const double value =
         std::clamp(read->hu_min < 0.0 ? read->hu_min : read->hu_max, -kMost, kMost);
-    return notLabels("The value " + std::to_string(std::int64_t(value)) + " is no label", file);
+    return notLabels("The value " + std::to_string(std::int64_t(value)) + " is no label: 1 to " + std::to_string(int(kLabelNumbers.high)) + " are read",
+                     file);
   }
   const Voxels& values = read->volume.hu;
   of.layers.assign(layers, std::vector<std::uint8_t>(voxels));

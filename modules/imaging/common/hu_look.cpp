@@ -128,14 +128,15 @@ std::vector<std::string> HuLook::doubts(int lowest, int highest) const {
   std::uint64_t padding = 0;
   for (int hu = kLowest; hu < kLowestOfAir; ++hu) padding = std::max(padding, count(hu, hu));
   const double below = double(count(kLowest, kLowestOfAir - 1) - padding) / scanned;
-  if ((tissue < kLeastTissue && share(kLowestOfAir, -800) > 0.5) ||
+  // A dry skull is bone and air.
+  if ((share(-200, kHighest) < kLeastTissue && share(kLowestOfAir, -800) > 0.5) ||
       (tissue < kLittleTissue && below > kBelow)) {
     doubts.push_back("hardly any of the voxels (" + percent(tissue) +
                      ") lie where tissue does, as of an intercept that was applied twice");
     return doubts;
   }
   constexpr int kWater = -20;  // with its noise
-  if (highest < kWater) {
+  if (highest < kWater && share(kLowestOfAir, -800) > 0.3) {
     doubts.push_back("none lies above " + std::to_string(highest) +
                      ", and tissue lies near 0: as of an intercept that was applied twice");
     return doubts;

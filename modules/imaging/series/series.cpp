@@ -33,9 +33,8 @@ bool isSamePerson(const DicomHeader& a, const DicomHeader& b) {
          !a.patient[kBirth].empty() && a.patient[kBirth] == b.patient[kBirth];
 }
 
-// What tells that two slices are of two patients; null where nothing does. What one of them leaves
-// empty tells nothing, as long as they have something in common. Names of one ID and birth date are
-// one name, spelled in two ways or changed.
+}  // namespace
+
 const char* otherPatient(const DicomHeader& a, const DicomHeader& b) {
   constexpr const char* kNames[] = {"patient's name", "patient's ID", "patient's birth date",
                                     "patient's sex"};
@@ -48,6 +47,8 @@ const char* otherPatient(const DicomHeader& a, const DicomHeader& b) {
   }
   return common ? nullptr : "patient";
 }
+
+namespace {
 
 // Why two slices of one Series UID cannot lie in one stack; null where they can. Spacings and
 // cosines may differ by what a writer makes of one scan; parts() has the finer look.

@@ -38,6 +38,11 @@ std::vector<Series> groupSeries(std::vector<DicomHeader> headers, const Progress
 // and verdict; orders the slices. Pure. (series_checks.cpp)
 SeriesPlan assessSeries(Series& series, const Answers& answers = {});
 
+// What tells that two slices are of two patients; null where nothing does. What one of them leaves
+// empty tells nothing, as long as they have something in common. Names of one ID and birth date are
+// one name, spelled in two ways or changed.
+const char* otherPatient(const DicomHeader& a, const DicomHeader& b);
+
 // The worst of the findings' severities.
 Verdict verdictOf(const std::vector<Finding>& findings);
 // Sets the verdict. In what is refused nothing was put right: its repairs say only what was found.

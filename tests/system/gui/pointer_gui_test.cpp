@@ -145,7 +145,7 @@ class PointerGuiTest : public test::WindowTest {
     pass(0.3);
     Session& session = *workstation().session();
     run.cut.frame = session.landmarks()[0].frame;
-    run.cut.parameters = hapticParameters(session.scene());
+    run.cut.parameters = hapticParameters(session.scene(), session.rig());
     const std::vector<SceneArm>& arms = session.scene().arms;
     QCOMPARE(arms.size(), exercise.arms.size());
     for (std::size_t arm = 0; arm < arms.size(); ++arm) {

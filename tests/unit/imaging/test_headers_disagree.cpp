@@ -262,6 +262,9 @@ TEST(ValuesThatLookStored, CropsOfAHeadOrALungAreCt) {
           std::int16_t(std::lround((at < 0.03 + 0.01 * n ? 40.0 : -860.0) + 3.0 * noise(random))));
     }
     EXPECT_TRUE(doubtsOf(head).empty()) << doubtsOf(head).front();
+    std::vector<std::int16_t> dry = lung;
+    for (std::int16_t& hu : dry) hu = std::int16_t(hu < -400 ? hu - 140 : hu + 800);
+    EXPECT_TRUE(doubtsOf(dry).empty()) << doubtsOf(dry).front();
     EXPECT_TRUE(doubtsOf(lung).empty()) << doubtsOf(lung).front();
   }
 }

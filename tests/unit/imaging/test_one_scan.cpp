@@ -108,6 +108,32 @@ TEST_F(OneScan, IsOfOnePatientByIdAndBirthDateThoughTheNameHasChanged) {
   EXPECT_EQ(scan().report().series.size(), 2u);
 }
 
+TEST_F(OneScan, BesideAnotherPatientsOrAnotherDaysSaysOfWhichItIs) {
+  const auto numbers = [&](const char* code) {
+    std::string all;
+    const CtFolder folder = scan();
+    for (const SeriesReport& one : folder.report().series) {
+      const Finding* finding = find(one, code);
+      all += finding ? finding->text.substr(finding->text.find(" CT of")) + "; " : "none; ";
+    }
+    return all;
+  };
+  anew({7, 5, 10});
+  editAll(set(DCM_PatientID, "4711"));
+  editAll(set(DCM_AcquisitionDate, "20240102"));
+  editSome({6, 7, 8, 9, 10}, set(DCM_SeriesInstanceUID, "1.2.3.4.99"));
+  EXPECT_EQ(numbers("PATIENTS"), "none; none; ");
+  EXPECT_EQ(numbers("DAYS"), "none; none; ");
+  editSome({6, 7, 8, 9, 10}, set(DCM_AcquisitionDate, "20240103"));
+  EXPECT_NE(numbers("DAYS").find("2 days: this one is of number 1"), std::string::npos)
+      << numbers("DAYS");
+  EXPECT_NE(numbers("DAYS").find("2 days: this one is of number 2"), std::string::npos);
+  editSome({6, 7, 8, 9, 10}, set(DCM_PatientID, "4712"));
+  EXPECT_EQ(numbers("DAYS"), "none; none; ");
+  EXPECT_NE(numbers("PATIENTS").find("2 patients: this one is of number 1"), std::string::npos);
+  EXPECT_NE(numbers("PATIENTS").find("2 patients: this one is of number 2"), std::string::npos);
+}
+
 TEST_F(OneScan, IsOfOnePatientThoughSomeSlicesSayLessOfHim) {
   editAll([](DcmDataset& data) { put(data, DCM_PatientBirthDate, "19700101"); });
   editSome({1, 2}, set(DCM_PatientBirthDate, ""));

@@ -61,7 +61,7 @@ Played run(const std::vector<Pointed>& path, bool cuttable, const Talk& talk = {
   Session& session = **made;
   Played out;
   out.frame = session.landmarks()[0].frame;
-  out.parameters = hapticParameters(session.scene());
+  out.parameters = hapticParameters(session.scene(), session.rig());
   out.limit_N = session.scene().arms[kArm].max_force_N;
   PointerUser user(session, kArm, path, 125.0);
   const std::uint64_t allocated = rt::guardedAllocations();

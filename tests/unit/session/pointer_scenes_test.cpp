@@ -36,7 +36,7 @@ Done done(const Exercise& exercise, double rate_hz, const std::filesystem::path&
   EXPECT_TRUE(made.ok()) << made.error().sentence();
   Session& session = **made;
   out.frame = session.landmarks()[0].frame;
-  out.parameters = hapticParameters(session.scene());
+  out.parameters = hapticParameters(session.scene(), session.rig());
   out.deepest_mm.assign(exercise.arms.size(), 1e9);
   std::vector<PointerUser> users;
   for (std::size_t i = 0; i < exercise.arms.size(); ++i) {

@@ -337,9 +337,9 @@ struct Probed {
   std::map<std::string, double> mean_N, most_N;
 };
 
-Probed probe(const Scene& placed, std::size_t arm, const LandmarkFrame& frame, const Vec3& aside_mm,
+Probed probe(const Scene& placed, const Rig& rig, std::size_t arm, const LandmarkFrame& frame, const Vec3& aside_mm,
              const Case& of) {
-  HapticParameters p = hapticParameters(placed);
+  HapticParameters p = hapticParameters(placed, rig);
   p.arms = {p.arms[arm]};
   p.journal_voxels = 1'000'000;
   Grid grid{Volume(*of.volume), of.labels};
@@ -375,7 +375,7 @@ std::vector<Probed> probesOf(const std::string& name, const std::string& case_so
   const Vec3 aside_mm = name.starts_with("liver") ? Vec3(8, -34, 0) : Vec3(0.0);  // below the ribs
   std::vector<Probed> out;
   for (std::size_t arm = 0; arm < scene.arms.size(); ++arm) {
-    out.push_back(probe((*session)->scene(), arm, frame, aside_mm, of));
+    out.push_back(probe((*session)->scene(), (*session)->rig(), arm, frame, aside_mm, of));
     for (const auto& [tissue, mean_N] : out.back().mean_N) {
       std::printf("%-16s %-5s %-6s %-8s mean %.2f N, most %.2f N\n", name.c_str(),
                   case_source.empty() ? "own" : "real", out.back().arm.c_str(), tissue.c_str(),
