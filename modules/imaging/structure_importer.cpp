@@ -26,9 +26,7 @@ bool liesOn(const GridGeometry& of, const GridGeometry& ct) {
     const double steps = of.size[std::size_t(axis)] - 1;
     if (glm::length(Vec3(to_ct[axis])) < 0.5 || steps * glm::length(drift) > 0.5) return false;
   }
-  for (int corner = 0; corner < 8; ++corner) {
-    const Vec3 at(corner & 1 ? of.size[0] - 1 : 0, corner & 2 ? of.size[1] - 1 : 0,
-                  corner & 4 ? of.size[2] - 1 : 0);
+  for (const Vec3& at : cornerVoxels(of)) {
     const Vec3 voxel(to_ct * glm::dvec4(at, 1.0));
     for (int p = 0; p < 3; ++p) {
       if (voxel[p] < -0.5 || voxel[p] > ct.size[std::size_t(p)] - 0.5) return false;
@@ -81,23 +79,16 @@ Status match(const DicomSegmentation& seg, const Volume& ct, const StructureRequ
 // How far a corner of the one grid lies from the nearest corner of the other at most, in whatever
 // order they count their voxels.
 double cornersFrom_mm(const GridGeometry& of, const GridGeometry& ct) {
-  const auto corners = [](const GridGeometry& g) {
-    std::vector<Vec3> all;
-    for (int corner = 0; corner < 8; ++corner) {
-      const Vec3 at(corner & 1 ? g.size[0] - 1 : 0, corner & 2 ? g.size[1] - 1 : 0,
-                    corner & 4 ? g.size[2] - 1 : 0);
-      all.push_back(g.toPatient_mm(at));
-    }
-    return all;
-  };
   Index3 sizes = of.size, ct_sizes = ct.size;
   std::ranges::sort(sizes);
   std::ranges::sort(ct_sizes);
   if (sizes != ct_sizes) return std::numeric_limits<double>::infinity();
   double most = 0.0;
-  for (const Vec3& one : corners(of)) {
+  for (const Vec3& one : cornerVoxels(of)) {
     double least = std::numeric_limits<double>::infinity();
-    for (const Vec3& other : corners(ct)) least = std::min(least, glm::length(one - other));
+    for (const Vec3& other : cornerVoxels(ct)) {
+      least = std::min(least, glm::length(of.toPatient_mm(one) - ct.toPatient_mm(other)));
+    }
     most = std::max(most, least);
   }
   return most;

@@ -1,9 +1,14 @@
 // Whether two grids lie at one place. Pure.
 #pragma once
 
+#include <array>
+
 #include "volume/volume.h"
 
 namespace trephine {
+
+// The eight corner voxels, as indices (i, j, k); i changes first.
+std::array<Vec3, 8> cornerVoxels(const GridGeometry& grid);
 
 // The farthest that a corner voxel of the one lies from that of the other [mm]. Infinite where
 // their sizes differ, and where it is no number.

@@ -59,7 +59,8 @@ class VoxelBytes {
 
   // Until it is cancelled.
   bool skip(std::uint64_t count, const Progress& progress) {
-    std::vector<std::uint8_t> unused(std::size_t{1} << 20);
+    constexpr std::uint64_t kAtOnce = std::uint64_t{1} << 20;
+    std::vector<std::uint8_t> unused(std::size_t(std::min(count, kAtOnce)));
     while (count > 0 && !progress.cancelled()) {
       const std::uint64_t now = std::min<std::uint64_t>(count, unused.size());
       if (!read(unused.data(), std::size_t(now))) return false;

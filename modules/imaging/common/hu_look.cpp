@@ -159,7 +159,6 @@ std::vector<std::string> HuLook::doubts(int lowest, int highest) const {
       heaped(first, first + 1) && heaped(last, last - 1)) {
     doubts.push_back("they end at " + std::to_string(first) + " and " + std::to_string(last) +
                      ", where many lie: a window was burnt in, and air and bone are cut off");
-    return doubts;
   }
   return doubts;
 }
