@@ -167,6 +167,8 @@ void sayWhatLabelsAreFor(SeriesReport& series) {
 // A finding that stays however the series is looked at.
 void keepFinding(Series& series, Finding finding) {
   auto& findings = series.report.findings;
+  // Answers that cannot save the series are not asked for.
+  if (finding.severity == "refusal") series.report.choices.clear();
   findings.insert(findings.begin() + std::ptrdiff_t(series.findings_kept++), std::move(finding));
   series.report.verdict = verdictOf(findings);
 }
@@ -186,6 +188,25 @@ void addStoppedScan(const ScannedFiles& files, Series& series) {
                                    : "slices of this series may be among them"),
                        {},
                        "Open the folder again and let the search come to its end"});
+}
+
+// Beside its files some are empty: slices that were not copied, perhaps. A gap that they leave is
+// asked about; at an end they leave none.
+void addEmptyFiles(const ScannedFiles& files, Series& series) {
+  std::set<std::filesystem::path> folders;
+  for (const DicomHeader& slice : series.slices) folders.insert(slice.file.parent_path());
+  int empty = 0;
+  for (const std::filesystem::path& folder : folders) {
+    const auto beside = files.empty_files.find(folder);
+    if (beside != files.empty_files.end()) empty += beside->second;
+  }
+  if (empty == 0) return;
+  keepFinding(series, {"INCOMPLETE",
+                       "notice",
+                       counted(std::uint64_t(empty), "empty file", "lies", "lie") +
+                           " beside its slices, which may be slices that were not copied",
+                       {},
+                       "Copy all files of the series again if the scan ends too early"});
 }
 
 // Where a folder holds CT of several patients, or of several days of one: which of them each series
@@ -387,6 +408,10 @@ Result<Volume> CtFolder::Contents::readDicom(Series& series, const ImportRequest
     addValueFindings(assembly->counts, series.report);
     series.report.hu_min = assembly->counts.hu_min;
     series.report.hu_max = assembly->counts.hu_max;
+    if (assembly->counts.padding == 0 && assembly->counts.hu_min < kLowestAir_HU) {
+      sayPadding(unnamedPaddingToAir(assembly->volume.hu), series.report);
+      series.report.hu_min = *std::ranges::min_element(assembly->volume.hu);
+    }
     reading.slices_used = int(plan.sources.size());
     reading.ids = idsOf(series.slices, plan.sources);
     reading.look = std::move(assembly->look);
@@ -431,6 +456,7 @@ Result<CtFolder> CtFolder::scan(const std::filesystem::path& path, const Progres
   saySeveral(grouped);
   for (Series& series : grouped) {
     if (files->not_looked_at > 0) addStoppedScan(*files, series);
+    addEmptyFiles(*files, series);
     if (contents.unpacked) addNotWhole(*contents.unpacked, series);
     contents.sources.push_back({std::move(series), {}});
   }
@@ -621,7 +647,14 @@ Result<Volume> CtFolder::read(const std::string& uid, const ImportRequest& reque
     sayWhatLabelsAreFor(series);
     return fail(refusalOf(series));
   }
-  if (!volume) return fail(volume.error());
+  if (!volume) {
+    const Error& error = volume.error();
+    const bool of_the_file = !source->file.empty() && series.verdict != Verdict::refused;
+    if (of_the_file && (error.code == "UNREADABLE" || error.code == "NOT_HU")) {
+      series.findings.push_back({error.code, "refusal", error.what, {}, error.next});
+    }
+    return fail(error);
+  }
   checkHu(reading.look, request.answers, series);
   series.verdict = verdictOf(series.findings);
   if (series.verdict == Verdict::refused) {

@@ -24,8 +24,8 @@ namespace {
 // zlib and gzip cannot shrink data further than this, so a small file with a huge size is a lie.
 constexpr double kMostCompression = 1040.0;
 
-// From a micrometre to a metre; beyond, a unit was mistaken.
-constexpr double kSmallestVoxel_mm = 1e-3, kLargestVoxel_mm = 1e3, kFarthest_mm = 1e6;
+// From 5 micrometres (a scan of a specimen) to a metre; beyond, a unit was mistaken.
+constexpr double kSmallestVoxel_mm = 5e-3, kLargestVoxel_mm = 1e3, kFarthest_mm = 1e6;
 
 constexpr std::string_view kBlanks = " \t\r\n";
 
@@ -177,6 +177,16 @@ bool isMostlyHoles(const fs::path& file) {
 
 }  // namespace
 
+Error longerThanSaid(const VolumeFileHeader& header, const std::string& by, const fs::path& file) {
+  const bool beside = header.data.file != file;
+  Error error = unreadable((beside ? "The file with the voxels is " : "The file is ") + by +
+                               "longer than its header says: where its voxels begin is not sure",
+                           header.data.file);
+  error.next = beside ? "Say in the header how many bytes to skip, or export it again"
+                      : "Export it again, or correct the size or the offset in its header";
+  return error;
+}
+
 Status placeVoxels(VolumeFileHeader& header, std::optional<std::uint64_t> offset,
                    const fs::path& file) {
   std::error_code ec;
@@ -189,14 +199,10 @@ Status placeVoxels(VolumeFileHeader& header, std::optional<std::uint64_t> offset
   if (most < double(stored) + double(header.data.skip)) {
     return unreadable("The file is cut short: its header promises more voxels than it holds", file);
   }
-  // Beside a header, what is too much stands in front as a rule: a header of its own, that is not
-  // skipped.
-  if (offset && !header.data.packed && header.data.file != file && bytes > stored) {
-    Error error = unreadable("The file with the voxels is " + std::to_string(bytes - stored) +
-                                 " bytes longer than its header says",
-                             header.data.file);
-    error.next = "Say in the header how many bytes to skip, or export it again";
-    return error;
+  // What is too much stands in front as a rule: a header of its own, or one that is longer than it
+  // says. Then every voxel would be read from another's place.
+  if (offset && !header.data.packed && bytes > stored) {
+    return longerThanSaid(header, std::to_string(bytes - stored) + " bytes ", file);
   }
   if (isMostlyHoles(header.data.file)) {
     return unreadable("The file is empty but for its beginning: it was not copied to its end",

@@ -39,6 +39,9 @@ Error badGeometry(const std::string& what, const std::filesystem::path& file);
 Error notHu(const std::string& what, const std::filesystem::path& file);
 Error unknownFormat(const std::string& what, const std::filesystem::path& file,
                     const std::string& next);
+// UNREADABLE: more is there than voxels, `by` so many bytes (with a blank behind) or empty.
+Error longerThanSaid(const VolumeFileHeader& header, const std::string& by,
+                     const std::filesystem::path& file);
 Error cannotWrite(const std::filesystem::path& file);
 
 // ---- Geometry.

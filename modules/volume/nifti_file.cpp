@@ -392,14 +392,18 @@ Result<VolumeFileHeader> readNiftiHeader(const fs::path& file) {
   if (!std::isfinite(header.intercept)) {
     return notHu("The rescale intercept is no number", file);
   }
-  // 0: right behind the header and the four bytes that follow it.
-  const double start =
-      h->voxelOffset() == 0.0 ? double(h->length()) + 4.0 : std::floor(h->voxelOffset());
+  // 0: right behind the header and the four bytes that follow it, which some writers do not count.
+  const double behind = double(h->length()) + 4.0;
+  double start = h->voxelOffset() == 0.0 ? behind : std::floor(h->voxelOffset());
+  std::error_code ec;
+  const bool uncounted = start >= double(h->length()) && start < behind && !header.data.packed &&
+                         double(fs::file_size(file, ec)) == behind + double(header.storedBytes());
+  if (uncounted) start = behind;
   if (!(start >= double(h->length()) && start <= 1e15)) {
     return unreadable("The header's voxels start inside of it or nowhere", file);
   }
   constexpr double kMostExtension = double(1 << 20);
-  if (start > double(h->length()) + 4.0) {
+  if (start > behind) {
     const std::string before =
         unpackedStart(file, header.data.packed, std::size_t(std::min(start, kMostExtension)));
     if (before.size() > h->length() && before[h->length()] != 0) {

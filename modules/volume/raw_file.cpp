@@ -78,17 +78,16 @@ Status readSidecar(JsonReader& fields, const fs::path& file, VolumeFileHeader& h
   if (!whole) return whole.error();
   g.size = *whole;
   if (auto status = settle(header, file); !status) return status;
-  if (auto status = placeVoxels(header, std::uint64_t(skipped), header.data.file); !status) {
-    return status;
-  }
   // Nothing else in a raw file could show that size or type are wrong.
-  if (header.data.bytes != header.storedBytes()) {
-    return unreadable("The .raw file holds " + std::to_string(header.data.bytes) +
+  std::error_code ec;
+  const std::uint64_t all = fs::file_size(header.data.file, ec), skip = std::uint64_t(skipped);
+  if (!ec && all > skip && all - skip != header.storedBytes()) {
+    return unreadable("The .raw file holds " + std::to_string(all - skip) +
                           " bytes of voxels, but its sidecar's size and type need " +
                           std::to_string(header.storedBytes()),
                       header.data.file);
   }
-  return {};
+  return placeVoxels(header, skip, header.data.file);
 }
 
 }  // namespace

@@ -103,6 +103,10 @@ Result<Layers> layersOf(const fs::path& file, const Progress& progress, const st
   if (!read) {
     return read.error().code == "NOT_HU" ? notLabels(read.error().what, file) : read.error();
   }
+  // Labels that a slope has spread over 16 bits look like anything.
+  if (read->bytes_exchanged && read->header.slope == 1.0) {
+    return notLabels("The bytes of each voxel stand in another order than the header says", file);
+  }
   if (read->rounded + read->not_numbers > 0) {
     return notLabels(
         std::to_string(read->rounded + read->not_numbers) + " of the voxels are not whole numbers",

@@ -74,6 +74,7 @@ struct VolumeFileReading {
   std::uint64_t rounded = 0;      // voxels that were not whole numbers
   std::uint64_t clamped = 0;      // beyond int16: set to its end
   std::uint64_t not_numbers = 0;  // NaN or infinite: set to kAirHu
+  bool bytes_exchanged = false;   // two bytes each, in another order than the header says
   double hu_min = 0.0;            // of all that are numbers, before rounding and clamping
   double hu_max = 0.0;
 };

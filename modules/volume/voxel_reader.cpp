@@ -69,16 +69,20 @@ class VoxelBytes {
     return count == 0;
   }
 
-  // After the last voxel: whether zlib's checksum is right. It is not reached, and not asked for,
-  // where more follows than was wanted.
-  bool finish() {
+  // What follows the last voxel of packed ones. Bytes behind the end that are not packed are passed
+  // over, as gzip does.
+  enum class End { reached, longer, damaged };
+  End end() {
     std::uint8_t unused[4096];
-    zlib_.next_out = unused;
-    zlib_.avail_out = sizeof unused;
-    while (packed_ && !ended_ && zlib_.avail_out > 0) {
-      if (!step()) return false;
+    while (packed_) {
+      zlib_.next_out = unused;
+      zlib_.avail_out = sizeof unused;
+      const bool another = ended_;
+      if (another && inflateReset(&zlib_) != Z_OK) return End::reached;
+      if (!step()) return another ? End::reached : End::damaged;
+      if (zlib_.avail_out < sizeof unused) return End::longer;
     }
-    return true;
+    return End::reached;
   }
 
  private:
@@ -109,6 +113,35 @@ void swapBytes(std::vector<std::uint8_t>& bytes, std::size_t size) {
     std::reverse(bytes.data() + at, bytes.data() + at + size);
   }
 }
+
+// Whether words of two bytes have them in the other order: then most neighbours differ far less
+// once they are exchanged.
+class ByteOrder {
+ public:
+  // Looks at the first of `bytes`, neighbours one after another.
+  void add(const std::vector<std::uint8_t>& bytes) {
+    constexpr std::size_t kWords = 1024;
+    constexpr int kFar = 2;
+    const std::size_t words = std::min(kWords, bytes.size() / 2);
+    for (std::size_t n = 1; n < words; ++n) {
+      const std::uint8_t* at = bytes.data() + 2 * n;
+      const int as_they_are = std::abs(word(at[0], at[1]) - word(at[-2], at[-1]));
+      const int exchanged = std::abs(word(at[1], at[0]) - word(at[-1], at[-2]));
+      wrong_ += as_they_are > kFar * exchanged;
+      right_ += exchanged > kFar * as_they_are;
+    }
+  }
+  bool isWrong() const {
+    constexpr std::int64_t kEnough = 32, kMost = 4;
+    return wrong_ >= kEnough && wrong_ > kMost * right_;
+  }
+
+ private:
+  static int word(std::uint8_t low, std::uint8_t high) {
+    return std::int16_t(std::uint16_t(low | (high << 8)));
+  }
+  std::int64_t wrong_ = 0, right_ = 0;  // pairs that say so
+};
 
 template <class Stored>
 void convert(const std::vector<std::uint8_t>& from, std::int16_t* to, VolumeFileReading& reading) {
@@ -175,6 +208,7 @@ Result<VolumeFileReading> readVoxels(VolumeFileHeader header, const std::filesys
   Voxels& hu = reading.volume.hu;
   // Memory is reserved here but only filled, and so taken, as voxels come.
   hu.reserve(count);
+  ByteOrder order;
   bool whole = source.skip(h.data.skip, progress);
   for (std::vector<std::uint8_t> bytes; whole && hu.size() < count;) {
     if (progress.cancelled()) return cancelled(file);
@@ -183,13 +217,17 @@ Result<VolumeFileReading> readVoxels(VolumeFileHeader header, const std::filesys
     bytes.resize(now * std::size_t(voxel_bytes));
     whole = source.read(bytes.data(), bytes.size());
     if (h.big_endian) swapBytes(bytes, std::size_t(voxel_bytes));
+    if (voxel_bytes == 2) order.add(bytes);
     hu.resize(done + now);
     if (whole) convertVoxels(bytes, hu.data() + done, reading);
   }
   if (progress.cancelled()) return cancelled(file);
-  if (!whole || !source.finish()) {
+  const VoxelBytes::End end = whole ? source.end() : VoxelBytes::End::damaged;
+  if (end == VoxelBytes::End::damaged) {
     return unreadable("The file's voxels are damaged or cut short", file);
   }
+  if (end == VoxelBytes::End::longer) return longerThanSaid(h, "", file);
+  reading.bytes_exchanged = order.isWrong();
   if (reading.not_numbers == count) return notHu("No voxel of the image is a number", file);
   if (reading.clamped > count / 2) {
     return notHu("The image holds values that are not HU: most of them need over 16 bits", file);

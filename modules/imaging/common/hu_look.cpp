@@ -67,6 +67,7 @@ bool HuLook::hasAir() const {
 }
 
 std::vector<std::string> HuLook::doubts(int lowest, int highest) const {
+  if (!found_elsewhere_.empty()) return found_elsewhere_;
   if (lowest == highest && highest <= kAirHu) {
     return {"all of it is padding, or one and the same air"};
   }

@@ -34,6 +34,9 @@ class HuLook {
   // A sample of them. So many of those at kAirHu are no values: what stood there was no number.
   void addSampleOf(std::span<const std::int16_t> hu, std::uint64_t not_numbers);
 
+  // A reason that was found elsewhere, in words for a sentence; the others are not looked for then.
+  void doubt(std::string why) { found_elsewhere_.push_back(std::move(why)); }
+
   // Why these can hardly be HU, each for a sentence in words; empty where they can. `lowest` and
   // `highest` are of all voxels, padding as air among them.
   std::vector<std::string> doubts(int lowest, int highest) const;
@@ -44,6 +47,7 @@ class HuLook {
   std::uint64_t count(int from, int to) const;  // both ends among them
 
   std::vector<std::uint32_t> counts_;  // of HU + 32768
+  std::vector<std::string> found_elsewhere_;
 };
 
 }  // namespace trephine

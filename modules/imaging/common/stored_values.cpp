@@ -146,4 +146,22 @@ HuCounts HuConverter::convert(std::int16_t* words, std::size_t count, const Stor
   return counts;
 }
 
+UnnamedPadding unnamedPaddingToAir(Voxels& hu) {
+  constexpr std::uint64_t kFewest = 32;
+  constexpr double kLeastShare = 0.001, kMostBetween = 0.01;
+  UnnamedPadding padding{*std::ranges::min_element(hu)};
+  if (padding.hu >= kLowestAir_HU) return padding;
+  std::uint64_t count = 0, between = 0;
+  for (const std::int16_t voxel : hu) {
+    count += voxel == padding.hu;
+    between += voxel > padding.hu && voxel < kLowestAir_HU;
+  }
+  const bool is_padding = count >= kFewest && double(count) >= kLeastShare * double(hu.size()) &&
+                          double(between) <= kMostBetween * double(count);
+  if (!is_padding) return padding;
+  std::ranges::replace(hu, std::int16_t(padding.hu), kAirHu);
+  padding.voxels = count;
+  return padding;
+}
+
 }  // namespace trephine

@@ -18,6 +18,9 @@ namespace trephine {
 // Not a value: marks voxels that were not scanned, until they become air. No CT holds it.
 constexpr std::int16_t kLostHu = -32768;
 
+// Of air with its noise; what is lower was not scanned.
+constexpr int kLowestAir_HU = -1100;
+
 struct StoredFormat {
   int bits_stored = 16;  // 1..16
   int high_bit = 15;     // bits_stored - 1 .. 15
@@ -71,5 +74,15 @@ int storedValue(std::uint16_t word, const StoredFormat& format);
 // Whether any word has bits above the stored ones that are neither 0 nor the sign's, and is no
 // padding: they are masked away.
 bool hasHighBits(std::span<const std::int16_t> words, const StoredFormat& format);
+
+// Voxels at the lowest value, where that is one that no CT has and hardly anything lies between it
+// and air: what stands around the round field of a scanner, -3024 or -2000 as a rule.
+struct UnnamedPadding {
+  int hu = 0;
+  std::uint64_t voxels = 0;  // 0: there is none
+};
+
+// Makes it air.
+UnnamedPadding unnamedPaddingToAir(Voxels& hu);
 
 }  // namespace trephine

@@ -4,8 +4,10 @@
 #include <cctype>
 #include <cstdio>
 
+#include "imaging/common/stored_values.h"
 #include "imaging/common/text.h"
 #include "imaging/report/answers.h"
+#include "imaging/series/hu_checks.h"
 #include "imaging/series/series.h"
 #include "imaging/series/series_geometry.h"
 #include "volume/case_memory.h"
@@ -84,26 +86,6 @@ Result<VolumeFileHeader> inChosenForm(VolumeFileHeader header, const std::filesy
   add(report, "FORMS_DIFFER", "refusal", text,
       "Measure a known length, or look where the scan came from, and choose the right one");
   return header;
-}
-
-// Voxels at the lowest value where that is one that no CT has, and hardly anything lies between it
-// and air: what stands around the round field of a scanner, -3024 or -2000 as a rule. It becomes
-// air. How many there were.
-std::uint64_t paddingToAir(Voxels& hu, int& value) {
-  constexpr int kLeast = -1100;  // HU of air, with its noise
-  constexpr double kLeastShare = 0.001, kMostBetween = 0.01;
-  value = *std::ranges::min_element(hu);
-  if (value >= kLeast) return 0;
-  std::uint64_t padding = 0, between = 0;
-  for (const std::int16_t voxel : hu) {
-    padding += voxel == value;
-    between += voxel > value && voxel < kLeast;
-  }
-  const bool is_padding = double(padding) >= kLeastShare * double(hu.size()) &&
-                          double(between) <= kMostBetween * double(padding);
-  if (!is_padding) return 0;
-  std::ranges::replace(hu, std::int16_t(value), kAirHu);
-  return padding;
 }
 
 bool namesLabels(std::string name) {
@@ -203,15 +185,15 @@ Result<Volume> readFileSeries(const std::filesystem::path& file, const Answers& 
     const Finding& finding = report.findings.back();
     return Error{finding.code, finding.text, report.uid, finding.action};
   }
-  int padding = 0;
-  const std::uint64_t padded = paddingToAir(reading->volume.hu, padding);
-  if (padded > 0) {
-    add(report, "PADDING_TO_AIR", "notice",
-        voxels(padded) + " had " + std::to_string(padding) +
-            " HU, which nothing in a patient has: the space around the scan",
-        "They became air");
+  if (reading->bytes_exchanged) {
+    look.doubt(
+        "neighbours differ far less with the bytes of each voxel exchanged, as of a header "
+        "that says the wrong byte order");
   }
-  look.addSampleOf(reading->volume.hu, reading->not_numbers + padded);
+  UnnamedPadding padding;
+  if (!reading->bytes_exchanged) padding = unnamedPaddingToAir(reading->volume.hu);
+  sayPadding(padding, report);
+  look.addSampleOf(reading->volume.hu, reading->not_numbers + padding.voxels);
   const auto [low, high] = std::ranges::minmax(reading->volume.hu);
   report.hu_min = low;
   report.hu_max = high;

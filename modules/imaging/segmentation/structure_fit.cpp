@@ -7,6 +7,7 @@
 #include <new>
 
 #include "base/memory.h"
+#include "base/range.h"
 #include "imaging/common/text.h"
 #include "imaging/segmentation/overlap_order.h"
 #include "imaging/segmentation/structure_hu.h"
@@ -267,33 +268,43 @@ Result<std::vector<std::size_t>> orderOf(const Segmentation& of, const Answers& 
   return order;
 }
 
-// Voxels of 1 mm along the patient's axes, the first one at 0: what a program writes that was told
-// of no place.
-bool saysNoPlace(const GridGeometry& g) {
+std::string stepsText(const Vec3& mm) {
+  return plainNumber(mm.x) + " x " + plainNumber(mm.y) + " x " + plainNumber(mm.z) + " mm";
+}
+
+// Along the patient's axes, the first voxel at 0, in steps of 1 mm or the CT's: what a program
+// writes that was told of no place.
+bool saysNoPlace(const GridGeometry& g, const GridGeometry& ct) {
+  const auto inSteps = [&](const Vec3& mm) {
+    return glm::all(glm::lessThan(glm::abs(g.spacing_mm - mm), Vec3(1e-3)));
+  };
+  if (!inSteps(Vec3(1.0)) && !inSteps(ct.spacing_mm)) return false;
   for (int axis = 0; axis < 3; ++axis) {
-    const double origin = std::abs(g.origin_mm[axis]);
-    const double most = std::abs(g.direction[axis][patientAxis(g, axis)]);
-    if (std::abs(g.spacing_mm[axis] - 1.0) > 1e-6 || most < 1.0 - 1e-6) return false;
+    const int along = patientAxis(g, axis);
+    const double origin = std::abs(g.origin_mm[along]);
+    if (std::abs(g.direction[axis][along]) < 1.0 - 1e-6) return false;
     // The other end where slices were reversed.
-    if (origin > 1e-6 && std::abs(origin - (g.size[std::size_t(axis)] - 1.0)) > 1e-6) return false;
+    const double far_end = (g.size[std::size_t(axis)] - 1.0) * g.spacing_mm[axis];
+    if (origin > 1e-6 && std::abs(origin - far_end) > 1e-6) return false;
   }
   return true;
 }
 
 // Asks what becomes of one that says nothing of its place and may be the CT's own, voxel by voxel.
 Status placeByItsSize(Segmentation& of, const GridGeometry& ct, Asking& asking, StructureFit& fit) {
-  if (of.geometry.size != ct.size || sharesVoxels(of.geometry, ct) || !saysNoPlace(of.geometry)) {
+  if (of.geometry.size != ct.size || sharesVoxels(of.geometry, ct) ||
+      !saysNoPlace(of.geometry, ct)) {
     return {};
   }
   const std::string what =
-      "The file is of the CT's size and says nothing of where it lies: voxels of 1 mm, the first "
-      "at 0";
-  const auto chosen = asking.ask({"NO_AFFINE",
-                                  what,
-                                  {"refuse", "keep", "ct"},
-                                  {"Do not use the segmentation",
-                                   "Where it says, with voxels of 1 mm",
-                                   "On the CT, voxel by voxel"}});
+      "The file is of the CT's size and says nothing of where it lies: voxels of " +
+      stepsText(of.geometry.spacing_mm) + ", the first at 0";
+  const auto chosen =
+      asking.ask({"NO_AFFINE",
+                  what,
+                  {"refuse", "keep", "ct"},
+                  {"Do not use the segmentation", "Where it says, with the first voxel at 0",
+                   "On the CT, voxel by voxel"}});
   if (!chosen) return chosen.error();
   if (*chosen == "ct") of.geometry = ct;
   fit.findings.push_back(

@@ -11,6 +11,11 @@ namespace {
 
 constexpr const char* kImplausibleHu = "IMPLAUSIBLE_HU";
 
+bool hasPadding(const SeriesReport& report) {
+  return std::ranges::find(report.findings, "PADDING_TO_AIR", &Finding::code) !=
+         report.findings.end();
+}
+
 }  // namespace
 
 void checkHu(const HuLook& look, const Answers& answers, SeriesReport& report) {
@@ -39,12 +44,24 @@ void checkHu(const HuLook& look, const Answers& answers, SeriesReport& report) {
     report.findings.push_back(
         {"NO_AIR",
          "notice",
-         "Hardly anything in it lies where air does; the smallest value is " +
-             std::to_string(report.hu_min.value_or(0)) +
+         (hasPadding(report) ? std::string("Hardly anything in it but padding lies where air does")
+                             : "Hardly anything in it lies where air does; the smallest value is " +
+                                   std::to_string(report.hu_min.value_or(0))) +
              ". It is small or cropped, or these are stored values and not HU",
          {},
          "Nothing was changed; if bone and air look wrong, export it again with its rescale"});
   }
+}
+
+void sayPadding(const UnnamedPadding& padding, SeriesReport& report) {
+  if (padding.voxels == 0) return;
+  report.findings.push_back({"PADDING_TO_AIR",
+                             "notice",
+                             counted(padding.voxels, "voxel") + " had " +
+                                 std::to_string(padding.hu) +
+                                 " HU, which nothing in a patient has: the space around the scan",
+                             {},
+                             "They became air"});
 }
 
 bool refusedByHu(const SeriesReport& report, const Answers& answers) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "imaging/common/hu_look.h"
+#include "imaging/common/stored_values.h"
 #include "imaging/report/report.h"
 
 namespace trephine {
@@ -9,6 +10,8 @@ namespace trephine {
 // Asks IMPLAUSIBLE_HU where the values can hardly be HU, a refusal unless answered; else notes
 // NO_AIR. `report` holds the range of the HU.
 void checkHu(const HuLook& look, const Answers& answers, SeriesReport& report);
+// Notes PADDING_TO_AIR, where there was any.
+void sayPadding(const UnnamedPadding& padding, SeriesReport& report);
 // Whether it was asked when the series was read, and these answers do not agree.
 bool refusedByHu(const SeriesReport& report, const Answers& answers);
 

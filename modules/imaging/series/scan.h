@@ -24,14 +24,15 @@ std::optional<FileId> fileId(const std::filesystem::path& file);
 
 struct ScannedFiles {
   std::vector<DicomHeader> headers;  // sorted by SOP Instance UID, then frame and path
-  std::vector<std::filesystem::path> volume_files;  // NIfTI and the like, sorted
-  std::vector<std::filesystem::path> archives;      // and packed files, not unpacked
-  int dicom_files = 0;                              // that were read
-  int files_seen = 0;                               // everything that is not a folder
-  int not_looked_at = 0;                            // since a series was chosen before the end
-  std::set<std::filesystem::path> folders_left;     // in which those files lie
-  std::map<std::string, int> skipped;               // by reason; none names a file
-  FileIds came_upon;                                // files and folders, read or not
+  std::vector<std::filesystem::path> volume_files;   // NIfTI and the like, sorted
+  std::vector<std::filesystem::path> archives;       // and packed files, not unpacked
+  int dicom_files = 0;                               // that were read
+  int files_seen = 0;                                // everything that is not a folder
+  int not_looked_at = 0;                             // since a series was chosen before the end
+  std::set<std::filesystem::path> folders_left;      // in which those files lie
+  std::map<std::string, int> skipped;                // by reason; none names a file
+  std::map<std::filesystem::path, int> empty_files;  // by folder
+  FileIds came_upon;                                 // files and folders, read or not
 };
 
 // `path` is a folder, taken with its subfolders, or one file. Of a DICOMDIR the files that it names

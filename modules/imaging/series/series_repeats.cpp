@@ -140,6 +140,98 @@ std::optional<std::vector<int>> phasesInTurn(
   return phases;
 }
 
+// The steps of these places, where they are nearly all the same [mm]; 0: they are not.
+double evenStep_mm(const std::vector<double>& places_mm) {
+  constexpr double kSame = 0.02, kMostUneven = 0.1;
+  if (places_mm.size() < 3) return 0.0;
+  std::vector<double> steps;
+  for (std::size_t n = 1; n < places_mm.size(); ++n) {
+    steps.push_back(places_mm[n] - places_mm[n - 1]);
+  }
+  std::vector<double> sorted = steps;
+  std::ranges::sort(sorted);
+  const double median = sorted[sorted.size() / 2];
+  const auto uneven = std::ranges::count_if(
+      steps, [&](double step) { return std::abs(step - median) > kSame * median; });
+  return double(uneven) <= kMostUneven * double(steps.size()) ? median : 0.0;
+}
+
+// Whether the slices of two or more phases lie between one another, at places of their own: each
+// phase is an even stack of its own, the longer the more there are, since values that change from
+// slice to slice make such stacks by chance; and where two of them overlap both have slices, three
+// at least.
+bool areInterleaved(const std::vector<int>& phases, const std::vector<double>& places_mm) {
+  constexpr std::ptrdiff_t kFewest = 3;
+  const int count = 1 + std::ranges::max(phases);
+  if (count < 2 || count > kMostPhases) return false;
+  std::vector<std::vector<double>> of(std::size_t(count), std::vector<double>{});
+  for (std::size_t n = 0; n < phases.size(); ++n) {
+    of[std::size_t(phases[n])].push_back(places_mm[n]);
+  }
+  for (const std::vector<double>& phase : of) {
+    if (phase.size() < 2 * std::size_t(count)) return false;
+    if (!(evenStep_mm(phase) > 2.0 * kSamePlace_mm)) return false;
+  }
+  for (std::size_t a = 0; a < of.size(); ++a) {
+    for (std::size_t b = 0; b < a; ++b) {
+      const double low = std::max(of[a].front(), of[b].front());
+      const double high = std::min(of[a].back(), of[b].back());
+      const auto within = [&](const std::vector<double>& phase) {
+        return std::ranges::count_if(phase, [&](double mm) { return mm >= low && mm <= high; });
+      };
+      if (within(of[a]) >= kFewest && within(of[b]) >= kFewest) return true;
+    }
+  }
+  return false;
+}
+
+// Each slice's phase by the value of a key, of few values.
+std::optional<std::vector<int>> byValue(const Key& key,
+                                        const std::vector<const DicomHeader*>& slices) {
+  std::map<double, int> numbers;
+  std::vector<double> values;
+  for (const DicomHeader* slice : slices) {
+    const std::optional<double> value = key.of(*slice);
+    if (!value) return std::nullopt;
+    values.push_back(*value);
+    numbers[*value] = 0;
+  }
+  if (numbers.size() < 2 || 3 * numbers.size() > slices.size()) return std::nullopt;
+  int number = 0;
+  for (auto& [value, its] : numbers) its = number++;
+  std::vector<int> phases;
+  for (const double value : values) phases.push_back(numbers.at(value));
+  return phases;
+}
+
+// Each slice's phase where a number grows from slice to slice along the scan, and the scan is gone
+// through again and again in one direction: a step back starts the next.
+std::optional<std::vector<int>> bySweep(
+    const std::function<std::optional<double>(const DicomHeader&)>& number,
+    const std::vector<const DicomHeader*>& slices, const std::vector<double>& places_mm) {
+  std::vector<std::pair<double, std::size_t>> order;
+  for (std::size_t n = 0; n < slices.size(); ++n) {
+    const std::optional<double> value = number(*slices[n]);
+    if (!value) return std::nullopt;
+    order.emplace_back(*value, n);
+  }
+  std::ranges::sort(order);
+  std::size_t up = 0;
+  for (std::size_t i = 1; i < order.size(); ++i) {
+    if (order[i].first == order[i - 1].first) return std::nullopt;
+    up += places_mm[order[i].second] > places_mm[order[i - 1].second] ? 1 : 0;
+  }
+  const bool upwards = 2 * up > order.size();
+  std::vector<int> phases(slices.size(), 0);
+  int phase = 0;
+  for (std::size_t i = 1; i < order.size(); ++i) {
+    const bool rises = places_mm[order[i].second] > places_mm[order[i - 1].second];
+    if (rises != upwards) ++phase;
+    phases[order[i].second] = phase;
+  }
+  return phase > 0 ? std::optional(phases) : std::nullopt;
+}
+
 // The slices' rank at their place, and the key that tells them apart everywhere; where none does,
 // by instance number.
 struct Ranks {
@@ -288,10 +380,6 @@ std::vector<std::size_t> chooseRepeats(const std::vector<const DicomHeader*>& sl
   const std::vector<Place> places = placesOf(places_mm);
   const auto [least, most] = std::ranges::minmax(places, {}, &Place::count);
   std::vector<std::size_t> chosen;
-  if (most.count() == 1 || places.size() == 1) {
-    for (std::size_t n = 0; n < slices.size(); ++n) chosen.push_back(n);
-    return chosen;
-  }
   const std::vector<Key> keys = keysOf(slices);
   std::optional<std::vector<int>> phases;
   std::string told_apart_by;
@@ -300,12 +388,30 @@ std::vector<std::size_t> chooseRepeats(const std::vector<const DicomHeader*>& sl
     phases = std::move(some);
     told_apart_by = by;
   };
+  const auto instance = [](const DicomHeader& h) { return parseDecimal(h.instance_number); };
+  // Scans that lie between one another share no place.
+  const bool single = most.count() == 1 && places.size() > 1;
+  if (single) {
+    const auto interleaved = [&](std::optional<std::vector<int>> some, const char* by) {
+      if (some && areInterleaved(*some, places_mm)) found(std::move(some), by);
+    };
+    for (const Key& key : keys) interleaved(byValue(key, slices), key.name);
+    for (const Key& key : keys) {
+      const bool is_time = std::string_view(key.name).ends_with(" time");
+      if (is_time && !phases) interleaved(bySweep(key.of, slices, places_mm), key.name);
+    }
+    if (!phases) interleaved(bySweep(instance, slices, places_mm), "instance number");
+  }
+  if ((single && !phases) || places.size() == 1) {
+    for (std::size_t n = 0; n < slices.size(); ++n) chosen.push_back(n);
+    return chosen;
+  }
   const bool scanned_again = areMostRepeated(places);
   for (std::size_t key = 0; scanned_again && key < keys.size() && !phases; ++key) {
     found(phasesBy(keys[key], slices, places), keys[key].name);
   }
   const Ranks rank = ranks(slices, places, keys);
-  if (rank.key && least.count() == most.count() && most.count() <= kMostPhases) {
+  if (rank.key && !single && least.count() == most.count() && most.count() <= kMostPhases) {
     found(rank.of, rank.key);
   }
   for (std::size_t key = 0; scanned_again && key < keys.size() && !phases; ++key) {
@@ -313,9 +419,7 @@ std::vector<std::size_t> chooseRepeats(const std::vector<const DicomHeader*>& sl
     if (is_time) found(phasesInTurn(keys[key].of, slices, places), keys[key].name);
   }
   if (!phases && scanned_again) {
-    found(phasesInTurn([](const DicomHeader& h) { return parseDecimal(h.instance_number); }, slices,
-                       places),
-          "instance number");
+    found(phasesInTurn(instance, slices, places), "instance number");
   }
   const auto take = [&](const std::vector<int>& of, int wanted) {
     for (const Place& place : places) {
@@ -349,10 +453,23 @@ std::vector<std::size_t> chooseRepeats(const std::vector<const DicomHeader*>& sl
       choice.on_screen.push_back(middle.description);
       choice.shown.push_back(int(&middle - all.data()));
     }
+    if (single) {
+      choice.options.emplace_back("all");
+      choice.words.push_back("They are one scan: use all " + counted(slices.size(), "slice"));
+      choice.on_screen.emplace_back();
+      choice.shown.push_back(-1);
+    }
     const std::string answer = ask(std::move(choice), answers, report.choices);
     const std::string text = "The series holds " + std::to_string(report.phases) +
                              (by_kernel ? " reconstructions" : " phases or repeated acquisitions") +
+                             (single ? " whose slices lie between one another" : "") +
                              ", told apart by " + told_apart_by;
+    if (answer == "all") {
+      report.findings.push_back(
+          {"PHASES", "repair", text, {}, "All were taken as one scan, as was chosen"});
+      for (std::size_t n = 0; n < slices.size(); ++n) chosen.push_back(n);
+      return chosen;
+    }
     if (answer == "refuse") {
       report.findings.push_back({"PHASES", "refusal", text, {}, "Choose one of them"});
       take(*phases, 0);

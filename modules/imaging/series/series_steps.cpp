@@ -179,6 +179,7 @@ struct Line {
   Slices slices;
   double step_mm = 0.0;
   std::int64_t missing = 0;  // slices between the first and the last one
+  bool numbered_on = false;  // StackInput's
 };
 
 Finding roundedFinding(double grid_mm, double step_mm) {
@@ -263,7 +264,10 @@ void planGaps(Slices slices, const Steps& steps, const Answers& answers,
   planAsTheyAre(slices, stack);
   stack.findings.push_back(
       {"MISSING_SLICES", "refusal", text, places,
-       rounded    ? "Choose which it is: a series that is numbered without a break lacks none"
+       rounded    ? rounded->numbered_on
+                        ? "Choose which it is: its slices are numbered without a break, as where "
+                          "none is missing"
+                        : "Choose which it is: count the slices where the series comes from"
        : fillable ? "Copy or export the series again, or choose to fill in"
                   : "Copy or export the series again"});
 }
@@ -560,6 +564,7 @@ void planAlongNormal(Slices slices, const StackInput& input, const Vec3& normal,
   if (grid_mm > 0.0 && (!steps.even || steps.gaps)) {
     const Rounded rounded = lineFor(slices, steps, input, grid_mm, mostRounded_mm(grid_mm, normal));
     offered = rounded.offered;
+    if (offered) offered->numbered_on = input.numbered_on;
     if (rounded.taken && explained(rounded.taken->slices).even) {
       slices = rounded.taken->slices;
       steps = explained(slices);

@@ -2,6 +2,7 @@
 // did: the ones are asked about or said, the others read without a word.
 #include <cmath>
 #include <cstring>
+#include <glm/gtc/matrix_transform.hpp>
 #include <glm/gtc/quaternion.hpp>
 #include <random>
 
@@ -522,8 +523,9 @@ TEST_F(NiftiForms, OneThatSaysNothingOfItsPlaceAndHasTheCtsSizeIsAskedAbout) {
     const Result<Volume> ct = readVolume(folder() / "ct.nii");
     ASSERT_TRUE(ct.ok());
     of.labels = true;
-    of.sform = of.qform = Mat4(1.0);
-    of.pixdim = Vec3(1.0);
+    // In steps of 1 mm or the CT's.
+    if (n % 2 == 0) of.pixdim = Vec3(1.0);
+    of.sform = of.qform = glm::scale(Mat4(1.0), of.pixdim);
     writeBytes(temporary_ / "labels.nii", niftiBytes(of));
     EXPECT_EQ(importStructures(temporary_ / "labels.nii", *ct).error().code, "NO_AFFINE");
     StructureRequest request;
@@ -536,6 +538,92 @@ TEST_F(NiftiForms, OneThatSaysNothingOfItsPlaceAndHasTheCtsSizeIsAskedAbout) {
 }
 
 // --- Volume files ---
+
+// A header's numbers are the file's own, and voxels are what lies behind it.
+TEST_F(NiftiForms, AFileThatIsLongerThanItsHeaderSaysIsRefused) {
+  Nifti of;
+  of.sform = of.qform = Mat4(1.0);
+  of.pixdim = Vec3(1.0);
+  writeCt(of);
+  const std::string whole = readBytes(folder() / "ct.nii");
+  const Volume right = import();
+  for (const int more : {1, 2, 35, 352, 4096}) {
+    const std::string longer = whole + std::string(std::size_t(more), '\1');
+    for (const bool packed : {false, true}) {
+      fs::remove_all(folder());
+      fs::create_directories(folder());
+      writeBytes(folder() / (packed ? "ct.nii.gz" : "ct.nii"),
+                 packed ? packedBy(Deflate::gzip, longer) : longer);
+      const CtFolder ct = scan();
+      const Error why = refusal();
+      EXPECT_EQ(why.code, "UNREADABLE") << more;
+      EXPECT_NE(why.what.find("longer than its header says"), std::string::npos) << why.what;
+    }
+  }
+  // Bytes behind a gzip stream are none of it.
+  fs::remove_all(folder());
+  fs::create_directories(folder());
+  writeBytes(folder() / "ct.nii.gz", packedBy(Deflate::gzip, whole) + std::string(512, '\0'));
+  EXPECT_EQ(import().hu, right.hu);
+  // The four bytes behind the header, which some writers do not count.
+  for (const float offset : {0.0F, 348.0F, 352.0F}) {
+    std::string bytes = whole;
+    std::memcpy(bytes.data() + 108, &offset, sizeof offset);
+    fs::remove_all(folder());
+    fs::create_directories(folder());
+    writeBytes(folder() / "ct.nii", bytes);
+    EXPECT_EQ(import().hu, right.hu) << offset;
+  }
+}
+
+TEST_F(NiftiForms, AWrongByteOrderIsDoubtedAndAsksNoOther) {
+  std::mt19937 random(9);
+  for (int n = 0; n < 20; ++n) {
+    // A smooth body in air, with noise.
+    Volume volume;
+    volume.geometry.size = {20, 18, 8};
+    const int noise = 1 + n;
+    for (std::size_t at = 0; at < volume.geometry.voxelCount(); ++at) {
+      const int x = int(at % 20), y = int(at / 20 % 18);
+      const bool body = (x - 10) * (x - 10) + (y - 9) * (y - 9) < 30 + n;
+      volume.hu.push_back(std::int16_t((body ? 40 : -1000) + int(random() % unsigned(noise))));
+    }
+    fs::create_directories(folder());
+    ASSERT_TRUE(writeVolume(volume, folder() / "ct.nii"));
+    EXPECT_EQ(import().hu, volume.hu) << noise;
+    EXPECT_EQ(find(chosen(), "IMPLAUSIBLE_HU"), nullptr);
+    std::string bytes = readBytes(folder() / "ct.nii");
+    for (std::size_t at = 352; at < bytes.size(); at += 2) std::swap(bytes[at], bytes[at + 1]);
+    writeBytes(folder() / "ct.nii", bytes);
+    scan();
+    const Error why = refusal();
+    EXPECT_EQ(why.code, "IMPLAUSIBLE_HU");
+    EXPECT_NE(why.what.find("byte order"), std::string::npos) << why.what;
+  }
+}
+
+TEST_F(NiftiForms, ALabelMapOfTheWrongByteOrderIsRefused) {
+  Nifti of;
+  of.sform = of.qform = Mat4(1.0);
+  of.pixdim = Vec3(1.0);
+  writeCt(of);
+  const Result<Volume> ct = readVolume(folder() / "ct.nii");
+  ASSERT_TRUE(ct.ok());
+  Volume labels = *ct;
+  for (std::size_t n = 0; n < labels.hu.size(); ++n) labels.hu[n] = n % 7 < 3 ? 5 * 256 : 0;
+  ASSERT_TRUE(writeVolume(labels, temporary_ / "labels.nii"));
+  const auto fit = importStructures(temporary_ / "labels.nii", *ct);
+  ASSERT_FALSE(fit.ok());
+  EXPECT_NE(fit.error().what.find("another order"), std::string::npos) << fit.error().sentence();
+}
+
+TEST_F(NiftiForms, MicrometresAreNoHospitalsCt) {
+  Nifti of;
+  of.pixdim = Vec3(0.0015);
+  of.sform = of.qform = glm::scale(Mat4(1.0), of.pixdim);
+  writeCt(of);
+  EXPECT_EQ(refusal().code, "BAD_GEOMETRY");
+}
 
 TEST_F(NiftiForms, WhatStandsAroundTheScanBecomesAirAndStreaksOfMetalDoNot) {
   std::mt19937 random(7);
@@ -680,6 +768,36 @@ TEST_F(HeadersDisagree, AnOverlayInTheHighBitsIsMaskedWithoutAWord) {
   EXPECT_EQ(chosen().verdict, Verdict::pass);
 }
 
+TEST_F(HeadersDisagree, WhatStandsAroundTheScanBecomesAirInDicomToo) {
+  for (const int padding : {-3024, -2048, -2000}) {
+    fs::remove_all(folder());
+    Volume volume = rampVolume({16, 16, 8});
+    for (std::size_t n = 0; n < volume.hu.size(); ++n) {
+      volume.hu[n] = std::int16_t(n % 5 == 0 ? padding : n % 3 == 0 ? -1000 : 40);
+    }
+    write(volume);
+    const Volume read = import();
+    EXPECT_EQ(*std::ranges::min_element(read.hu), -1000) << padding;
+    EXPECT_NE(find(chosen(), "PADDING_TO_AIR"), nullptr) << codes(chosen());
+    EXPECT_EQ(chosen().verdict, Verdict::pass);
+    EXPECT_EQ(chosen().hu_min, -1000);
+  }
+}
+
+TEST_F(HeadersDisagree, EmptyFilesBesideASeriesAreNotedAsWhatMayBeMissing) {
+  write(rampVolume({7, 5, 8}));
+  writeBytes(slice(8), "");
+  const CtFolder ct = scan();
+  ASSERT_NE(find(ct.report().series.front(), "INCOMPLETE"), nullptr);
+  EXPECT_NE(find(ct.report().series.front(), "INCOMPLETE")->text.find("1 empty file lies"),
+            std::string::npos);
+  EXPECT_EQ(ct.report().series.front().verdict, Verdict::pass);
+  // One that lies elsewhere is none of it.
+  fs::remove(slice(8));
+  writeBytes(folder() / "other" / "notes.txt", "");
+  EXPECT_EQ(find(scan().report().series.front(), "INCOMPLETE"), nullptr);
+}
+
 TEST_F(HeadersDisagree, SlicesAtOnePlaceAreOfferedByTheirLocation) {
   writeSlices(12);
   const Volume truth = import();
@@ -707,7 +825,7 @@ TEST_F(HeadersDisagree, SlopesOfAnotherSignAreAskedAbout) {
     if (++slices == 3) put(data, DCM_RescaleSlope, "-1");
   });
   EXPECT_EQ(expectRefused("SLOPES_DIFFER").slices.size(), 1u);
-  import({{"SLOPES_DIFFER", "accept"}});
+  import({{ "SLOPES_DIFFER", "accept" }});
   EXPECT_EQ(chosen().verdict, Verdict::repaired);
 }
 

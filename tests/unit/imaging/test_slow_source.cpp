@@ -61,8 +61,8 @@ class SlowSourceTest : public SeriesFixture {
     put(344, std::array<char, 4>{'n', '+', '1', '\0'});
     std::string voxels(std::size_t(2000000) * std::size_t(slices), '\x18');
     for (std::size_t n = 1; n < voxels.size(); n += 2) voxels[n] = '\xFC';
-    // Tissue in it, else it would be air alone.
-    for (std::size_t n = 0; n < voxels.size(); n += 200) voxels.replace(n, 2, "\x28\0", 2);
+    // A fiftieth is tissue, else it would be air alone.
+    for (std::size_t n = 0; n < voxels.size(); n += 100) voxels.replace(n, 2, "\x28\0", 2);
     writeBytes(folder() / name, header + voxels);
   }
 

@@ -1,4 +1,6 @@
 // Several slices at one place: phases, copies, overlaps.
+#include <random>
+
 #include "series_fixture.h"
 
 namespace trephine::test {
@@ -200,6 +202,144 @@ TEST_F(TrapRepeats, PhasesWithJitteredSteps) {
     const double hu =
         (1 - share) * patternValue(i, 2, 100) + share * patternValue(i, 2, 101) - 1024;
     ASSERT_NEAR(volume.at(i, 2, 1), hu, 0.5 + 1e-6);
+  }
+}
+
+// --- Scans whose slices lie between one another ---
+
+TEST_F(TrapRepeats, ScansThatLieBetweenOneAnotherAreAskedAboutWhateverTellsThemApart) {
+  struct Case {
+    const char* what;
+    DcmTagKey tag;
+    std::function<std::string(int phase, int k)> value;
+  };
+  const auto number = [](int base, int each) {
+    return [=](int phase, int k) { return std::to_string(base + each * phase + k * (each > 1)); };
+  };
+  const std::vector<Case> cases = {
+      {"acquisition", DCM_AcquisitionNumber, number(3, 1)},
+      {"temporal position", DCM_TemporalPositionIdentifier, number(1, 1)},
+      {"one time each", DCM_AcquisitionTime, number(101500, 1)},
+      {"times", DCM_AcquisitionTime, number(100000, 100)},
+      {"content times", DCM_ContentTime, number(100000, 100)},
+      {"tube voltage", DCM_KVP, [](int phase, int) { return phase ? "140" : "80"; }},
+      {"kernel", DCM_ConvolutionKernel, [](int phase, int) { return phase ? "B70f" : "B30f"; }},
+      {"instance number", DCM_InstanceNumber, number(1, kSlices)}};
+  for (const Case& one : cases) {
+    for (const double shift_mm : {1.0, 0.7, 5.0}) {
+      std::filesystem::remove_all(folder());
+      for (int phase = 0; phase < 2; ++phase) {
+        for (int k = 0; k < kSlices; ++k) {
+          Image slice = image(phase, k, 1 + 2 * k + (k % 2 ? 1 - phase : phase));
+          slice.position_mm.z += shift_mm * phase;
+          addSlice(slice, [&](DcmDataset& data) { put(data, one.tag, one.value(phase, k)); });
+        }
+      }
+      const std::string what = one.what + (" " + std::to_string(shift_mm));
+      const CtFolder ct = scan();
+      ASSERT_EQ(ct.report().series.size(), 1u) << what;
+      const SeriesReport series = ct.report().series.front();
+      EXPECT_EQ(series.verdict, Verdict::refused) << what;
+      ASSERT_NE(find(series, "PHASES"), nullptr) << what << ": " << codes(series);
+      EXPECT_NE(find(series, "PHASES")->text.find("between one another"), std::string::npos);
+      EXPECT_EQ(series.choices.front().options,
+                (std::vector<std::string>{"refuse", "1", "2", "all"}));
+      for (int phase = 0; phase < 2; ++phase) {
+        const Volume volume = import({{"PHASES", std::to_string(phase + 1)}});
+        ASSERT_EQ(volume.geometry.size, (Index3{7, 5, kSlices})) << what;
+        EXPECT_NEAR(volume.geometry.origin_mm.z, 100.0 + shift_mm * phase, 1e-9) << what;
+        EXPECT_NEAR(volume.geometry.spacing_mm.z, 2.0, 1e-9) << what;
+        EXPECT_EQ(volume.at(2, 3, 4), patternValue(2, 3, 100 * phase + 4) - 1024) << what;
+      }
+      if (shift_mm != 1.0 || one.tag == DCM_KVP || one.tag == DCM_ConvolutionKernel) continue;
+      EXPECT_EQ(import({{"PHASES", "all"}}).geometry.size[2], 2 * kSlices) << what;
+    }
+  }
+}
+
+TEST_F(TrapRepeats, AScanThatCoversAPartOfAnotherIsAskedAboutToo) {
+  for (int phase = 0; phase < 2; ++phase) {
+    for (int k = phase ? 3 : 0; k < kSlices; ++k) {
+      Image slice = image(phase, k, 20 * phase + k + 1);
+      slice.position_mm.z += phase;
+      addSlice(slice, [&](DcmDataset& data) {
+        put(data, DCM_AcquisitionNumber, std::to_string(phase + 1));
+      });
+    }
+  }
+  expectRefused("PHASES");
+  EXPECT_EQ(import({{"PHASES", "1"}}).geometry.size[2], kSlices);
+}
+
+TEST_F(TrapRepeats, OneScanIsOneHoweverItsSlicesAreNumberedAndTimed) {
+  using Mark = std::function<void(Image&, DcmDataset&, int k)>;
+  constexpr int kMany = 24;
+  std::vector<int> shuffled(kMany);
+  for (int k = 0; k < kMany; ++k) shuffled[std::size_t(k)] = k;
+  std::mt19937 random(1);
+  std::ranges::shuffle(shuffled, random);
+  std::vector<std::string> by_name;
+  for (int k = 1; k <= kMany; ++k) by_name.push_back(std::to_string(k));
+  std::ranges::sort(by_name);
+  const auto set = [](DcmDataset& data, const DcmTagKey& tag, int value) {
+    put(data, tag, std::to_string(value));
+  };
+  const std::vector<std::pair<const char*, Mark>> ways = {
+      {"upwards", [&](Image&, DcmDataset& d, int k) { set(d, DCM_InstanceNumber, k + 1); }},
+      {"downwards", [&](Image&, DcmDataset& d, int k) { set(d, DCM_InstanceNumber, kMany - k); }},
+      {"at random",
+       [&](Image&, DcmDataset& d, int k) { set(d, DCM_InstanceNumber, shuffled[std::size_t(k)]); }},
+      {"by name",
+       [&](Image&, DcmDataset& d, int k) {
+         set(d, DCM_InstanceNumber,
+             int(std::ranges::find(by_name, std::to_string(k + 1)) - by_name.begin()));
+       }},
+      {"fours turned round",
+       [&](Image&, DcmDataset& d, int k) { set(d, DCM_InstanceNumber, k / 4 * 4 + 3 - k % 4); }},
+      {"there and back", [&](Image&, DcmDataset& d,
+                             int k) { set(d, DCM_InstanceNumber, k % 2 ? 2 * kMany - k : k); }},
+      {"one number", [&](Image&, DcmDataset& d, int) { set(d, DCM_InstanceNumber, 1); }},
+      {"an acquisition a slice",
+       [&](Image&, DcmDataset& d, int k) { set(d, DCM_AcquisitionNumber, k + 1); }},
+      {"an acquisition every four slices",
+       [&](Image&, DcmDataset& d, int k) { set(d, DCM_AcquisitionNumber, k / 4); }},
+      {"two stations",
+       [&](Image&, DcmDataset& d, int k) { set(d, DCM_AcquisitionNumber, 1 + k / 12); }},
+      {"stations that pass one another by a slice",
+       [&](Image&, DcmDataset& d, int k) {
+         set(d, DCM_AcquisitionNumber, k == 11 ? 2 : k == 12 ? 1 : 1 + k / 12);
+       }},
+      {"a part taken again",
+       [&](Image&, DcmDataset& d, int k) { set(d, DCM_AcquisitionNumber, k / 8 == 1 ? 2 : 1); }},
+      {"times at random",
+       [&](Image&, DcmDataset& d, int k) {
+         set(d, DCM_ContentTime, 100000 + shuffled[std::size_t(k)]);
+       }},
+      {"seconds of three machines",
+       [&](Image&, DcmDataset& d, int k) {
+         set(d, DCM_ContentTime, 100000 + shuffled[std::size_t(k)] / 5);
+       }},
+      {"a second every four slices",
+       [&](Image&, DcmDataset& d, int k) { set(d, DCM_AcquisitionTime, 100000 + k / 4); }},
+      {"times downwards",
+       [&](Image&, DcmDataset& d, int k) { set(d, DCM_AcquisitionTime, 100050 - k); }},
+      {"one time", [&](Image&, DcmDataset& d, int) { set(d, DCM_AcquisitionTime, 100000); }},
+      {"heart beats", [&](Image&, DcmDataset& d, int k) { set(d, DCM_TriggerTime, 750 + k % 7); }},
+      {"a position of time a slice",
+       [&](Image&, DcmDataset& d, int k) { set(d, DCM_TemporalPositionIdentifier, k); }},
+      {"delays in blocks",
+       [&](Image&, DcmDataset& d, int k) { set(d, DCM_TriggerTime, 100 * (k / 6)); }}};
+  ASSERT_GE(ways.size(), 20u);
+  for (const auto& [what, mark] : ways) {
+    std::filesystem::remove_all(folder());
+    for (int k = 0; k < kMany; ++k) {
+      Image slice = image(0, k, k + 1);
+      addSlice(slice, [&, m = mark](DcmDataset& data) { m(slice, data, k); });
+    }
+    const CtFolder ct = scan();
+    ASSERT_EQ(ct.report().series.size(), 1u) << what;
+    EXPECT_EQ(ct.report().series.front().verdict, Verdict::pass)
+        << what << ": " << codes(ct.report().series.front());
   }
 }
 
