@@ -286,6 +286,14 @@ Result<GivenAnswers> answersOf(const std::vector<std::string>& choices) {
   return answers;
 }
 
+// Where the case's CT asks something: how it is answered here.
+Error withWay(Error error, const std::string& case_source) {
+  if (!isChoice(error.code)) return error;
+  error.next = "Answer with --choice " + error.code + "=OPTION: 'trephine-lab import " +
+               case_source + "' lists the options";
+  return error;
+}
+
 StructureRequest request(const std::optional<double>& threshold, const Answers& answers,
                          const Case& of) {
   StructureRequest made = requestOf(of, hideNamesOf);
@@ -331,7 +339,7 @@ int importStructuresCommand(const StructureImportArguments& arguments, bool json
   }
   const Result<Case> of =
       readCase(arguments.case_source, Progress(progress, 0.0, 0.5), answers->ct);
-  if (!of) return failed(of.error());
+  if (!of) return failed(withWay(of.error(), arguments.case_source));
   const auto fit = importStructures(arguments.file, *of->volume,
                                     request(arguments.threshold, answers->structures, *of),
                                     Progress(progress, 0.5, 0.9));
@@ -437,7 +445,7 @@ int exportStructuresCommand(const StructureExportArguments& arguments, bool json
   }
   const Result<Case> of =
       readCase(arguments.case_source, Progress(progress, 0.0, 0.4), answers->ct);
-  if (!of) return failed(of.error());
+  if (!of) return failed(withWay(of.error(), arguments.case_source));
   const auto all = structuresOf(arguments, answers->structures, *of, Progress(progress, 0.4, 0.6));
   if (!all) return failed(all.error());
   const Result<LabelMap> chosen = chosenOf(**all, arguments.names);
