@@ -25,7 +25,7 @@
 #include "lab/trades/trade_charts.h"
 #include "lab/trades/trades_measurement.h"
 #include "scene/names.h"
-#include "session/case.h"
+#include "case/case.h"
 #include "training/recording_list.h"
 #include "training/replay.h"
 #include "volume/phantom_file.h"

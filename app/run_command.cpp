@@ -14,7 +14,7 @@
 #include "scene/names.h"
 #include "scene/scene_numbers.h"
 #include "session/arm_devices.h"
-#include "session/case.h"
+#include "case/placement.h"
 #include "session/session.h"
 #include "training/tick_table.h"
 #include "volume/volume_files.h"
@@ -40,7 +40,7 @@ Status applyChoices(const RunArguments& arguments, const Policy& policy, Scene& 
   if (other_controller && locks.contains(Lock::controller)) {
     return locked("the controller", "--controller");
   }
-  if (!arguments.case_source.empty()) useCase(scene, arguments.case_source);
+  if (!arguments.case_source.empty()) scene = onCase(std::move(scene), arguments.case_source);
   if (!arguments.labels.empty()) scene.labels_file = arguments.labels;
   if (arguments.rate_hz) scene.rate_hz = *arguments.rate_hz;
   if (!(scene.rate_hz >= 100.0 && scene.rate_hz <= 20000.0)) {
@@ -187,15 +187,15 @@ Result<RunOutcome> runExercise(const RunArguments& arguments, const Policy& poli
   options.recording = freshFile(out, "session", ".h5");
   if (Status can = checkRunTargets(arguments, options.recording); !can) return can.error();
 
-  Result<Case> of = openCase(*scene, progress, hideNamesOf);
+  Result<Placement> of = openCase(*scene, progress, hideNamesOf);
   if (!of) return of.error();
-  Result<std::unique_ptr<Session>> session = Session::create(*scene, *of, options);
+  Result<std::unique_ptr<Session>> session = Session::create(*of, options);
   // Another run may have taken the name meanwhile.
   std::error_code ec;
   while (!session && session.error().code == "CANNOT_WRITE" && fs::exists(options.recording, ec)) {
     options.recording = freshFile(out, "session", ".h5");
     if (Status can = checkRunTargets(arguments, options.recording); !can) return can.error();
-    session = Session::create(*scene, *of, options);
+    session = Session::create(*of, options);
   }
   if (!session) return session.error();
 
@@ -212,7 +212,7 @@ Result<RunOutcome> runExercise(const RunArguments& arguments, const Policy& poli
   saveWhatWasAsked(arguments, options.recording, **session, progress, outcome);
   if (outcome.failure) return outcome;
   const fs::path picture = freshFile(out, "picture", ".png");
-  const Status drawn = writeExercisePicture(**session, of->volume, picture);
+  const Status drawn = writeExercisePicture(**session, of->patient.volume, picture);
   if (drawn) {
     outcome.report.picture = picture.string();
   } else if (isOfThisMachine(drawn.error())) {

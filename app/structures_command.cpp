@@ -18,7 +18,7 @@
 #include "imaging/source_uids.h"
 #include "imaging/structure_importer.h"
 #include "library/name_words.h"
-#include "session/case.h"
+#include "case/case.h"
 #include "structures/compare.h"
 #include "structures/grow.h"
 #include "structures/surface.h"

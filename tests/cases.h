@@ -5,14 +5,15 @@
 #include <memory>
 #include <utility>
 
-#include "session/case.h"
+#include "case/placement.h"
 
 namespace trephine::test {
 
-inline Case placed(Scene scene, Volume volume, std::shared_ptr<const LabelMap> labels = nullptr) {
+inline Placement placed(const Scene& scene, Volume volume,
+                        std::shared_ptr<const LabelMap> labels = nullptr) {
   Case of = caseOf(std::make_shared<const Volume>(std::move(volume)));
   of.structures = std::move(labels);
-  return *placedIn(scene, std::move(of));
+  return *place(scene, std::move(of));
 }
 
 }  // namespace trephine::test

@@ -7,7 +7,7 @@
 #include "exercise/exercise_parts.h"
 #include "exercise/named_files.h"
 #include "scene/scene.h"
-#include "session/case.h"
+#include "case/case.h"
 #include "session/operator_script.h"
 #include "volume/phantom.h"
 #include "volume/segmentation.h"
@@ -43,9 +43,9 @@ class Exporter {
                   const Progress& progress) {
     const CaseFiles given = caseFiles(case_source);
     if (!given.volume.empty() && given.volume != scene.case_source) {
-      // What the scene says of its own case does not hold of another (useCase).
+      // What the scene says of its own case does not hold of another (onCase).
       const bool had_elsewhere = scene.tissues_elsewhere.has_value();
-      useCase(scene, given.volume);
+      scene = onCase(std::move(scene), given.volume);
       if (scene.labels_file.empty()) json.erase("labels");
       if (!scene.outline) json.erase("outline");
       if (had_elsewhere && !scene.tissues_elsewhere) json["tissues"] = toJson(scene.tissues);

@@ -12,7 +12,7 @@
 #include "base/json.h"
 #include "base/progress.h"
 #include "base/result.h"
-#include "session/case.h"
+#include "case/case.h"
 
 namespace trephine {
 

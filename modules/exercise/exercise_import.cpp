@@ -10,7 +10,7 @@
 #include "exercise/exercise_parts.h"
 #include "exercise/named_files.h"
 #include "scene/scene.h"
-#include "session/case.h"
+#include "case/case.h"
 #include "session/operator_script.h"
 #include "volume/phantom.h"
 #include "volume/volume_files.h"

@@ -51,7 +51,7 @@ std::optional<Error> folderError(const ImportReport& report) {
     if (std::ranges::count_if(report.series, isFile) == 1) {
       const SeriesReport& one = *std::ranges::find_if(report.series, isFile);
       const Finding& why = *std::ranges::find(one.findings, "refusal", &Finding::severity);
-      return Error{"NO_CT", one.description + " cannot be used: " + why.text, report.path,
+      return Error{"NO_CT", "The only volume file cannot be used: " + why.text, report.path,
                    why.action};
     }
     if (most != report.skipped.end()) {
@@ -203,8 +203,9 @@ void addEmptyFiles(const ScannedFiles& files, Series& series) {
   if (empty == 0) return;
   keepFinding(series, {"INCOMPLETE",
                        "notice",
-                       counted(std::uint64_t(empty), "empty file", "lies", "lie") +
-                           " beside its slices, which may be slices that were not copied",
+                       counted(std::uint64_t(empty), "file", "lies", "lie") +
+                           " beside its slices that are empty or cut short: slices, perhaps, that "
+                           "were not copied to their end",
                        {},
                        "Copy all files of the series again if the scan ends too early"});
 }
@@ -409,7 +410,7 @@ Result<Volume> CtFolder::Contents::readDicom(Series& series, const ImportRequest
     series.report.hu_min = assembly->counts.hu_min;
     series.report.hu_max = assembly->counts.hu_max;
     if (assembly->counts.padding == 0 && assembly->counts.hu_min < kLowestAir_HU) {
-      sayPadding(unnamedPaddingToAir(assembly->volume.hu), series.report);
+      sayPadding(unnamedPaddingToAir(assembly->volume), series.report);
       series.report.hu_min = *std::ranges::min_element(assembly->volume.hu);
     }
     reading.slices_used = int(plan.sources.size());

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <optional>
 
 #include "imaging/dicom/seg_reader.h"
@@ -74,24 +73,6 @@ Status match(const DicomSegmentation& seg, const Volume& ct, const StructureRequ
   }
   asked = std::move(choice);
   return {};
-}
-
-// How far a corner of the one grid lies from the nearest corner of the other at most, in whatever
-// order they count their voxels.
-double cornersFrom_mm(const GridGeometry& of, const GridGeometry& ct) {
-  Index3 sizes = of.size, ct_sizes = ct.size;
-  std::ranges::sort(sizes);
-  std::ranges::sort(ct_sizes);
-  if (sizes != ct_sizes) return std::numeric_limits<double>::infinity();
-  double most = 0.0;
-  for (const Vec3& one : cornerVoxels(of)) {
-    double least = std::numeric_limits<double>::infinity();
-    for (const Vec3& other : cornerVoxels(ct)) {
-      least = std::min(least, glm::length(of.toPatient_mm(one) - ct.toPatient_mm(other)));
-    }
-    most = std::max(most, least);
-  }
-  return most;
 }
 
 // Of a label map that says in two ways how it lies in the patient (volume_files.h): what was

@@ -28,19 +28,20 @@ const CardText* cardFor(const Scene& scene, std::string_view language) {
   return other ? &*scene.card->zh_TW : &scene.card->en;
 }
 
-void useCase(Scene& scene, const std::string& case_source) {
-  if (case_source == scene.case_source) return;
+Scene onCase(Scene scene, const std::string& case_source) {
+  if (case_source == scene.case_source) return scene;
   if (!scene.case_source.empty()) {
     scene.labels_file.clear();
     if (scene.outline && !scene.outline->frame) scene.outline.reset();
-    const auto& tissues = scene.tissues.tissues;
-    const bool by_number = std::any_of(tissues.begin(), tissues.end(), [](const Tissue& tissue) {
+    const bool by_number = std::ranges::any_of(scene.tissues.tissues, [](const Tissue& tissue) {
       return tissue.label && tissue.structure.empty();
     });
-    if (scene.tissues_elsewhere && by_number)
+    if (scene.tissues_elsewhere && by_number) {
       scene.tissues = *std::exchange(scene.tissues_elsewhere, {});
+    }
   }
   scene.case_source = case_source;
+  return scene;
 }
 
 Status checkLabels(const TissueSet& tissues, const LabelMap* labels) {

@@ -85,11 +85,11 @@ struct Scene {
 // where it has none.
 const CardText* cardFor(const Scene& scene, std::string_view language);
 
-// The scene is run on this case instead ("" is one that has no name): a label map that the scene
-// names beside its own case is of that one, and so are an outline without a frame and tissues that
-// are known by a number of it, where the scene has others for elsewhere. What is known by a
-// structure's name holds anywhere (scene_structures.h).
-void useCase(Scene& scene, const std::string& case_source);
+// The scene as it holds on this case instead of its own ("" is one that has no name): a label map
+// that the scene names beside its own case is of that one, and so are an outline without a frame and
+// tissues that are known by a number of it, where the scene has others for elsewhere. What is known
+// by a structure's name holds anywhere (scene_structures.h). Pure.
+Scene onCase(Scene scene, const std::string& case_source);
 
 // Files that a scene names are found beside it. Errors: MISSING_FILE, BAD_JSON, BAD_FIELD (file,
 // field and value named), BAD_TISSUE, BAD_SCENE.

@@ -3,29 +3,24 @@
 #include <algorithm>
 #include <utility>
 
-#include "scene/scene_structures.h"
-
 namespace trephine {
 
 void SceneHistory::begin(Scene scene) {
   undo_.clear();
   redo_.clear();
   open_.clear();
-  now_ = std::move(scene);
+  now_ = shared(std::move(scene));
 }
 
 void SceneHistory::note(Scene scene, const std::string& what) {
-  if (sameScene(scene, now_)) {
-    now_ = std::move(scene);
-    return;
-  }
+  if (scene == *now_) return;
   redo_.clear();
   if (open_.empty() || open_ != what || undo_.empty()) {
     undo_.push_back({std::move(now_), what});
     if (undo_.size() > kMostSteps) undo_.erase(undo_.begin());
   }
   open_ = what;
-  now_ = std::move(scene);
+  now_ = shared(std::move(scene));
 }
 
 const Scene& SceneHistory::undo() {
@@ -33,7 +28,7 @@ const Scene& SceneHistory::undo() {
   Step step = std::move(undo_.back());
   undo_.pop_back();
   redo_.push_back({std::exchange(now_, std::move(step.scene)), std::move(step.what)});
-  return now_;
+  return *now_;
 }
 
 const Scene& SceneHistory::redo() {
@@ -41,16 +36,7 @@ const Scene& SceneHistory::redo() {
   Step step = std::move(redo_.back());
   redo_.pop_back();
   undo_.push_back({std::exchange(now_, std::move(step.scene)), std::move(step.what)});
-  return now_;
-}
-
-bool sameScene(const Scene& a, const Scene& b) {
-  const auto exercise = [](Scene scene) {
-    scene.tissues = unplaced(std::move(scene.tissues));
-    if (scene.tissues_elsewhere) scene.tissues_elsewhere = unplaced(*std::move(scene.tissues_elsewhere));
-    return scene;
-  };
-  return exercise(a) == exercise(b);
+  return *now_;
 }
 
 SceneMap movedTo(const Scene& scene, std::size_t arm, const std::string& landmark,

@@ -2,8 +2,10 @@
 // rest of the scene. Pure.
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "scene/scene.h"
@@ -20,35 +22,34 @@ class SceneHistory {
   // step until close().
   void note(Scene scene, const std::string& what);
   void close() { open_.clear(); }
-  // It changed by itself, as by being placed in another case: no step.
-  void settle(Scene scene) { now_ = std::move(scene); }
+  // It changed by itself, as by being saved under another name: no step.
+  void settle(Scene scene) { now_ = shared(std::move(scene)); }
 
   bool canUndo() const { return !undo_.empty(); }
   bool canRedo() const { return !redo_.empty(); }
   std::string undoWhat() const { return canUndo() ? undo_.back().what : std::string(); }
   std::string redoWhat() const { return canRedo() ? redo_.back().what : std::string(); }
   // The scene that it would be; null where there is none.
-  const Scene* before() const { return canUndo() ? &undo_.back().scene : nullptr; }
-  const Scene* after() const { return canRedo() ? &redo_.back().scene : nullptr; }
+  const Scene* before() const { return canUndo() ? undo_.back().scene.get() : nullptr; }
+  const Scene* after() const { return canRedo() ? redo_.back().scene.get() : nullptr; }
   // The scene that it is then; only where it can.
   const Scene& undo();
   const Scene& redo();
 
  private:
+  using Shared = std::shared_ptr<const Scene>;
   struct Step {
-    Scene scene;  // to go back or on to
+    Shared scene;  // to go back or on to
     std::string what;
   };
-  Scene now_;
+  static Shared shared(Scene scene) { return std::make_shared<const Scene>(std::move(scene)); }
+
+  Shared now_ = shared({});
   std::vector<Step> undo_, redo_;
   std::string open_;  // what the last step is of, while it goes on
 };
 // Older steps go: a scene with everything is some 20 KB.
 constexpr std::size_t kMostSteps = 500;
-
-// The same exercise: equal in everything that is felt, cut, drawn or said; the labels that a case
-// gives to structures do not count.
-bool sameScene(const Scene& a, const Scene& b);
 
 // The map of an arm that goes with `landmark` from now on, or with "" is fixed where it is in this
 // patient. From a landmark to another it keeps its offset; from a fixed place it stays there.

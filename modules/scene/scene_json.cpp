@@ -4,7 +4,6 @@
 #include "scene/arms_file.h"
 #include "scene/names.h"
 #include "scene/scene_numbers.h"
-#include "scene/scene_structures.h"
 #include "volume/phantom.h"
 
 namespace trephine {
@@ -331,19 +330,14 @@ Result<Scene> readScene(const fs::path& file) {
 }
 
 Json sceneFile(const Scene& scene) {
-  Scene plain = scene;
-  plain.tissues = unplaced(std::move(plain.tissues));
-  Json json = toJson(plain);
+  Json json = toJson(scene);
   const auto name = [](Json& in, const char* key, const std::string& file) {
     if (!file.empty()) in[key] = file;
   };
   name(json, "case", scene.case_source);
   name(json, "labels", scene.labels_file);
   name(json, "operator", scene.operator_file);
-  if (scene.tissues_elsewhere) {
-    TissueSet elsewhere = unplaced(*scene.tissues_elsewhere);
-    json["tissues_elsewhere"] = toJson(elsewhere);
-  }
+  if (scene.tissues_elsewhere) json["tissues_elsewhere"] = toJson(*scene.tissues_elsewhere);
   for (std::size_t i = 0; i < scene.tools.size(); ++i) {
     const ToolLook& look = scene.tools[i].look;
     if (look.mesh.empty()) continue;

@@ -35,22 +35,23 @@ const std::string* lacking(const Scene& scene, const LabelMap* labels) {
 
 }  // namespace
 
-Result<PlacedStructures> placeStructures(Scene& scene, std::shared_ptr<const LabelMap> labels) {
-  PlacedStructures placed{std::move(labels), {}};
+Result<PlacedStructures> placeStructures(const Scene& scene,
+                                         std::shared_ptr<const LabelMap> labels) {
+  PlacedStructures placed{std::move(labels)};
   if (const std::string* name = lacking(scene, placed.labels.get())) {
     if (!scene.tissues_elsewhere) {
       return Error{"NO_STRUCTURE",
                    "The exercise needs the structure '" + *name + "', and the case has none",
                    "the case", "Make it in the slices, or give a label map that names it"};
     }
+    placed.elsewhere = true;
     placed.warnings.push_back(
         {"LACKS_STRUCTURE", "The case has no structure '" + *name +
                                 "': tissue is told by its HU alone, so that whatever has the same "
                                 "HU is taken for it"});
-    scene.tissues = *std::exchange(scene.tissues_elsewhere, {});
   }
-  placed.labels = withShells(scene.tissues, std::move(placed.labels));
-  placeTissues(scene.tissues, placed.labels.get());
+  placed.labels = withShells(placed.elsewhere ? *scene.tissues_elsewhere : scene.tissues,
+                             std::move(placed.labels));
   return placed;
 }
 
@@ -84,13 +85,6 @@ void placeTissues(TissueSet& set, const LabelMap* labels) {
     const Structure* found = labels ? labels->find(tissue.structure) : nullptr;
     tissue.label = found ? found->label : nowhere;
   }
-}
-
-TissueSet unplaced(TissueSet tissues) {
-  for (Tissue& tissue : tissues.tissues) {
-    if (!tissue.structure.empty()) tissue.label.reset();
-  }
-  return tissues;
 }
 
 }  // namespace trephine

@@ -63,37 +63,39 @@ std::filesystem::path freshFile(const std::filesystem::path& folder, const std::
   return file;
 }
 
-Result<std::unique_ptr<Session>> Session::create(const Scene& scene, const Case& of,
+Result<std::unique_ptr<Session>> Session::create(const Placement& placed,
                                                  const SessionOptions& options) {
   std::unique_ptr<Session> session(new Session);
   try {
-    if (Status set = session->set(scene, of, options); !set) return set.error();
+    if (Status set = session->set(placed, options); !set) return set.error();
   } catch (const std::bad_alloc&) {
     return outOfMemory("for the exercise", "the case");
   }
   return session;
 }
 
-Status Session::set(const Scene& scene, const Case& of, const SessionOptions& options) {
-  if (of.misfit) return *of.misfit;
+Status Session::set(const Placement& placed, const SessionOptions& options) {
+  if (placed.error) return *placed.error;
+  const Case& of = placed.patient;
   const Volume& volume = *of.volume;
   if (volume.geometry.voxelCount() > std::numeric_limits<std::uint32_t>::max()) {
     return Error{"TOO_LARGE", "The case has more than 2^32 voxels", "the case",
                  "Crop it or export it at a lower resolution"};
   }
-  if (Status known = checkLabels(scene.tissues, of.labels.get()); !known) return known;
-  for (const Warning& warning : of.warnings) {
+  if (Status known = checkLabels(placed.scene.tissues, placed.labels.get());
+      !known) return known;
+  for (const Warning& warning : placed.warnings) {
     warnings_.push_back(warning);
     spdlog::warn("{}", warning.text);
   }
-  landmarks_ = of.landmarks;
-  scene_ = withFixedMaps(scene, landmarks_);
+  landmarks_ = placed.landmarks;
+  scene_ = placed.scene;
   if (options.poke) {
     scene_.tissues = tooToughToCut(std::move(scene_.tissues));
     scene_.removal = RemovalKind::work;
     poke_curves_.emplace(scene_.arms.size(), scene_.rate_hz);
   }
-  controllers_.emplace_back(controllerName(scene.controller));
+  controllers_.emplace_back(controllerName(scene_.controller));
 
   std::vector<LoopDevice> devices;
   rig_ = options.rig;
@@ -105,8 +107,8 @@ Status Session::set(const Scene& scene, const Case& of, const SessionOptions& op
   sha256_before_ = of.sha256;
   before_ = of.volume;
   structures_ = of.structures;
-  grid_ = std::make_shared<Grid>(Volume(volume), of.labels);
-  warnOfAbsentLabels(scene.tissues, of.labels.get());
+  grid_ = std::make_shared<Grid>(Volume(volume), placed.labels);
+  warnOfAbsentLabels(placed.scene.tissues, placed.labels.get());
   for (const BoundedTissue& b : boundedTissues(scene_, rig_)) {
     spdlog::warn("'{}' is firmer than the {} arm shows: of {:.4g} N s/m and {:.4g} N/m, {:.4g} and "
                  "{:.4g} are felt",
@@ -123,7 +125,7 @@ Status Session::set(const Scene& scene, const Case& of, const SessionOptions& op
   std::unique_ptr<Operator> script;
   if (options.script) {
     script =
-        std::make_unique<ScriptOperator>(*options.script, scene_, armFrames(scene, landmarks_));
+        std::make_unique<ScriptOperator>(*options.script, scene_, armFrames(scene_, landmarks_));
   }
   for (LiveHands::Hand& hand : hands_.hands) {
     hand = {};
@@ -147,7 +149,7 @@ Status Session::set(const Scene& scene, const Case& of, const SessionOptions& op
   if (!options.recording.empty()) {
     recording_file_ = options.recording;
     const RecordingHeader header{toJson(RecordedScene{scene_, rig_}), sha256_before_, grid_->geometry(), buildName(),
-                                 of.labels ? labelsSha256(*of.labels) : ""};
+                                 placed.labels ? labelsSha256(*placed.labels) : ""};
     Result<std::unique_ptr<SessionRecorder>> recorder =
         SessionRecorder::create(options.recording, header, scene_.arms.size());
     if (!recorder) return recorder.error();

@@ -21,7 +21,7 @@
 #include "base/result.h"
 #include "haptics/haptic_loop.h"
 #include "scene/scene.h"
-#include "session/case.h"
+#include "case/placement.h"
 #include "session/live_operator.h"
 #include "session/operator_script.h"
 #include "session/poke_curves.h"
@@ -47,10 +47,9 @@ struct SessionOptions {
 
 class Session {
  public:
-  // Takes a copy of the voxels of a case that was placed in the scene, opens the devices, starts
-  // the recording. Errors of all of these, the case's misfit, OUT_OF_MEMORY; nothing is left behind
-  // on one. Any thread.
-  static Result<std::unique_ptr<Session>> create(const Scene& scene, const Case& of,
+  // Takes a copy of the voxels of the case, opens the devices, starts the recording. Errors of all
+  // of these, the placement's, OUT_OF_MEMORY; nothing is left behind on one. Any thread.
+  static Result<std::unique_ptr<Session>> create(const Placement& placed,
                                                  const SessionOptions& options);
   ~Session();
   Session(const Session&) = delete;
@@ -179,7 +178,7 @@ class Session {
   struct Engine;
 
   Session() = default;
-  Status set(const Scene& scene, const Case& of, const SessionOptions& options);
+  Status set(const Placement& placed, const SessionOptions& options);
   void startThreads(double seconds);
   Status stopStepped();
   std::uint64_t drainTicks() const;

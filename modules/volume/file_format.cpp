@@ -188,7 +188,7 @@ Error longerThanSaid(const VolumeFileHeader& header, const std::string& by, cons
 }
 
 Status placeVoxels(VolumeFileHeader& header, std::optional<std::uint64_t> offset,
-                   const fs::path& file) {
+                   const fs::path& file, std::uint64_t earliest) {
   std::error_code ec;
   const std::uint64_t all = fs::file_size(header.data.file, ec);
   if (ec) return unreadable("The file with the voxels cannot be read", header.data.file);
@@ -196,7 +196,7 @@ Status placeVoxels(VolumeFileHeader& header, std::optional<std::uint64_t> offset
   const std::uint64_t start = offset ? *offset : all > stored ? all - stored : 0;
   const std::uint64_t bytes = all > start ? all - start : 0;
   const double most = double(bytes) * (header.data.packed ? kMostCompression : 1.0);
-  if (most < double(stored) + double(header.data.skip)) {
+  if (most < double(stored) + double(header.data.skip) || start < earliest) {
     return unreadable("The file is cut short: its header promises more voxels than it holds", file);
   }
   // What is too much stands in front as a rule: a header of its own, or one that is longer than it

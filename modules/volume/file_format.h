@@ -63,10 +63,10 @@ void reverseSlices(Volume& volume);
 Result<std::filesystem::path> fileBeside(const std::filesystem::path& header,
                                          const std::string& name);
 // Completes the header: `data.file`, `data.packed`, `data.skip`, type and geometry are set. Voxels
-// start at `offset`, or, with nothing there, end where the file ends. UNREADABLE where the file is
-// too short to hold them, or one beside the header longer than they are.
+// start at `offset`, or, with nothing there, end where the file ends, and begin at `earliest` or
+// behind it. UNREADABLE where the file is too short to hold them, or longer than they are.
 Status placeVoxels(VolumeFileHeader& header, std::optional<std::uint64_t> offset,
-                   const std::filesystem::path& file);
+                   const std::filesystem::path& file, std::uint64_t earliest = 0);
 // Checks the geometry as the file has it and makes it right-handed.
 Status settle(VolumeFileHeader& header, const std::filesystem::path& file);
 

@@ -28,4 +28,20 @@ double cornersApart_mm(const GridGeometry& a, const GridGeometry& b) {
   return most;
 }
 
+double cornersFrom_mm(const GridGeometry& of, const GridGeometry& other) {
+  Index3 sizes = of.size, other_sizes = other.size;
+  std::ranges::sort(sizes);
+  std::ranges::sort(other_sizes);
+  if (sizes != other_sizes) return std::numeric_limits<double>::infinity();
+  double most = 0.0;
+  for (const Vec3& one : cornerVoxels(of)) {
+    double least = std::numeric_limits<double>::infinity();
+    for (const Vec3& theirs : cornerVoxels(other)) {
+      least = std::min(least, glm::length(of.toPatient_mm(one) - other.toPatient_mm(theirs)));
+    }
+    most = std::max(most, least);
+  }
+  return most;
+}
+
 }  // namespace trephine

@@ -14,4 +14,8 @@ std::array<Vec3, 8> cornerVoxels(const GridGeometry& grid);
 // their sizes differ, and where it is no number.
 double cornersApart_mm(const GridGeometry& a, const GridGeometry& b);
 
+// The farthest that a corner voxel of the one lies from the nearest of the other, in whatever order
+// they count their voxels [mm]. Infinite where their sizes are not the same three.
+double cornersFrom_mm(const GridGeometry& of, const GridGeometry& other);
+
 }  // namespace trephine

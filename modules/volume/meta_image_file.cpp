@@ -131,6 +131,7 @@ Status findVoxels(const Fields& fields, const fs::path& file, std::size_t header
     header.data.file = *data;
     offset = 0;
   }
+  const std::uint64_t earliest = offset.value_or(0);
   if (fields.has({"HeaderSize"})) {
     const auto more = fields.numbers({"HeaderSize"}, 1);
     if (!more || !((*more)[0] >= -1.0 && (*more)[0] <= 1e15)) {
@@ -142,7 +143,7 @@ Status findVoxels(const Fields& fields, const fs::path& file, std::size_t header
       offset.reset();  // the voxels are the end of the file, whatever comes before
     }
   }
-  if (auto status = placeVoxels(header, offset, file); !status) return status;
+  if (auto status = placeVoxels(header, offset, file, earliest); !status) return status;
   if (header.data.packed && fields.has({"CompressedDataSize"})) {
     const auto packed = fields.numbers({"CompressedDataSize"}, 1);
     if (!packed || !((*packed)[0] >= 0.0 && (*packed)[0] <= double(header.data.bytes))) {

@@ -264,11 +264,13 @@ Status checkKind(const NrrdFields& fields, const fs::path& file) {
 
 // Where the line after the next `lines` lines starts.
 std::optional<std::uint64_t> afterLines(const fs::path& file, std::uint64_t at, double lines) {
+  constexpr std::streamsize kMostBytes = std::streamsize(1) << 24;  // of text before voxels
   std::ifstream in(file, std::ios::binary);
   in.seekg(std::streamoff(at));
-  for (; lines > 0.0; --lines) {
-    in.ignore(std::numeric_limits<std::streamsize>::max(), '\n');
-    if (!in || in.eof()) return std::nullopt;
+  for (std::streamsize left = kMostBytes; lines > 0.0; --lines) {
+    in.ignore(left, '\n');
+    left -= in.gcount();
+    if (!in || in.eof() || left <= 0) return std::nullopt;
   }
   return std::uint64_t(in.tellg());
 }
@@ -300,7 +302,7 @@ Status findNrrdVoxels(const NrrdFields& fields, const fs::path& file, VolumeFile
       return unknownFormat("A byte skip of -1 in a gzip file is not read", file,
                            "Export it without one");
     }
-    return placeVoxels(header, std::nullopt, file);
+    return placeVoxels(header, std::nullopt, file, offset);
   }
   const auto start = afterLines(header.data.file, offset, *lines);
   if (!start) return unreadable("The file has fewer lines than its line skip", file);

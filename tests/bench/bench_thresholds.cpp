@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "bench/head_volume.h"
-#include "session/case.h"
+#include "case/placement.h"
 #include "ui/common/colours.h"
 #include "ui/frame/main_window.h"
 #include "ui/frame/start_up.h"

@@ -92,7 +92,7 @@ void run(const Scene& scene, const OperatorScript& script, const Rig& rig = {}) 
   SessionOptions options{{}, script};
   options.rig = rig;
   Result<std::unique_ptr<Session>> session =
-      Session::create(scene, test::placed(scene, smallHead()), options);
+      Session::create(test::placed(scene, smallHead()), options);
   if (!session) return expectSaid(session.error());
   const Status done = (*session)->freewheel(double(kTicks) / scene.rate_hz);
   if (!done) return expectSaid(done.error());

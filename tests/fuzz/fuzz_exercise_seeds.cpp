@@ -41,7 +41,7 @@ Status record(const fs::path& scene_file, const fs::path& file) {
   const Result<OperatorScript> script = dive(*scene);
   if (!script) return script.error();
   Result<std::unique_ptr<Session>> session =
-      Session::create(*scene, test::placed(*scene, smallHead()), {file, *script});
+      Session::create(test::placed(*scene, smallHead()), {file, *script});
   if (!session) return session.error();
   if (Status run = (*session)->freewheel(double(kTicks) / scene->rate_hz); !run) return run;
   const auto recording = SessionReader::open(file);

@@ -90,18 +90,20 @@ Result<GoldenCase> made(const GoldenLine& line) {
   Result<Scene> scene = readScene(resourceFolder() / "scenes" / (line.scene + ".json"));
   if (!scene) return scene.error();
   if (line.grid == CaseGrid::scene) {
-    Result<Case> opened = openCase(*scene);
+    Result<Placement> opened = openCase(*scene);
     if (!opened) return opened.error();
-    if (opened->misfit) return *opened->misfit;
+    if (opened->error) return *opened->error;
+    scene->tissues = opened->scene.tissues;  // with their labels
     return GoldenCase{std::move(*scene), std::move(*opened)};
   }
   const std::string phantom = phantomNamed(scene->case_source).value_or("");
   Result<Volume> volume = line.grid == CaseGrid::oblique ? oblique(phantom) : tilted(phantom);
   if (!volume) return volume.error();
-  useCase(*scene, "");
-  Result<Case> placed =
-      placedIn(*scene, caseOf(std::make_shared<const Volume>(std::move(*volume))));
+  *scene = onCase(*scene, "");
+  Result<Placement> placed =
+      place(*scene, caseOf(std::make_shared<const Volume>(std::move(*volume))));
   if (!placed) return placed.error();
+  scene->tissues = placed->scene.tissues;
   return GoldenCase{std::move(*scene), std::move(*placed)};
 }
 

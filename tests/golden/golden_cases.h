@@ -2,13 +2,13 @@
 #pragma once
 
 #include "golden_line.h"
-#include "session/case.h"
+#include "case/placement.h"
 
 namespace trephine::test {
 
 struct GoldenCase {
   Scene scene;
-  Case of;
+  Placement of;
 };
 
 // Made once, and kept until another is asked for.

@@ -13,8 +13,8 @@ namespace {
 
 constexpr int kWidth = 320, kHeight = 240;
 
-Volume without(const std::string& tissue, const Scene& scene, const Case& of) {
-  Volume volume = *of.volume;
+Volume without(const std::string& tissue, const Scene& scene, const Placement& of) {
+  Volume volume = *of.patient.volume;
   TissueLookup lookup;
   lookup.set(tissueTable(scene.tissues));
   for (std::size_t i = 0; i < volume.hu.size(); ++i) {
@@ -70,7 +70,7 @@ Result<Picture> drawnVolume(const GoldenLine& line, const GoldenCase& shown, Vol
   renderer.zoom(line.zoom);
   if (line.outline && change != Change::colours) {
     const SceneOutline& outline = *shown.scene.outline;
-    renderer.setOutline(outlineOn(shown.scene, shown.of.landmarks, *shown.of.volume),
+    renderer.setOutline(outlineOn(shown.scene, shown.of.landmarks, *shown.of.patient.volume),
                         outline.closed, outline.width_mm);
   }
   if (change == Change::driver) renderer.setSampleDistance(0.9 * SceneRenderer::kSampleDistance);
@@ -107,7 +107,7 @@ Result<Picture> drawn(const GoldenLine& line, Change change) {
   const Result<GoldenCase> shown = goldenCase(line);
   if (!shown) return shown.error();
   Volume volume = change == Change::tissue ? without(line.shows, shown->scene, shown->of)
-                                           : Volume(*shown->of.volume);
+                                           : Volume(*shown->of.patient.volume);
   if (line.slice) return drawnSlice(line, *shown, std::move(volume), change);
   return drawnVolume(line, *shown, std::move(volume), change);
 }

@@ -25,15 +25,17 @@ ROOMS = {
     "device": {"base"},
     "haptics": {"base", "volume", "tissue", "device"},
     "scene": {"base", "volume", "tissue", "haptics"},
+    "case": {"base", "volume", "tissue", "imaging", "scene"},
     "training": {"base", "volume", "tissue", "device", "haptics", "scene"},
-    "session": {"base", "volume", "tissue", "imaging", "device", "haptics", "scene", "training"},
-    "exercise": {"base", "volume", "scene", "session"},
+    "session": {"base", "volume", "tissue", "imaging", "device", "haptics", "scene", "case",
+                "training"},
+    "exercise": {"base", "volume", "scene", "case", "session"},
     "structures": {"base", "volume"},
     "render": {"base", "volume", "tissue", "scene"},
     "plot": {"base"},
     "headset": {"base"},
-    "lab": {"base", "volume", "tissue", "imaging", "device", "haptics", "scene", "training",
-            "session", "render", "plot", "headset"},
+    "lab": {"base", "volume", "tissue", "imaging", "device", "haptics", "scene", "case",
+            "training", "session", "render", "plot", "headset"},
 }
 MODULES = set(ROOMS)
 ROOMS["ui"] = MODULES
@@ -94,6 +96,7 @@ MAY_USE = {
     "haptics": {"glm"},
     "scene": set(),
     "training": {"hdf5"},
+    "case": set(),
     "session": set(),
     "exercise": set(),
     "structures": {"vtk-filters"},
@@ -243,6 +246,8 @@ def check_room(report, rooms, room):
                     report.add(path, line, f'"{header}" is in no room')
                 elif target not in allowed_rooms:
                     report.add(path, line, f"the room '{name}' does not depend on '{target}'")
+                elif "/detail/" in header and target != name:
+                    report.add(path, line, f'"{header}" is private to the room \'{target}\'')
                 elif f"modules/{header}" in VTK_HEADERS and name != "render":
                     report.add(path, line, f'"{header}" is for render alone: it shows VTK')
                 elif not (root / rooms[target]["dir"] / header.split("/", 1)[1]).is_file():
@@ -375,6 +380,10 @@ def check(root, declared):
 VIOLATIONS = [
     ("an arrow against the table", "modules/base/json.h", '#include "volume/grid.h"\n',
      "does not depend on 'volume'"),
+    ("an exercise that knows the open case", "modules/scene/rig.h", '#include "case/case.h"\n',
+     "does not depend on 'case'"),
+    ("a private header elsewhere", "ui/planted.cpp", '#include "volume/detail/planted.h"\n',
+     "private to the room 'volume'"),
     ("a room's undeclared library", "modules/tissue/tissue_set.cpp", "#include <hdf5.h>\n",
      "may not include <hdf5.h>"),
     ("Qt below ui", "modules/volume/grid.cpp", "#include <QString>\n", "may not include <QString>"),

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "library/case_library.h"
-#include "session/case.h"
+#include "case/case.h"
 #include "training/recording_list.h"
 #include "volume/phantom.h"
 

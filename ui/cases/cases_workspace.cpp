@@ -7,7 +7,6 @@
 
 #include "base/file.h"
 #include "scene/scene.h"
-#include "scene/scene_structures.h"
 #include "ui/cases/report_file.h"
 #include "ui/common/actions.h"
 #include "ui/common/error_dialog.h"
@@ -203,7 +202,7 @@ void CasesWorkspace::listRecordings() {
 }
 
 void CasesWorkspace::openEntry(const CaseEntry& entry, Place then) {
-  const std::optional<Case>& open = workstation_.currentCase();
+  const Case* open = workstation_.currentCase();
   if (open && !entry.built_in && open->stored == entry.id) return bench_.go(then);
   const auto begin = [this, then](auto go_on) {
     return [this, then, go_on] {
@@ -232,7 +231,7 @@ void CasesWorkspace::openEntry(const CaseEntry& entry, Place then) {
 
 // The case that is open, whole or not at all, in the background: it can be looked at meanwhile.
 void CasesWorkspace::saveCase() {
-  const std::optional<Case>& of = workstation_.currentCase();
+  const Case* of = workstation_.currentCase();
   if (!of || of->built_in || !of->stored.empty()) return;
   NewCase made = import_to_save_.value_or(NewCase{});
   import_to_save_ = made;  // for another try
@@ -240,7 +239,7 @@ void CasesWorkspace::saveCase() {
   made.structures = of->structures;
   made.provenance = of->provenance;
   made.region = of->anatomy ? of->anatomy->region : BodyRegion::not_sure;
-  made.tissues = toJson(unplaced(workstation_.scene()->tissues));
+  made.tissues = toJson(workstation_.tissues());
   const auto done = std::make_shared<SavedCase>();
   workstation_.save(
       tr("The case is saved. You may remove the stick."),
@@ -251,7 +250,7 @@ void CasesWorkspace::saveCase() {
         return {};
       },
       [this, done, volume = made.volume] {
-        const std::optional<Case>& now = workstation_.currentCase();
+        const Case* now = workstation_.currentCase();
         if (now && now->volume == volume) saved(*done);
         list();
       });
@@ -284,7 +283,7 @@ void CasesWorkspace::rename(const CaseEntry& entry, const QString& name) {
                                 [this, entry, name] { page_->askForName(entry, name); });
                         return;
                       }
-                      const std::optional<Case>& open = workstation_.currentCase();
+                      const Case* open = workstation_.currentCase();
                       if (open && open->stored == renamed->id) {
                         workstation_.setStored(renamed->id, renamed->name);
                         page_->sayInStrip({});
@@ -326,7 +325,7 @@ void CasesWorkspace::askToDelete(const CaseEntry& entry) {
                            id = entry.id](const Progress&) { return library->remove(id); },
                           [this, entry](Status removed) {
                             if (!removed) bench_.report(removed.error());
-                            const std::optional<Case>& open = workstation_.currentCase();
+                            const Case* open = workstation_.currentCase();
                             if (removed && open && open->stored == entry.id) {
                               workstation_.setStored({});
                               open_deleted_ = true;
@@ -387,7 +386,7 @@ void CasesWorkspace::saveReport(const QString& file) {
 }
 
 void CasesWorkspace::showCase() {
-  const std::optional<Case>& of = workstation_.currentCase();
+  const Case* of = workstation_.currentCase();
   if (!of) return;
   const bool phantom = of->built_in;
   const std::string id = phantom ? workstation_.scene()->anatomy : of->stored;

@@ -11,7 +11,7 @@
 #include <QStackedWidget>
 #include <map>
 
-#include "session/case.h"
+#include "case/case.h"
 #include "ui/cases/choice_panel.h"
 #include "ui/cases/report_card.h"
 #include "ui/cases/series_list.h"

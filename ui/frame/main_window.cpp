@@ -233,7 +233,7 @@ void MainWindow::closeEvent(QCloseEvent* event) {
   bench_.takeTyped();
   const bool running = phase != Phase::empty && phase != Phase::ready;
   const bool unsaved = bench_.cutsUnsaved() || workstation().tissuesEdited() ||
-                       workstation().tissuesWait() || workstation().sceneEdited() ||
+                       workstation().sceneEdited() ||
                        prepare_->structuresEdited();
   if (may_close_ || !(running || unsaved)) {
     keep();
@@ -256,7 +256,7 @@ void MainWindow::closeEvent(QCloseEvent* event) {
 
 // What is practised, and on which case: what its series was called may name somebody.
 void MainWindow::showTitle() {
-  const std::optional<Case>& of = workstation().currentCase();
+  const Case* of = workstation().currentCase();
   QStringList words;
   if (workstation().scene()) words << toQt(workstation().scene()->name);
   if (of && !of->stored.empty()) words << toQt(of->name);

@@ -29,8 +29,8 @@ ArmsTab::ArmsTab(Bench& bench, ToolsPanel& tools)
     return workstation_.edit(what, change);
   };
   tools_->mapAt = [this](const Scene& scene, std::size_t arm, const std::string& landmark) {
-    const std::optional<Case>& of = workstation_.currentCase();
-    return of ? movedTo(scene, arm, landmark, of->landmarks) : scene.arms[arm].map;
+    const Case* of = workstation_.currentCase();
+    return of ? movedTo(scene, arm, landmark, workstation_.placed()->landmarks) : scene.arms[arm].map;
   };
   connect(tools_, &ToolsPanel::armChosen, this, &ArmsTab::showBoxes);
   connect(tools_, &ToolsPanel::toolFileWanted, this, [this] {
@@ -179,7 +179,7 @@ void ArmsTab::refresh() {
 // While their tab is in front and no exercise runs: the boxes, and the tools where it begins.
 void ArmsTab::showBoxes() {
   const std::optional<Scene>& scene = workstation_.scene();
-  const std::optional<Case>& of = workstation_.currentCase();
+  const Case* of = workstation_.currentCase();
   const bool idle = workstation_.phase() == Workstation::Phase::ready;
   const bool shown = in_front_ && scene && of && idle;
   if (!shown) {
@@ -192,7 +192,7 @@ void ArmsTab::showBoxes() {
   }
   std::vector<Vec3> workspaces_mm = workstation_.workspaces_mm();
   workspaces_mm.resize(scene->arms.size(), Vec3(100.0));  // of an arm that is not there
-  const Scene placed = withFixedMaps(*scene, of->landmarks);
+  const Scene placed = withFixedMaps(*scene, workstation_.placed()->landmarks);
   std::vector<WorkspaceBox> boxes;
   std::vector<ToolView> tools;
   for (std::size_t i = 0; i < placed.arms.size(); ++i) {
@@ -214,7 +214,7 @@ void ArmsTab::showBoxes() {
 
 // One drag is one edit.
 void ArmsTab::workspaceMoved(const Vec3& centre_mm, bool done) {
-  const std::optional<Case>& of = workstation_.currentCase();
+  const Case* of = workstation_.currentCase();
   if (!workstation_.scene() || !of || !isFinite(centre_mm)) return;
   Scene scene = *workstation_.scene();
   const std::size_t index = tools_->chosenArm();
@@ -223,7 +223,7 @@ void ArmsTab::workspaceMoved(const Vec3& centre_mm, bool done) {
   if (map.fixed) {
     map.fixed->centre_mm = centre_mm;
   } else {
-    for (const PlacedLandmark& landmark : of->landmarks) {
+    for (const PlacedLandmark& landmark : workstation_.placed()->landmarks) {
       if (landmark.id != map.landmark) continue;
       map.offset_mm =
           glm::conjugate(landmark.frame.rotation) * (centre_mm - landmark.frame.position_mm);

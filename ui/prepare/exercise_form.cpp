@@ -574,7 +574,7 @@ QWidget* ExerciseForm::buildLocks() {
 }
 
 void ExerciseForm::setScene(const Scene& scene, const std::vector<PlacedLandmark>& landmarks) {
-  if (!sameScene(scene, scene_)) {  // what was refused was of another
+  if (scene != scene_) {  // what was refused was of another
     for (QLabel* problem : {what_problem_, place_problem_, card_problem_, lock_problem_}) {
       problem->hide();
     }

@@ -112,8 +112,9 @@ void ExerciseTab::refresh() {
                        ? tr("The exercise is locked. %1.").arg(unlockWords(workstation_.policy()))
                        : QString());
   form_->setElsewherePossible(!workstation_.isElsewhere());
-  const std::optional<Case>& of = workstation_.currentCase();
-  form_->setScene(*workstation_.scene(), of ? of->landmarks : std::vector<PlacedLandmark>());
+  const std::optional<Placement>& placed = workstation_.placed();
+  form_->setScene(*workstation_.scene(),
+                  placed ? placed->landmarks : std::vector<PlacedLandmark>());
   form_->showCase(caseWords());
   const bool edited = workstation_.sceneEdited() || workstation_.tissuesEdited();
   form_->showSaved(isOwn() ? edited ? tr("Changed since it was saved.")
@@ -122,9 +123,9 @@ void ExerciseTab::refresh() {
 }
 
 QString ExerciseTab::caseWords() const {
-  const std::optional<Case>& of = workstation_.currentCase();
+  const Case* of = workstation_.currentCase();
   if (!of) return tr("no case");
-  const auto phantom = phantomNamed(workstation_.scene()->case_source);
+  const auto phantom = phantomNamed(of->source);
   const QString name = of->built_in && phantom ? builtInName(std::string(*phantom))
                        : of->stored.empty()    ? tr("a case that is not saved yet")
                                                : toQt(of->name);
@@ -143,12 +144,13 @@ void ExerciseTab::draw(bool on) {
 }
 
 void ExerciseTab::outlineClicked(const Vec3& at_mm) {
-  const std::optional<Case>& of = workstation_.currentCase();
-  if (!workstation_.scene() || !of || of->landmarks.empty()) return;
+  const std::optional<Placement>& placed = workstation_.placed();
+  if (!placed || placed->landmarks.empty()) return;
+  const std::vector<PlacedLandmark>& landmarks = placed->landmarks;
   const Scene& scene = *workstation_.scene();
   // It goes with the landmark that is looked at, or the first.
-  const PlacedLandmark* with = &of->landmarks.front();
-  for (const PlacedLandmark& landmark : of->landmarks) {
+  const PlacedLandmark* with = &landmarks.front();
+  for (const PlacedLandmark& landmark : landmarks) {
     if (landmark.id == scene.view.landmark) with = &landmark;
   }
   if (!scene.outline && !outline_first_) {
@@ -157,7 +159,7 @@ void ExerciseTab::outlineClicked(const Vec3& at_mm) {
   }
   SceneOutline outline;
   if (scene.outline) {
-    const auto here = placedOutline(*scene.outline, of->landmarks);
+    const auto here = placedOutline(*scene.outline, landmarks);
     outline = here ? *here : *scene.outline;
   } else {
     outline.points_mm = {*outline_first_};
@@ -180,13 +182,12 @@ bool ExerciseTab::isOwn() const {
 // With the case that is open, as it lies in the library.
 std::optional<Scene> ExerciseTab::sceneToSave() {
   if (!workstation_.scene() || !workstation_.currentCase()) return {};
-  Result<Scene> made = workstation_.asMade();
-  if (!made) {
-    bench_.report(made.error());
-    return {};
-  }
-  Scene scene = *std::move(made);
   const Case& of = *workstation_.currentCase();
+  // What holds of another case alone stays behind, but for the tissues, which have a set for each.
+  const Scene& made = *workstation_.scene();
+  Scene scene = onCase(made, of.source);
+  scene.tissues = made.tissues;
+  scene.tissues_elsewhere = made.tissues_elsewhere;
   if (of.built_in) return scene;
   if (of.stored.empty()) {
     bench_.report({"CASE_NOT_SAVED", "The case of the exercise is not in the library", "",

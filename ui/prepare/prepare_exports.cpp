@@ -40,7 +40,7 @@ void PrepareWorkspace::connectExports() {
 // Of the case that was read by this window from DICOM, in the folder that was opened last; one of
 // the library's lies in a folder without it.
 bool PrepareWorkspace::sourceAtHand() const {
-  const std::optional<Case>& of = workstation_.currentCase();
+  const Case* of = workstation_.currentCase();
   const std::filesystem::path& source = bench_.caseSource();
   return of && of->provenance && !of->provenance->source_ids.series.empty() && !source.empty() &&
          source.parent_path() != bench_.storage() / "cases";
@@ -51,14 +51,14 @@ void PrepareWorkspace::askToSaveDicom(bool for_source) {
       "dicomDialog", tr("Save the DICOM files as a new folder"), "structures-dicom",
       [this, for_source,
        volume = workstation_.currentCase()->volume](const std::filesystem::path& folder) {
-        const std::optional<Case>& of = workstation_.currentCase();
+        const Case* of = workstation_.currentCase();
         if (!of || of->volume != volume || !bench_.keepsTheCase(folder)) return;
         saveDicom(folder, for_source);
       });
 }
 
 void PrepareWorkspace::saveDicom(const std::filesystem::path& folder, bool for_source) {
-  const std::optional<Case>& of = workstation_.currentCase();
+  const Case* of = workstation_.currentCase();
   if (!of || !editor_.map() || (for_source && !sourceAtHand())) return;
   const std::shared_ptr<const LabelMap> map = editor_.finished();
   if (!map) return;

@@ -5,7 +5,6 @@
 #include "base/file.h"
 #include "base/purpose.h"
 #include "base/system.h"
-#include "scene/scene_structures.h"
 #include "tissue/tissue_edits.h"
 #include "ui/common/words.h"
 #include "ui/prepare/prepare_workspace.h"
@@ -140,7 +139,7 @@ void PrepareWorkspace::takeSet(const TissueSet& set, const char* what) {
   if (!workstation_.scene()) return;
   TissueSet own = set;
   own.elsewhere_file.clear();
-  NewTissues wanted = withTissues(*workstation_.scene(), own);
+  NewTissues wanted = workstation_.withTissues(own);
   workstation_.closeEdit();
   if (Status done = workstation_.edit(wanted.scene, what); !done) {
     return bench_.report(done.error());
@@ -159,7 +158,7 @@ void PrepareWorkspace::newSet() {
 
 void PrepareWorkspace::duplicateSet() {
   if (!workstation_.scene()) return;
-  TissueSet set = workstation_.scene()->tissues;
+  TissueSet set = workstation_.tissues();
   set.name = tr("Copy of %1").arg(toQt(set.name)).left(60).toStdString();
   takeSet(set, "set");
 }
@@ -180,7 +179,7 @@ void PrepareWorkspace::askToExportSet() {
   if (!workstation_.scene()) return;
   (void)makeFolder(ownSets());
   QFileDialog* dialog =
-      bench_.saveDialog(tr("Export tissues"), setFileName(workstation_.scene()->tissues.name),
+      bench_.saveDialog(tr("Export tissues"), setFileName(workstation_.tissues().name),
                         tr("Tissues (*.json)"));
   dialog->setDirectory(toQt(ownSets()));
   connect(dialog, &QFileDialog::fileSelected, this,

@@ -10,7 +10,6 @@
 #include "imaging/segmentation/overlap_order.h"
 #include "imaging/structure_importer.h"
 #include "scene/entry_point.h"
-#include "scene/scene_structures.h"
 #include "tissue/tissue_edits.h"
 #include "ui/common/question.h"
 #include "ui/common/words.h"
@@ -98,7 +97,7 @@ void PrepareWorkspace::connectStructures() {
   });
   connect(&bench_, &Bench::cutsChanged, this, &PrepareWorkspace::showUndo);
   connect(&bench_, &Bench::caseShown, this, [this] {
-    tissues_->setLabelsOpen(workstation_.currentCase()->labels != nullptr);
+    tissues_->setLabelsOpen(workstation_.placed()->labels != nullptr);
     openStructures();
   });
   connect(&workstation_, &Workstation::phaseChanged, this, [this] {
@@ -158,12 +157,12 @@ void PrepareWorkspace::showStructures() {
     showStructureReport();
   }
   if (bench_.carved() && !bench_.cutsUnsaved()) bench_.showWholeCase();
-  tissues_->setLabelsOpen(of.labels != nullptr);
+  tissues_->setLabelsOpen(workstation_.placed()->labels != nullptr);
   showStructureTab();
   showEntry();
   if (std::exchange(entry_asked_, false)) bench_.lookAtCase();
   // Not by a dialog: it would come with every stroke.
-  if (of.misfit) structures_->say(toQt(of.misfit->sentence()));
+  if (const auto& why = workstation_.placed()->error) structures_->say(toQt(why->sentence()));
   settled_.start();  // what was changed meanwhile
   if (Bench::Next start = std::exchange(start_when_placed_, {})) {
     QMetaObject::invokeMethod(
@@ -211,7 +210,7 @@ void PrepareWorkspace::openStructures() {
 
 // What is missing is offered to be made at once. False: the exercise lacks nothing that could be.
 bool PrepareWorkspace::offerMissing() {
-  const std::optional<Case>& of = workstation_.currentCase();
+  const std::optional<Placement>& of = workstation_.placed();
   if (!of || workstation_.session()) return false;
   bool lacks = false;
   for (const Warning& warning : of->warnings) {
@@ -267,7 +266,7 @@ void PrepareWorkspace::structureToolChanged(SliceTool tool) {
 // --- The entry point ---
 
 void PrepareWorkspace::placeEntry(const Vec3& at_mm, const Vec3& from_mm) {
-  const std::optional<Case>& of = workstation_.currentCase();
+  const Case* of = workstation_.currentCase();
   if (workstation_.phase() != Workstation::Phase::ready || !of) {
     return bench_.say(
         tr("The entry point cannot be changed while an exercise runs: stop it first."));
@@ -278,7 +277,8 @@ void PrepareWorkspace::placeEntry(const Vec3& at_mm, const Vec3& from_mm) {
   Vec3 outward = from_mm - at_mm;
   if (!(glm::length(outward) > 0.0)) {
     const auto out =
-        outwardAt(*of->volume, scene.tissues, of->labels.get(), landmark->tissue, at_mm);
+        outwardAt(*of->volume, workstation_.placedTissues(), workstation_.placed()->labels.get(),
+                  landmark->tissue, at_mm);
     const auto before = workstation_.viewLandmark();
     outward = out ? *out : before ? before->rotation * Vec3(0.0, 0.0, 1.0) : Vec3(0.0, -1.0, 0.0);
   }
@@ -479,7 +479,7 @@ void PrepareWorkspace::saveStructuresThen(Bench::Next then) {
 }
 
 bool PrepareWorkspace::isStored() const {
-  const std::optional<Case>& of = workstation_.currentCase();
+  const Case* of = workstation_.currentCase();
   return of && !of->stored.empty();
 }
 
@@ -498,7 +498,7 @@ void PrepareWorkspace::saveInCase(Bench::Next then) {
   }
   const std::uint64_t changes = editor_.changes();
   std::optional<TissueSet> tissues;
-  if (tissues_touched_ || workstation_.tissuesEdited()) tissues = workstation_.scene()->tissues;
+  if (tissues_touched_ || workstation_.tissuesEdited()) tissues = workstation_.tissues();
   if (!map && !tissues) {
     bench_.say(tr("Nothing of it has changed since it was saved."));
     if (then) then();
@@ -512,14 +512,14 @@ void PrepareWorkspace::saveInCase(Bench::Next then) {
           const auto saved = library->saveStructures(id, *map, progress);
           if (!saved) return saved.error();
         }
-        return tissues ? library->saveTissues(id, toJson(unplaced(*tissues))) : Status();
+        return tissues ? library->saveTissues(id, toJson(*tissues)) : Status();
       },
       [this, changes, tissues, then = std::move(then)] {
         editor_.markSaved(changes);
         in_case_ = changes;
         if (tissues) {
           workstation_.tissuesSaved(*tissues);
-          tissues_touched_ = *tissues != workstation_.scene()->tissues;
+          tissues_touched_ = *tissues != workstation_.tissues();
         }
         if (then) then();
       });

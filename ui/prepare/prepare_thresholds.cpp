@@ -26,21 +26,22 @@ void PrepareWorkspace::connectThresholds() {
 
 // In the background, and again where the case has other labels meanwhile.
 void PrepareWorkspace::countVoxels() {
-  const std::optional<Case>& of = workstation_.currentCase();
+  const Case* of = workstation_.currentCase();
   if (!of || counting_.busy()) return;
+  const std::shared_ptr<const LabelMap>& labels = workstation_.placed()->labels;
   const bool same_voxels = counted_.voxels.lock() == of->volume;
-  const bool labelled = of->labels != nullptr;
-  if (same_voxels && counted_.labelled == labelled && counted_.labels.lock() == of->labels) return;
+  const bool labelled = labels != nullptr;
+  if (same_voxels && counted_.labelled == labelled && counted_.labels.lock() == labels) return;
   if (!same_voxels) histogram_->setHistogram(nullptr);
-  counted_ = {of->volume, of->labels, labelled};
+  counted_ = {of->volume, labels, labelled};
   std::vector<std::string> names;
-  if (of->labels) {
-    for (const Structure& s : of->labels->structures) names.push_back(s.name);
+  if (labels) {
+    for (const Structure& s : labels->structures) names.push_back(s.name);
   }
   tissues_->setStructures(names);
   form_->setStructures(names);
   counting_.run(
-      [volume = of->volume, labels = of->labels](const Progress& progress) {
+      [volume = of->volume, labels](const Progress& progress) {
         return histogramOf(*volume, labels.get(), progress);
       },
       [this](Result<HuHistogram> counted) {
@@ -52,7 +53,7 @@ void PrepareWorkspace::countVoxels() {
 
 void PrepareWorkspace::showHistogram() {
   if (!workstation_.scene()) return;
-  histogram_->setTissues(workstation_.scene()->tissues, tissues_->chosen());
+  histogram_->setTissues(workstation_.placedTissues(), tissues_->chosen());
   histogram_->setLocked(tissues_->isLocked());
   tissues_->setShares(histogram_->shares());
 }
@@ -61,7 +62,7 @@ void PrepareWorkspace::thresholdBegan() {
   if (!workstation_.scene() || tissues_->isLocked()) return;
   tissues_->thresholdBegan();
   workstation_.closeEdit();
-  moving_ = Moving{tissueTable(workstation_.scene()->tissues), {}};
+  moving_ = Moving{tissueTable(workstation_.placedTissues()), {}};
 }
 
 void PrepareWorkspace::thresholdMoved(std::size_t tissue, RangeEnd end, int hu, bool alone) {
@@ -84,7 +85,7 @@ void PrepareWorkspace::markMoving(int tissue) {
 }
 
 void PrepareWorkspace::showMoving(const std::vector<Structure>& rows, const TissueLooks& looks) {
-  const TissueSet& set = workstation_.scene()->tissues;
+  const TissueSet& set = workstation_.placedTissues();
   TissueLooks alone;
   for (const Tissue& tissue : set.tissues) {
     const TissueLook look = lookOf(tissue, looks);

@@ -16,7 +16,7 @@ void PrepareWorkspace::connectTissues() {
           &PrepareWorkspace::tissuesEdited);
   connect(tissues_, &TissuePanel::looksChanged, this, [this](const TissueLooks& looks) {
     workstation_.setLooks(looks);
-    views_->setTissues(tissues_->tissues(), looks);
+    views_->setTissues(workstation_.placedTissues(), looks);
     showSeen();
   });
   bench_.setGuard(Bench::Loss::tissues,
@@ -44,12 +44,13 @@ void PrepareWorkspace::connectTissues() {
 void PrepareWorkspace::showScene() {
   const std::optional<Scene>& scene = workstation_.scene();
   if (!scene) return;
-  tissues_->setTissues(scene->tissues, workstation_.declaredTissues());
+  const TissueSet& placed = workstation_.placedTissues();
+  tissues_->setTissues(workstation_.tissues(), workstation_.declaredTissues());
   structures_->setWanted(scene->structures);
   showRenderable(scene->controller);
   tissues_->setLooks(workstation_.looks());
-  editor_.setTissues(scene->tissues);
-  views_->setTissues(scene->tissues, workstation_.looks());
+  editor_.setTissues(placed);
+  views_->setTissues(placed, workstation_.looks());
   showSeen();
   views_->setAnatomy(scene->anatomy);
   showHistogram();
@@ -75,11 +76,11 @@ void PrepareWorkspace::showRenderable(ControllerKind in_force) {
 // The views show what the panel of structures lists while it is in front, else what the exercise
 // runs on, with the shells that its tissues asked for.
 void PrepareWorkspace::showLabelsInUse() {
-  const std::optional<Case>& of = workstation_.currentCase();
+  const Case* of = workstation_.currentCase();
   if (!of || !(views_->mirror().volume().geometry == of->volume->geometry)) return;
   const bool exercise = workstation_.phase() != Workstation::Phase::ready;
   const std::shared_ptr<const LabelMap> wanted =
-      structuresShown() && !exercise ? editor_.map() : of->labels;
+      structuresShown() && !exercise ? editor_.map() : workstation_.placed()->labels;
   if (wanted != views_->mirror().labels()) views_->showLabels(wanted);
   showSeen();
 }
@@ -93,7 +94,7 @@ void PrepareWorkspace::showSeen() {
     const bool any = map != editor_.map() || editor_.millilitres(s.label) > 0.0;
     if (any || s.label == editor_.current()) rows.push_back(s);
   }
-  const TissueSet& set = tissues_->tissues();
+  const TissueSet& set = workstation_.placedTissues();
   // A label of the exercise's map may be another structure's: a shell has what the wall gave up.
   const std::shared_ptr<const LabelMap> own = editor_.map();
   std::erase_if(structure_looks_, [&](const auto& of) { return own && !own->find(of.first); });
@@ -126,21 +127,20 @@ void PrepareWorkspace::tissuesEdited(const TissueSet& set, const QString& what) 
     const Structure* of = map ? map->find(label) : nullptr;
     if (!of) continue;
     for (const std::string& id : tissuesOf(set, *of)) {
-      const Tissue* before = workstation_.scene()->tissues.find(id);
+      const Tissue* before = workstation_.tissues().find(id);
       if (!before) continue;
       if (before->opacity != set.find(id)->opacity) look.opacity.reset();
       if (before->colour != set.find(id)->colour) look.colour.reset();
     }
   }
-  // With the labels of the case, where it names structures.
-  NewTissues wanted = withTissues(*workstation_.scene(), set);
+  NewTissues wanted = workstation_.withTissues(set);
   if (Status done = workstation_.edit(wanted.scene, what.toStdString()); !done) {
-    tissues_->setTissues(workstation_.scene()->tissues, workstation_.declaredTissues());
+    tissues_->setTissues(workstation_.tissues(), workstation_.declaredTissues());
     return bench_.report(done.error());
   }
   if (!wanted.notes.empty()) bench_.say(toQt(wanted.notes.front()) + '.');
   tissues_touched_ = true;
-  const TissueSet& placed = workstation_.scene()->tissues;
+  const TissueSet& placed = workstation_.placedTissues();
   editor_.setTissues(placed);
   views_->setTissues(placed, workstation_.looks());
   if (moving_) {
@@ -161,7 +161,7 @@ void PrepareWorkspace::structureLookWanted(int label, TissueLook look) {
 
 void PrepareWorkspace::unlessTissuesStay(Bench::Next go_on) {
   const bool scene = workstation_.sceneEdited();
-  if (!scene && !workstation_.tissuesEdited() && !workstation_.tissuesWait()) return go_on();
+  if (!scene && !workstation_.tissuesEdited()) return go_on();
   auto* box = new QMessageBox(QMessageBox::Question, tr("Trephine"),
                               scene ? tr("The exercise has been changed and not saved.")
                                     : tr("The tissues have been changed and not saved."),

@@ -53,7 +53,7 @@ QString lawMeaning(LawKind law) {
 bool sameButLaws(Scene a, const Scene& b) {
   a.laws = b.laws;
   a.controller = b.controller;
-  return sameScene(a, b);
+  return a == b;
 }
 
 template <class Kind, std::size_t N>
@@ -690,7 +690,7 @@ void ToolsPanel::setCosts(const Costs& costs) {
 }
 
 void ToolsPanel::setScene(const Scene& scene) {
-  if (!sameScene(scene, scene_)) {  // what was refused was of another
+  if (scene != scene_) {  // what was refused was of another
     for (QLabel* problem : {tool_problem_, arm_problem_, law_problem_}) problem->hide();
   }
   if (!sameButLaws(scene, scene_)) costs_ = {};  // they were of another

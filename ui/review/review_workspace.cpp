@@ -113,7 +113,7 @@ void ReviewWorkspace::list() {
 
 void ReviewWorkspace::show(const std::vector<ListedRecording>& rows, bool all,
                            const std::map<std::string, QString>& cases) {
-  const std::optional<Case>& of = bench_.workstation().currentCase();
+  const Case* of = bench_.workstation().currentCase();
   page_->showRecordings(rows, all, of ? of->sha256 : "", cases);
   // Once, as soon as it is there: then a person chooses.
   if (!wanted_case_.empty() && page_->selectNewestOf(wanted_case_)) wanted_case_.clear();
@@ -121,9 +121,9 @@ void ReviewWorkspace::show(const std::vector<ListedRecording>& rows, bool all,
 }
 
 void ReviewWorkspace::replay(const ListedRecording& of) {
-  const std::optional<Case>& open = bench_.workstation().currentCase();
+  const Case* open = bench_.workstation().currentCase();
   std::optional<Case> at_hand;
-  if (open && open->sha256 == of.volume_sha256) at_hand = open;
+  if (open && open->sha256 == of.volume_sha256) at_hand = *open;
   const bool begun = replaying_.run(
       [of, at_hand, library = bench_.library()](const Progress& progress) -> Result<ReplayResult> {
         Result<std::unique_ptr<SessionReader>> recording = SessionReader::open(of.file);

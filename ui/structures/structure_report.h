@@ -5,7 +5,7 @@
 #include <QDialog>
 #include <memory>
 
-#include "session/case.h"
+#include "case/case.h"
 #include "structures/structure_picture.h"
 #include "ui/common/background_task.h"
 

@@ -49,7 +49,7 @@ void TrainWorkspace::chooseScene(int index) {
   const auto file = toPath(scenes_->itemData(index).toString());
   showInUse();  // until the other is on its way: it may be asked about, or not be had
   // A built-in case changes with the exercise, and its structures with it.
-  const std::optional<Case>& of = workstation_.currentCase();
+  const Case* of = workstation_.currentCase();
   std::vector<Bench::Loss> losses{Bench::Loss::cuts, Bench::Loss::tissues};
   if (of && of->built_in) losses.insert(losses.begin(), Bench::Loss::structures);
   bench_.unlessLost(losses, [this, file] { useScene(file); });
@@ -118,11 +118,12 @@ void TrainWorkspace::putAside(bool aside) {
 }
 
 void TrainWorkspace::showOutline() {
-  const std::optional<Scene>& scene = workstation_.scene();
-  const std::optional<Case>& of = workstation_.currentCase();
-  if (!scene || !of || !scene->outline) return view_->setOutline({}, false, 1.0);
-  view_->setOutline(outlineOn(*scene, of->landmarks, *of->volume, of->labels.get()),
-                    scene->outline->closed, scene->outline->width_mm);
+  const std::optional<Placement>& placed = workstation_.placed();
+  if (!placed || !placed->scene.outline) return view_->setOutline({}, false, 1.0);
+  const Scene& scene = placed->scene;
+  view_->setOutline(
+      outlineOn(scene, placed->landmarks, *placed->patient.volume, placed->labels.get()),
+      scene.outline->closed, scene.outline->width_mm);
 }
 
 void TrainWorkspace::showLocks() {
@@ -166,7 +167,7 @@ void TrainWorkspace::sayWhatIsOpen() {
     words = tr("The exercise is now \"%1\".").arg(exercise);
   }
   exercise_said_ = exercise;
-  for (const Warning& warning : workstation_.currentCase()->warnings) {
+  for (const Warning& warning : workstation_.placed()->warnings) {
     if (warning.code != "OTHER_ANATOMY" && warning.code != "NO_VAULT") continue;
     words += (words.isEmpty() ? "" : " ") + toQt(warning.text) + '.';
   }
@@ -175,7 +176,7 @@ void TrainWorkspace::sayWhatIsOpen() {
 
 // Before an exercise starts on a case that is not what it is for, once a case and exercise.
 void TrainWorkspace::unlessItDoesNotFit(Bench::Next go_on) {
-  const std::optional<Case>& of = workstation_.currentCase();
+  const std::optional<Placement>& of = workstation_.placed();
   if (!of || of->warnings.empty() || warned_) return go_on();
   QStringList words;
   bool lacks = false, no_place = false;
@@ -184,7 +185,7 @@ void TrainWorkspace::unlessItDoesNotFit(Bench::Next go_on) {
     words << toQt(warning.text) + (warning.text.ends_with('.') ? "" : ".");
     lacks = lacks || warning.code == "LACKS_STRUCTURE";
     no_place = no_place || warning.code == "NO_LANDMARK";
-    if (warning.code == "OTHER_ANATOMY") fits = exerciseAnatomy(of->anatomy->region);
+    if (warning.code == "OTHER_ANATOMY") fits = exerciseAnatomy(of->patient.anatomy->region);
   }
   const QString next = !fits.empty() ? tr("Choose an exercise that fits, or go on as it is.")
                        : lacks    ? tr("Make the structure in the slices first, or go on as it is.")

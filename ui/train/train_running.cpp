@@ -158,7 +158,7 @@ void TrainWorkspace::showRemoved(Session& session, const LoopState& state) {
     removed.push_back(
         {toQt(tissues[t].name), colours::of(tissues[t].colour), double(voxels) * voxel_mm3});
   }
-  const std::optional<Case>& of = workstation_.currentCase();
+  const Case* of = workstation_.currentCase();
   const VolumeMirror& mirror = views_->mirror();
   if (of && of->structures && !(mirror.touched() == VoxelBox{})) {
     // That of a tissue that is this structure is said already.

@@ -201,8 +201,8 @@ void Bench::unlessCutsAreLost(Next go_on) {
 }
 
 bool Bench::keepsTheCase(const std::filesystem::path& target) {
-  const std::string scene_case = workstation_.scene() ? workstation_.scene()->case_source : "";
-  for (const std::string& source : {case_source_.string(), scene_case}) {
+  const Case* open = workstation_.currentCase();
+  for (const std::string& source : {case_source_.string(), open ? open->source : std::string()}) {
     const Status kept = keepsCase(target, source);
     if (kept) continue;
     report(kept.error());
@@ -220,15 +220,16 @@ void Bench::setCuts(bool carved, bool unsaved) {
 }
 
 void Bench::showCase() {
-  const std::optional<Case>& of = workstation_.currentCase();
-  if (!of) return;
+  const std::optional<Placement>& placed = workstation_.placed();
+  if (!placed) return;
+  const std::shared_ptr<const Volume>& volume = placed->patient.volume;
   paintNextTurn(window_);  // and what it takes to show the case is enough for one
   view().setTools({});
   views_->setTools({});
   if (Volume mirror = workstation_.takeMirror(); !mirror.hu.empty()) {
-    views_->showVolume(std::move(mirror), of->labels, of->volume);
+    views_->showVolume(std::move(mirror), placed->labels, volume);
   } else {
-    views_->refill(of->volume, of->labels);
+    views_->refill(volume, placed->labels);
   }
   setCuts(false, false);
   emit caseShown();
@@ -238,8 +239,8 @@ void Bench::showCase() {
 
 // The view has the case already, unless an earlier exercise left its cuts there.
 void Bench::exerciseBegan() {
-  const Case& of = *workstation_.currentCase();
-  if (carved_) views_->refill(of.volume, of.labels);
+  const Placement& placed = *workstation_.placed();
+  if (carved_) views_->refill(placed.patient.volume, placed.labels);
   setCuts(true, false);
 }
 
@@ -249,8 +250,8 @@ void Bench::exerciseEnded(bool anything_cut) {
 
 void Bench::showWholeCase() {
   workstation_.makeWhole();
-  const Case& of = *workstation_.currentCase();
-  views_->refill(of.volume, of.labels);
+  const Placement& placed = *workstation_.placed();
+  views_->refill(placed.patient.volume, placed.labels);
   setCuts(false, false);
 }
 

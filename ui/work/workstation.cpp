@@ -40,7 +40,7 @@ Workstation::Workstation(const Policy& policy, QObject* parent) : QObject(parent
   connect(
       &opening_, &BackgroundTask::ended, this,
       [this] {
-        if (std::exchange(place_again_, false) && case_ && phase_ == Phase::ready) placeEdited();
+        if (std::exchange(place_again_, false) && placed_ && phase_ == Phase::ready) placeEdited();
       },
       Qt::QueuedConnection);
   connect(&import_, &ImportTask::failed, this, &Workstation::failed);
@@ -76,7 +76,7 @@ void Workstation::begin(const std::filesystem::path& recordings,
   if (phase_ != Phase::ready || isOpening()) return;
   // It may have come in while it was unlocked.
   if (Status may = mayPractise(*scene_, scene_file_); !may) return fail(may.error());
-  Scene practised = *scene_;
+  Scene practised = onCase(*scene_, placed_->patient.source);
   ArmsOfPlace chosen;
   if (!arms_) {
     practised = withForceLimit(std::move(practised));
@@ -90,27 +90,31 @@ void Workstation::begin(const std::filesystem::path& recordings,
       QDateTime::currentDateTime().toString("'session'-yyyyMMdd-HHmmss").toStdString();
   carved_.reset();  // its memory is the next one's
   // What was found in tissues that have been edited since lies elsewhere now, or is found now.
-  const TissueTable tissues = tissueTable(scene_->tissues);
-  const bool again = case_->misfit || !(placed_with_ == tissues);
+  const TissueTable tissues = tissueTable(placedTissues());
+  const bool again = placed_->error || !(placed_with_ == tissues);
   running_.run(
       [scene = std::move(practised), rig = *std::move(rig), chosen, opens = opens_arms_,
-       of = *case_, again, recordings, stem, poke, script = std::move(script)](
+       placed = *placed_, again, recordings, stem, poke, script = std::move(script)](
           const Progress& progress) mutable -> Result<std::unique_ptr<Session>> {
         std::unique_lock lock(*opens, std::defer_lock);
         if (Status had = armsAreFree(lock, rig, chosen); !had) return had.error();
         Result<Rig> used = chosen.empty() ? Result<Rig>(std::move(rig)) : rigOf(scene, chosen);
         if (!used) return used.error();
         if (Status made = poke ? Status() : makeFolder(recordings); !made) return made.error();
-        const Result<Case> placed = again ? placedIn(scene, of, progress, hideNamesOf) : of;
-        if (!placed) return placed.error();
+        placed.scene = placedScene(scene, placed);
+        if (again) {
+          Result<Placement> anew = place(scene, placed.patient, progress, hideNamesOf);
+          if (!anew) return anew.error();
+          placed = *std::move(anew);
+        }
         const auto file = poke ? std::filesystem::path() : freshFile(recordings, stem, ".h5");
-        return Session::create(scene, *placed,
-                               {file, script, true, poke, nullptr, *std::move(used)});
+        return Session::create(placed, {file, script, true, poke, nullptr, *std::move(used)});
       },
       [this, seconds, tissues](Result<std::unique_ptr<Session>> created) {
         if (!created) return notStarted(created.error());
-        case_->landmarks = (*created)->landmarks();
-        case_->misfit.reset();
+        placed_->landmarks = (*created)->landmarks();
+        placed_->error.reset();
+        refreshPlaced();
         placed_with_ = tissues;
         startArms(*std::move(created), seconds);
       });
@@ -137,7 +141,7 @@ void Workstation::startArms(std::unique_ptr<Session> session, double seconds) {
 
 // Tissues and controller as they are by now; `told_of`: the controller that it knows of.
 Status Workstation::tell(Session& session, ControllerKind& told_of) const {
-  if (Status told = session.setTissues(scene_->tissues); !told) return told;
+  if (Status told = session.setTissues(placedTissues()); !told) return told;
   if (told_of != scene_->controller) {
     (void)session.setController(scene_->controller);  // nothing else waits yet
     told_of = scene_->controller;
@@ -161,8 +165,8 @@ void Workstation::notStarted(const Error& error) {
 
 // What the case that is open leaves to the next, and what need not be taken again.
 void Workstation::tellGivenBack() {
-  if (!case_) return;
-  const std::size_t voxels = case_->volume->geometry.voxelCount();
+  if (!placed_) return;
+  const std::size_t voxels = placed_->patient.volume->geometry.voxelCount();
   import_.setGivenBack(voxelsMb(voxels) * (carved_ ? 2.0 : 1.0) + shownMb(voxels) +
                        (rt::LockedMemory::wasHeld() ? kHeld_mb : 0.0));
 }

@@ -7,6 +7,7 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <utility>
 
 #include "scene/arms_file.h"
 #include "scene/policy.h"
@@ -105,10 +106,12 @@ class Workstation : public QObject {
   const std::vector<Vec3>& workspaces_mm() const { return workspaces_mm_; }
 
   Phase phase() const { return phase_; }
+  // The exercise as it is made, whatever the case.
   const std::optional<Scene>& scene() const { return scene_; }
   const std::filesystem::path& sceneFile() const { return scene_file_; }
-  // Placed in the scene.
-  const std::optional<Case>& currentCase() const { return case_; }
+  // The exercise on the case that is open; empty: none is.
+  const std::optional<Placement>& placed() const { return placed_; }
+  const Case* currentCase() const { return placed_ ? &placed_->patient : nullptr; }
   // A copy of its voxels for the view, made in the background; empty once it was taken, or where
   // the view has one already.
   Volume takeMirror() { return std::exchange(mirror_, {}); }
@@ -145,14 +148,16 @@ class Workstation : public QObject {
   const SceneHistory& edits() const { return history_; }
   void undoEdit();
   void redoEdit();
-  // Whether anything but tissues and controller is another than the exercise was opened with, or
-  // saved as.
+  // Whether anything but the controller and the tissues in force is another than the exercise was
+  // opened with, or saved as.
   bool sceneEdited() const;
-  // The exercise as it is made: scene(), but with the tissues for which it was made where the case
-  // lacks a structure that they need. Errors: those of reading its file.
-  Result<Scene> asMade() const;
   // The case lacks a structure that is needed: the exercise runs on its set for such cases.
-  bool isElsewhere() const;
+  bool isElsewhere() const { return placed_ && placed_->elsewhere; }
+  // The set of scene() that is in force on the open case; and with the labels of its structures.
+  const TissueSet& tissues() const { return tissuesOf(*scene_); }
+  const TissueSet& placedTissues() const { return placed_ ? placed_->scene.tissues : tissues(); }
+  // scene() with this set in its place (scene_edits.h).
+  NewTissues withTissues(const TissueSet& set) const;
   // How tissues look: the scene's until a person chooses. Of the view alone, so neither the scene
   // nor a recording changes with it.
   void setLooks(const TissueLooks& looks) { looks_ = looks; }
@@ -163,12 +168,10 @@ class Workstation : public QObject {
   void noteController(ControllerKind in_force);
   // The tissues as the scene's file has them, or as they were saved last; and whether they have
   // been edited since.
-  const TissueSet& declaredTissues() const { return declared_tissues_; }
-  bool tissuesEdited() const;
-  // Others were, which wait for a case unlike the open one.
-  bool tissuesWait() const { return edited_other_.has_value(); }
+  const TissueSet& declaredTissues() const { return tissuesOf(opened_scene_); }
+  bool tissuesEdited() const { return scene_ && tissues() != declaredTissues(); }
   // They are these on disk now.
-  void tissuesSaved(const TissueSet& as) { declared_tissues_ = as; }
+  void tissuesSaved(const TissueSet& as) { tissuesOf(opened_scene_) = as; }
   // The exercise is on disk now as this scene: that is what it is opened with from here on.
   void exerciseSaved(const std::filesystem::path& scene);
   // As a file that scenes can name; `then` follows once it is written.
@@ -236,18 +239,26 @@ class Workstation : public QObject {
  private:
   struct Opened;
   struct Asked;
+  const TissueSet& tissuesOf(const Scene& scene) const {
+    return isElsewhere() && scene.tissues_elsewhere ? *scene.tissues_elsewhere : scene.tissues;
+  }
+  TissueSet& tissuesOf(Scene& scene) const {
+    return const_cast<TissueSet&>(tissuesOf(std::as_const(scene)));
+  }
+  void refreshPlaced();
+  Scene withLiveOf(Scene scene, const Scene& other) const;
   static Result<Case> withAnswered(const Case& of, const Opened& opening, Asked& asked,
                                    const Progress& progress);
   bool mayOpen();
+  std::optional<Opened> openingOf();
   // `policy`: null where nothing is locked any more. Any thread.
   static Result<Scene> allowedScene(const std::filesystem::path& file, const Policy* policy);
   std::optional<Scene> readSceneOrFail(const std::filesystem::path& file);
   void openSource(Scene scene, const std::filesystem::path& scene_file, const std::string& source,
                   bool same_scene = false);
-  Status placeAgain(const std::shared_ptr<const LabelMap>& structures);
+  void placeAgain(const std::shared_ptr<const LabelMap>& structures);
   void openInBackground(Opened opening);
-  Scene asEdited(Scene from_file, bool another_case = false) const;
-  void keepEdits(Opened& opened);
+  Scene forAnotherCase(Scene scene) const;
   void opened(Result<Opened> outcome);
   void begin(const std::filesystem::path& recordings, std::optional<OperatorScript> script,
              double seconds, bool poke);
@@ -270,7 +281,7 @@ class Workstation : public QObject {
   bool isEntry(const Landmark& landmark) const;
 
   void takeBack();
-  void applyTissues(const TissueSet& tissues);
+  void tellTissues();
   void applyController(ControllerKind kind);
   bool refuseLocked(Lock lock, const char* what);
   Status notLocked(Lock lock, const char* what) const;
@@ -286,12 +297,8 @@ class Workstation : public QObject {
   ControllerKind in_force_ = ControllerKind::bounded;
   Scene opened_scene_;  // as it was opened, or saved
   SceneHistory history_;
-  bool one_set_ = false;  // an edit took away the scene's tissues for elsewhere
-  std::optional<TissueSet> elsewhere_;  // or put these in their place
-  TissueSet declared_tissues_;
-  std::optional<TissueSet> edited_other_;  // the scene's for cases unlike the open one
   TissueLooks looks_;
-  std::optional<Case> case_;
+  std::optional<Placement> placed_;
   TissueTable placed_with_{};  // its landmarks were found in
   Volume mirror_;
   std::unique_ptr<Session> session_;

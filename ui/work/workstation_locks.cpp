@@ -28,15 +28,15 @@ void Workstation::setUnlocked(bool unlocked) {
 // be, or what the exercise brings. A rate of another scene is seen to when that is started.
 void Workstation::takeBack() {
   if (isLocked(Lock::tissues) && tissuesEdited()) {
-    const TissueSet own = declared_tissues_;
-    applyTissues(own);
+    tissuesOf(*scene_) = declaredTissues();
+    refreshPlaced();
+    tellTissues();
     history_.begin(*scene_);
     emit sceneChanged();
     emit editsChanged();
   }
   if (!isLocked(Lock::controller)) return;
-  const Result<Scene> own = readScene(scene_file_);
-  applyController(policy_.controller.value_or(own ? own->controller : scene_->controller));
+  applyController(policy_.controller.value_or(opened_scene_.controller));
   emit controllerChanged();
 }
 
@@ -52,10 +52,9 @@ bool Workstation::refuseLocked(Lock lock, const char* what) {
   return !may.ok();
 }
 
-void Workstation::applyTissues(const TissueSet& tissues) {
-  scene_->tissues = tissues;
+void Workstation::tellTissues() {
   if (!session()) return;
-  if (Status set = session_->setTissues(tissues); !set) fail(set.error());
+  if (Status set = session_->setTissues(placedTissues()); !set) fail(set.error());
 }
 
 void Workstation::noteController(ControllerKind in_force) {
@@ -72,6 +71,7 @@ void Workstation::setController(ControllerKind kind) {
 
 void Workstation::applyController(ControllerKind kind) {
   scene_->controller = kind;
+  refreshPlaced();
   history_.settle(*scene_);
   if (!session()) noteController(kind);
   if (session() && !session_->setController(kind)) {

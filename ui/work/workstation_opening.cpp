@@ -7,7 +7,6 @@
 #include "base/system.h"
 #include "imaging/structure_importer.h"
 #include "library/name_words.h"
-#include "scene/scene_structures.h"
 #include "session/arm_devices.h"
 #include "tissue/tissue_edits.h"
 #include "ui/common/words.h"
@@ -21,17 +20,19 @@ namespace trephine {
 struct Workstation::Opened {
   Scene scene;
   std::filesystem::path scene_file;
-  std::optional<Case> of;            // none: the scene's own is read
-  bool same_scene = false;           // its tissues stay as they are edited
+  std::optional<Case> of;            // none: that of `source` is read
+  bool same_scene = false;           // it stays as it is edited
   std::string labels_file{};         // instead of what the case has; empty: that stays
   Answers answers{};                 // about them
   bool structures_alone = false;     // the open case with others of them
   bool any_scene = false;            // nobody chose the scene: one that fits what the case shows
+  std::string source{};
   std::optional<Error> no_labels{};  // why the case opened without them
   // The case comes from there, and its own tissues with it.
   std::function<Result<Stored>(const Progress&)> load{};
   std::optional<TissueSet> tissues{};
   std::optional<Error> no_tissues{}, no_structures{};
+  Placement placed{};
   Volume mirror{};
 };
 
@@ -94,13 +95,12 @@ void Workstation::openPath(const std::filesystem::path& path) {
 
 void Workstation::openPhantom(const std::string& name) {
   if (!mayOpen()) return;
-  const bool fits = sceneFits(name);
-  const std::filesystem::path file = fits ? scene_file_ : defaultScene(name);
+  if (sceneFits(name)) {
+    return openSource(forAnotherCase(*scene_), scene_file_, phantomSource(name), true);
+  }
+  const std::filesystem::path file = defaultScene(name);
   std::optional<Scene> scene = readSceneOrFail(file);
-  if (!scene) return;
-  if (fits) scene = asEdited(*std::move(scene), true);
-  useCase(*scene, phantomSource(name));
-  openSource(*std::move(scene), file, phantomSource(name), fits);
+  if (scene) openSource(*std::move(scene), file, phantomSource(name));
 }
 
 void Workstation::useScene(const std::filesystem::path& file) {
@@ -110,9 +110,9 @@ void Workstation::useScene(const std::filesystem::path& file) {
   scene_chosen_ = true;
   // One that was made on a case of its own is for that.
   const bool any_case = scene->case_source.empty() || phantomNamed(scene->case_source);
-  if (case_ && any_case && (!case_->built_in || scene->case_source.empty())) {
-    useCase(*scene, scene_->case_source);
-    openInBackground({*std::move(scene), file, case_});
+  const Case* open = currentCase();
+  if (open && any_case && (!open->built_in || scene->case_source.empty())) {
+    openInBackground({*std::move(scene), file, *open});
   } else {
     const std::string source = scene->case_source;
     openSource(*std::move(scene), file, source);
@@ -121,87 +121,77 @@ void Workstation::useScene(const std::filesystem::path& file) {
 
 void Workstation::useLabels(const std::filesystem::path& file, const Answers& answers) {
   if (!mayOpen()) return;
-  if (!case_) {
+  if (!placed_) {
     fail({"NO_CASE", "There is no case that a label map could belong to", "",
           "Open the case first, then its label map"});
     return;
   }
-  // As its file has it: with structures it may have other tissues.
-  std::optional<Scene> scene = readSceneOrFail(scene_file_);
-  if (!scene) return;
-  scene = asEdited(*std::move(scene));
-  useCase(*scene, scene_->case_source);
-  Opened opening{*std::move(scene), scene_file_, case_, true, file.string(), answers};
+  Opened opening{*scene_, scene_file_, placed_->patient, true, file.string(), answers};
   opening.structures_alone = true;
   openInBackground(std::move(opening));
 }
 
 bool Workstation::useStructures(const std::shared_ptr<const LabelMap>& structures) {
-  return case_ && phase_ == Phase::ready && !isOpening() && placeAgain(structures).ok();
+  if (!placed_ || phase_ != Phase::ready || isOpening()) return false;
+  placeAgain(structures);
+  return true;
 }
 
-// The open case in its scene, as that is on disk.
-Status Workstation::placeAgain(const std::shared_ptr<const LabelMap>& structures) {
-  Result<Scene> scene = allowedScene(scene_file_, unlocked_ ? nullptr : &policy_);
-  if (!scene) return scene.error();
-  scene = asEdited(*std::move(scene));
-  useCase(*scene, scene_->case_source);
-  const bool same = structures == case_->structures;
-  Opened opening{*std::move(scene), scene_file_, same ? *case_ : withStructures(*case_, structures),
-                 true};
+// The exercise on the open case with these structures.
+void Workstation::placeAgain(const std::shared_ptr<const LabelMap>& structures) {
+  const Case& of = placed_->patient;
+  const bool same = structures == of.structures;
+  Opened opening{*scene_, scene_file_, same ? of : withStructures(of, structures), true};
   opening.structures_alone = true;
   openInBackground(std::move(opening));
-  return {};
 }
 
 void Workstation::openSource(Scene scene, const std::filesystem::path& scene_file,
                              const std::string& source, bool same_scene) {
-  if (source.empty() && case_) {  // the open one, with what this scene looks for in it
-    useCase(scene, scene_->case_source);
-    return openInBackground({std::move(scene), scene_file, case_, same_scene});
+  if (source.empty() && placed_) {  // the open one, with what this scene looks for in it
+    return openInBackground({std::move(scene), scene_file, placed_->patient, same_scene});
   }
   if (source.empty()) {  // the scene waits for a case of the user's
     scene_ = std::move(scene);
     scene_file_ = scene_file;
     in_force_ = scene_->controller;
-    declared_tissues_ = scene_->tissues;
     looks_ = scene_->view.looks;
     opened_scene_ = *scene_;
     history_.begin(*scene_);
-    one_set_ = false;
-    elsewhere_.reset();
     emit sceneChanged();
     emit locksChanged();
     emit editsChanged();
     return;
   }
-  useCase(scene, source);
-  openInBackground({std::move(scene), scene_file, {}, same_scene});
+  Opened opening{std::move(scene), scene_file, {}, same_scene};
+  opening.source = source;
+  openInBackground(std::move(opening));
+}
+
+// For a case that an exercise goes on with: the one in use, else the first of the product's.
+std::optional<Workstation::Opened> Workstation::openingOf() {
+  if (!mayOpen()) return {};
+  if (scene_) return Opened{forAnotherCase(*scene_), scene_file_, {}, true};
+  const std::filesystem::path file = defaultScene("cranium");
+  std::optional<Scene> scene = readSceneOrFail(file);
+  return scene ? std::optional(Opened{*std::move(scene), file, {}}) : std::nullopt;
 }
 
 void Workstation::openImported(const Case& read, const std::filesystem::path& labels) {
-  if (!mayOpen()) return;
-  const std::filesystem::path file = scene_ ? scene_file_ : defaultScene("cranium");
-  std::optional<Scene> scene = readSceneOrFail(file);
-  if (!scene) return;
-  if (scene_) scene = asEdited(*std::move(scene), true);
-  useCase(*scene, "");
-  Opened opening{*std::move(scene), file, read, scene_.has_value(), labels.string()};
-  opening.any_scene = !scene_chosen_;
-  openInBackground(std::move(opening));
+  std::optional<Opened> opening = openingOf();
+  if (!opening) return;
+  opening->of = read;
+  opening->labels_file = labels.string();
+  opening->any_scene = !scene_chosen_;
+  openInBackground(*std::move(opening));
 }
 
 void Workstation::openStored(std::function<Result<Stored>(const Progress&)> load) {
-  if (!mayOpen()) return;
-  const std::filesystem::path file = scene_ ? scene_file_ : defaultScene("cranium");
-  std::optional<Scene> scene = readSceneOrFail(file);
-  if (!scene) return;
-  if (scene_) scene = asEdited(*std::move(scene), true);
-  useCase(*scene, "");
-  Opened opening{*std::move(scene), file, {}, scene_.has_value()};
-  opening.any_scene = true;
-  opening.load = std::move(load);
-  openInBackground(std::move(opening));
+  std::optional<Opened> opening = openingOf();
+  if (!opening) return;
+  opening->any_scene = true;
+  opening->load = std::move(load);
+  openInBackground(*std::move(opening));
 }
 
 void Workstation::openExercise(const std::filesystem::path& file,
@@ -211,14 +201,15 @@ void Workstation::openExercise(const std::filesystem::path& file,
   if (!scene) return;
   scene_chosen_ = true;
   Opened opening{*std::move(scene), file, {}};
+  opening.source = opening.scene.case_source;
   opening.load = std::move(load);
   openInBackground(std::move(opening));
 }
 
 void Workstation::setStored(const std::string& id, const std::string& name) {
-  if (!case_) return;
-  case_->stored = id;
-  if (!name.empty()) case_->name = name;  // what its series was called may name somebody
+  if (!placed_) return;
+  placed_->patient.stored = id;
+  if (!name.empty()) placed_->patient.name = name;  // what its series was called may name somebody
   emit caseNamed();
 }
 
@@ -256,7 +247,7 @@ void Workstation::openInBackground(Opened opening) {
   placing_ = opening.structures_alone && opening.labels_file.empty();
   const std::filesystem::path labels = opening.labels_file;
   const Answers answers = opening.answers;
-  const std::shared_ptr<const Volume> shown = case_ ? case_->volume : nullptr;
+  const std::shared_ptr<const Volume> shown = placed_ ? placed_->patient.volume : nullptr;
   const auto asked = std::make_shared<Asked>();
   opening_.run(
       [opening = std::move(opening), shown, asked,
@@ -267,6 +258,7 @@ void Workstation::openInBackground(Opened opening) {
           Result<Stored> stored = opening.load(Progress(all, 0.0, kLoaded));
           if (!stored) return stored.error();
           opening.of = std::move(stored->of);
+          opening.of->source = opening.source;
           opening.tissues = std::move(stored->tissues);
           opening.no_tissues = std::move(stored->no_tissues);
           opening.no_structures = std::move(stored->no_structures);
@@ -293,25 +285,36 @@ void Workstation::openInBackground(Opened opening) {
         if (!fits.empty() && fits != opening.scene.anatomy) {
           const std::filesystem::path file = defaultScene(fits);
           if (Result<Scene> other = allowedScene(file, policy ? &*policy : nullptr)) {
-            useCase(*other, "");
             opening.scene = *std::move(other);
             opening.scene_file = file;
             opening.same_scene = false;
           }
         }
-        Result<Case> placed = opening.of
-                                  ? placedIn(opening.scene, *opening.of, progress, hideNamesOf)
-                                  : openCase(opening.scene, progress, hideNamesOf);
+        constexpr double kRead = 0.9;  // of the work
+        const bool at_hand = opening.of.has_value();
+        if (!at_hand) {
+          Result<Case> read = readCase(opening.source, Progress(progress, 0.0, kRead));
+          if (!read) return read.error();
+          opening.of = *std::move(read);
+        }
+        const Scene here = onCase(opening.scene, opening.of->source);
+        Result<Placement> placed = place(here, *std::exchange(opening.of, {}),
+                                         Progress(progress, at_hand ? 0.0 : kRead, 1.0),
+                                         hideNamesOf);
         if (!placed) return placed.error();
-        opening.of = *std::move(placed);
-        if (opening.of->volume == shown) return std::move(opening);
-        const std::size_t voxels = opening.of->volume->geometry.voxelCount();
-        const double needed_mb = shownMb(voxels) + (opening.of->labels ? labelsMb(voxels) : 0.0);
+        opening.placed = *std::move(placed);
+        if (opening.scene.tissues_elsewhere && !here.tissues_elsewhere) {
+          opening.placed.elsewhere = true;
+        }
+        const std::shared_ptr<const Volume>& volume = opening.placed.patient.volume;
+        if (volume == shown) return std::move(opening);
+        const std::size_t voxels = volume->geometry.voxelCount();
+        const double needed_mb = shownMb(voxels) + (opening.placed.labels ? labelsMb(voxels) : 0.0);
         if (Status enough = enoughMemory(needed_mb, "Showing the case", "the case"); !enough) {
           return enough.error();
         }
         try {
-          opening.mirror = copyOf(*opening.of->volume);
+          opening.mirror = copyOf(*volume);
         } catch (const std::bad_alloc&) {
           return outOfMemory("to show the case", "the case");
         }
@@ -335,72 +338,37 @@ void Workstation::openInBackground(Opened opening) {
       });
 }
 
-// What was edited holds on the next case too. Where the scene has other tissues there, it waits for
-// a case on which these hold again.
-void Workstation::keepEdits(Opened& opened) {
-  const LabelMap* labels = opened.of->labels.get();
-  const bool same_set =
-      opened.same_scene && (one_set_ || scene_->tissues_elsewhere.has_value() ==
-                                            opened.scene.tissues_elsewhere.has_value());
-  if (!same_set) history_.begin(opened.scene);
-  if (same_set) {
-    // Edited while the case was read, perhaps.
-    if (opened.structures_alone) opened.scene = asEdited(std::move(opened.scene));
-    opened.scene.tissues = scene_->tissues;
-    for (TissueSet* set : {&opened.scene.tissues, &declared_tissues_}) placeTissues(*set, labels);
-    return;
-  }
-  std::optional<TissueSet> edited;
-  if (opened.same_scene && tissuesEdited()) edited = scene_->tissues;
-  declared_tissues_ = opened.scene.tissues;
-  if (!opened.same_scene) {
-    one_set_ = false;
-    elsewhere_.reset();
-    looks_ = opened.scene.view.looks;
-    edited_other_.reset();
-    return;
-  }
-  if (edited_other_) {
-    opened.scene.tissues = *edited_other_;
-    placeTissues(opened.scene.tissues, labels);
-  }
-  edited_other_ = std::move(edited);
-}
-
+// What was edited holds on the next case too.
 void Workstation::opened(Result<Opened> outcome) {
   const bool of_edit = std::exchange(placing_edit_, false);
   if (!outcome) {
     if (of_edit && history_.canUndo()) goTo(history_.undo());
     placing_edit_ = false;
-    if (case_) emit placingFailed();
+    if (placed_) emit placingFailed();
     return fail(outcome.error());
   }
   const bool structures_alone = outcome->structures_alone;
   const bool may_edit = !isLocked(Lock::tissues);
-  placed_with_ = tissueTable(outcome->scene.tissues);
-  keepEdits(*outcome);
-  // The case's own, where they are of the same kinds: what was felt on it is felt again.
-  if (outcome->tissues && may_edit && sameIds(*outcome->tissues, outcome->scene.tissues)) {
-    outcome->scene.tissues = *outcome->tissues;
-    placeTissues(outcome->scene.tissues, outcome->of->labels.get());
-    declared_tissues_ = outcome->scene.tissues;
+  placed_ = std::move(outcome->placed);
+  placed_with_ = tissueTable(placed_->scene.tissues);
+  if (!outcome->same_scene) {
+    scene_ = std::move(outcome->scene);
+    opened_scene_ = *scene_;
+    looks_ = scene_->view.looks;
+    history_.begin(*scene_);
+  } else if (!structures_alone) {  // tissues and controller were edited while it was read, perhaps
+    scene_ = forAnotherCase(*scene_);
   }
-  const bool same_scene = outcome->same_scene;
-  const bool as_opened = !same_scene || !sceneEdited();
-  scene_ = std::move(outcome->scene);
-  if (as_opened) {
-    Scene fresh = *scene_;
-    for (Landmark& landmark : fresh.landmarks) {  // a place that was clicked is no part of it
-      if (same_scene && isEntry(landmark)) {
-        landmark = *opened_scene_.findLandmarkById(landmark.id);
-      }
-    }
-    opened_scene_ = std::move(fresh);
+  // The case's own, where they are of the same kinds: what was felt on it is felt again.
+  if (outcome->tissues && may_edit && sameIds(*outcome->tissues, tissues())) {
+    tissuesOf(*scene_) = *outcome->tissues;
+    tissuesSaved(*outcome->tissues);
   }
   history_.settle(*scene_);
+  history_.close();
+  refreshPlaced();
   scene_file_ = std::move(outcome->scene_file);
   in_force_ = scene_->controller;
-  case_ = std::move(outcome->of);
   if (structures_alone) {
     emit sceneChanged();
     emit editsChanged();
@@ -418,13 +386,13 @@ void Workstation::opened(Result<Opened> outcome) {
   if (outcome->no_labels) fail(*outcome->no_labels);
   if (outcome->no_structures) fail(*outcome->no_structures);
   if (outcome->no_tissues && may_edit) fail(*outcome->no_tissues);
-  if (case_->misfit) fail(*case_->misfit);
+  if (placed_->error) fail(*placed_->error);
   readArms();
 }
 
 std::optional<LandmarkFrame> Workstation::viewLandmark() const {
-  if (!case_) return {};
-  for (const PlacedLandmark& landmark : case_->landmarks) {
+  if (!placed_) return {};
+  for (const PlacedLandmark& landmark : placed_->landmarks) {
     if (scene_ && landmark.id == scene_->view.landmark) return landmark.frame;
   }
   return {};

@@ -3,7 +3,6 @@
 
 #include "base/file.h"
 #include "base/purpose.h"
-#include "scene/scene_structures.h"
 #include "tissue/tissue_edits.h"
 #include "ui/work/workstation.h"
 #include "volume/volume_files.h"
@@ -21,18 +20,14 @@ Error busySaving() {
 
 }  // namespace
 
-bool Workstation::tissuesEdited() const {
-  return scene_ && scene_->tissues != declared_tissues_;
-}
-
 void Workstation::saveTissues(const std::filesystem::path& file, std::function<void()> then) {
-  Json json = toJson(unplaced(scene_->tissues));
+  Json json = toJson(tissues());
   json["purpose"] = kPurpose;
   save(
       tr("The tissues are saved. A scene uses them where it names that file under 'tissues'."),
       [text = json.dump(1) + '\n', file](const Progress&) { return writeTextFile(file, text); },
-      [this, tissues = scene_->tissues, then = std::move(then)] {
-        declared_tissues_ = tissues;
+      [this, saved = tissues(), then = std::move(then)] {
+        tissuesSaved(saved);
         then();
       });
 }
@@ -45,7 +40,7 @@ void Workstation::saveVolume(const std::filesystem::path& file, std::function<vo
   if (session_) return saveOnceStill(file, std::move(then));
   save(
       tr("The volume is saved."),
-      [carved = carved_, whole = case_->volume, file](const Progress& progress) {
+      [carved = carved_, whole = placed_->patient.volume, file](const Progress& progress) {
         return writeVolume(carved ? slabsOf(*carved) : slabsOf(*whole), file, progress);
       },
       std::move(then));

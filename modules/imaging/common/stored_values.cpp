@@ -146,21 +146,34 @@ HuCounts HuConverter::convert(std::int16_t* words, std::size_t count, const Stor
   return counts;
 }
 
-UnnamedPadding unnamedPaddingToAir(Voxels& hu) {
+UnnamedPadding unnamedPaddingToAir(Volume& volume) {
   constexpr std::uint64_t kFewest = 32;
-  constexpr double kLeastShare = 0.001, kMostBetween = 0.01;
-  UnnamedPadding padding{*std::ranges::min_element(hu)};
-  if (padding.hu >= kLowestAir_HU) return padding;
-  std::uint64_t count = 0, between = 0;
+  constexpr double kMostOthers = 0.1;
+  constexpr int kLeastCorners = 2;  // of eight
+  Voxels& hu = volume.hu;
+  const auto [low, high] = std::ranges::minmax(hu);
+  if (low >= kLowestAir_HU) return {};
+  std::vector<std::uint64_t> counts(std::size_t(kLowestAir_HU - low));
+  std::uint64_t below = 0;
   for (const std::int16_t voxel : hu) {
-    count += voxel == padding.hu;
-    between += voxel > padding.hu && voxel < kLowestAir_HU;
+    if (voxel >= kLowestAir_HU) continue;
+    ++counts[std::size_t(voxel - low)];
+    ++below;
   }
-  const bool is_padding = count >= kFewest && double(count) >= kLeastShare * double(hu.size()) &&
-                          double(between) <= kMostBetween * double(count);
-  if (!is_padding) return padding;
+  const auto most = std::ranges::max_element(counts);
+  const UnnamedPadding padding{low + int(most - counts.begin()), *most};
+  int corners = 0;
+  const Index3& size = volume.geometry.size;
+  for (int corner = 0; corner < 8; ++corner) {
+    const auto end = [&](int axis) {
+      return corner & (1 << axis) ? size[std::size_t(axis)] - 1 : 0;
+    };
+    corners += volume.at(end(0), end(1), end(2)) == padding.hu;
+  }
+  const bool is_padding = padding.voxels >= kFewest && corners >= kLeastCorners &&
+                          double(below - padding.voxels) <= kMostOthers * double(padding.voxels);
+  if (!is_padding) return {};
   std::ranges::replace(hu, std::int16_t(padding.hu), kAirHu);
-  padding.voxels = count;
   return padding;
 }
 

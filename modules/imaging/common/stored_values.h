@@ -75,14 +75,14 @@ int storedValue(std::uint16_t word, const StoredFormat& format);
 // padding: they are masked away.
 bool hasHighBits(std::span<const std::int16_t> words, const StoredFormat& format);
 
-// Voxels at the lowest value, where that is one that no CT has and hardly anything lies between it
-// and air: what stands around the round field of a scanner, -3024 or -2000 as a rule.
+// Voxels at a value that no CT has, at corners of the volume and with hardly anything else below
+// air: what stands around the round field of a scanner, -3024 or -2000 as a rule.
 struct UnnamedPadding {
   int hu = 0;
   std::uint64_t voxels = 0;  // 0: there is none
 };
 
 // Makes it air.
-UnnamedPadding unnamedPaddingToAir(Voxels& hu);
+UnnamedPadding unnamedPaddingToAir(Volume& volume);
 
 }  // namespace trephine

@@ -89,6 +89,8 @@ class Unpacker {
                                archive_read_support_format_raw}) {  // raw: one file, packed
       support(in.get());
     }
+    // What was joined of several is read to its end.
+    archive_read_set_format_option(in.get(), "tar", "read_concatenated_archives", "1");
     if (archive_read_open_filename(in.get(), file.c_str(), kBlock) != ARCHIVE_OK) {
       return Reason(kDamaged);
     }
@@ -100,7 +102,7 @@ class Unpacker {
       progress_.at(from + (to - from) * std::clamp(share, 0.0, 1.0), "Unpacking");
       archive_entry* entry = nullptr;
       const int next = archive_read_next_header(in.get(), &entry);
-      if (next < ARCHIVE_WARN) return reason.empty() ? Reason(kDamaged) : reason;
+      if (next < ARCHIVE_WARN || next == ARCHIVE_RETRY) return reason.empty() ? Reason(kDamaged) : reason;
       const int format = archive_format(in.get());
       const bool packed_tar = archive_filter_count(in.get()) > 1;
       if (next == ARCHIVE_EOF) {

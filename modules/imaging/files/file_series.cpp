@@ -185,13 +185,17 @@ Result<Volume> readFileSeries(const std::filesystem::path& file, const Answers& 
     const Finding& finding = report.findings.back();
     return Error{finding.code, finding.text, report.uid, finding.action};
   }
-  if (reading->bytes_exchanged) {
+  // Values that are multiples of 256 alone are of a phantom, or of 8 bits.
+  const bool coarse =
+      std::ranges::all_of(reading->volume.hu, [](std::int16_t hu) { return hu % 256 == 0; });
+  const bool exchanged = reading->bytes_exchanged && !coarse && reading->header.slope == 1.0;
+  if (exchanged) {
     look.doubt(
         "neighbours differ far less with the bytes of each voxel exchanged, as of a header "
         "that says the wrong byte order");
   }
   UnnamedPadding padding;
-  if (!reading->bytes_exchanged) padding = unnamedPaddingToAir(reading->volume.hu);
+  if (!exchanged) padding = unnamedPaddingToAir(reading->volume);
   sayPadding(padding, report);
   look.addSampleOf(reading->volume.hu, reading->not_numbers + padding.voxels);
   const auto [low, high] = std::ranges::minmax(reading->volume.hu);

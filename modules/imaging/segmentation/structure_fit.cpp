@@ -12,6 +12,7 @@
 #include "imaging/segmentation/overlap_order.h"
 #include "imaging/segmentation/structure_hu.h"
 #include "imaging/segmentation/structure_place.h"
+#include "volume/grid_place.h"
 
 namespace trephine {
 
@@ -269,6 +270,7 @@ Result<std::vector<std::size_t>> orderOf(const Segmentation& of, const Answers& 
 }
 
 std::string stepsText(const Vec3& mm) {
+  if (mm.x == mm.y && mm.y == mm.z) return plainNumber(mm.x) + " mm";
   return plainNumber(mm.x) + " x " + plainNumber(mm.y) + " x " + plainNumber(mm.z) + " mm";
 }
 
@@ -292,8 +294,9 @@ bool saysNoPlace(const GridGeometry& g, const GridGeometry& ct) {
 
 // Asks what becomes of one that says nothing of its place and may be the CT's own, voxel by voxel.
 Status placeByItsSize(Segmentation& of, const GridGeometry& ct, Asking& asking, StructureFit& fit) {
-  if (of.geometry.size != ct.size || sharesVoxels(of.geometry, ct) ||
-      !saysNoPlace(of.geometry, ct)) {
+  const Vec3& mm = ct.spacing_mm;
+  if (of.geometry.size != ct.size || !saysNoPlace(of.geometry, ct) ||
+      cornersFrom_mm(of.geometry, ct) <= 0.5 * std::min({mm.x, mm.y, mm.z})) {
     return {};
   }
   const std::string what =

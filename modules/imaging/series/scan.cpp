@@ -219,7 +219,8 @@ Result<ScannedFiles> scanFiles(const fs::path& path, const Progress& progress, S
       result.volume_files.push_back(files[i].path);
     } else {
       ++result.skipped[frames.error().what];
-      if (files[i].bytes == 0) ++result.empty_files[files[i].path.parent_path()];
+      const bool cut = frames.error().what.find("cut short") != std::string::npos;
+      if (files[i].bytes == 0 || cut) ++result.empty_files[files[i].path.parent_path()];
       if (frames.error().what.ends_with(kUnpackFirst)) result.archives.push_back(files[i].path);
     }
     headers[i].reset();

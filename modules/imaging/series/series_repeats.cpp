@@ -140,96 +140,245 @@ std::optional<std::vector<int>> phasesInTurn(
   return phases;
 }
 
-// The steps of these places, where they are nearly all the same [mm]; 0: they are not.
+// The step of these places, where nearly all of them lie on it, a few missing [mm]; 0: they do not.
+// Rounded to 0.1 mm, steps may be off by as much.
 double evenStep_mm(const std::vector<double>& places_mm) {
-  constexpr double kSame = 0.02, kMostUneven = 0.1;
-  if (places_mm.size() < 3) return 0.0;
+  constexpr double kSame = 0.1, kRounded_mm = 0.11, kMostUneven = 0.1, kLeastSingle = 0.5;
   std::vector<double> steps;
   for (std::size_t n = 1; n < places_mm.size(); ++n) {
     steps.push_back(places_mm[n] - places_mm[n - 1]);
   }
+  if (steps.size() < 2) return 0.0;
   std::vector<double> sorted = steps;
   std::ranges::sort(sorted);
   const double median = sorted[sorted.size() / 2];
-  const auto uneven = std::ranges::count_if(
-      steps, [&](double step) { return std::abs(step - median) > kSame * median; });
-  return double(uneven) <= kMostUneven * double(steps.size()) ? median : 0.0;
+  const double tolerance_mm = std::max(kSame * median, std::min(kRounded_mm, 0.4 * median));
+  double uneven = 0.0, single = 0.0;
+  for (const double step : steps) {
+    const double multiple = std::max(1.0, std::round(step / median));
+    const bool on_it = std::abs(step - multiple * median) <= tolerance_mm;
+    uneven += on_it ? 0.0 : 1.0;
+    single += on_it && multiple == 1.0 ? 1.0 : 0.0;
+  }
+  const double all = double(steps.size());
+  return uneven <= kMostUneven * all && single >= kLeastSingle * all ? median : 0.0;
 }
 
-// Whether the slices of two or more phases lie between one another, at places of their own: each
-// phase is an even stack of its own, the longer the more there are, since values that change from
-// slice to slice make such stacks by chance; and where two of them overlap both have slices, three
-// at least.
-bool areInterleaved(const std::vector<int>& phases, const std::vector<double>& places_mm) {
-  constexpr std::ptrdiff_t kFewest = 3;
+// Whether the slices of two stacks lie between one another, at places of their own: each is even by
+// itself, and where they overlap most neighbours are of the other one. Places ascend.
+bool areInterleaved(const std::vector<double>& a, const std::vector<double>& b) {
+  constexpr std::size_t kFewest = 4;     // slices of a scan
+  constexpr std::ptrdiff_t kShared = 3;  // of each where they overlap
+  constexpr double kLeastTurns = 0.5;    // of the neighbours there
+  if (a.size() < kFewest || b.size() < kFewest) return false;
+  const double step_a = evenStep_mm(a), step_b = evenStep_mm(b);
+  if (!(std::min(step_a, step_b) > 2.0 * kSamePlace_mm)) return false;
+  const double margin = 0.5 * std::max(step_a, step_b);
+  const double low = std::max(a.front(), b.front()) - margin;
+  const double high = std::min(a.back(), b.back()) + margin;
+  std::vector<std::pair<double, int>> within;
+  std::ptrdiff_t counts[2] = {0, 0};
+  const std::vector<double>* both[2] = {&a, &b};
+  for (int of = 0; of < 2; ++of) {
+    for (const double mm : *both[of]) {
+      if (mm < low || mm > high) continue;
+      within.emplace_back(mm, of);
+      ++counts[of];
+    }
+  }
+  if (counts[0] < kShared || counts[1] < kShared) return false;
+  std::ranges::sort(within);
+  double turns = 0.0;
+  for (std::size_t n = 1; n < within.size(); ++n) {
+    turns += within[n].second != within[n - 1].second ? 1.0 : 0.0;
+  }
+  return turns >= kLeastTurns * double(within.size() - 1);
+}
+
+bool anyInterleaved(const std::vector<int>& phases, const std::vector<double>& places_mm) {
   const int count = 1 + std::ranges::max(phases);
   if (count < 2 || count > kMostPhases) return false;
   std::vector<std::vector<double>> of(std::size_t(count), std::vector<double>{});
   for (std::size_t n = 0; n < phases.size(); ++n) {
     of[std::size_t(phases[n])].push_back(places_mm[n]);
   }
-  for (const std::vector<double>& phase : of) {
-    if (phase.size() < 2 * std::size_t(count)) return false;
-    if (!(evenStep_mm(phase) > 2.0 * kSamePlace_mm)) return false;
-  }
   for (std::size_t a = 0; a < of.size(); ++a) {
     for (std::size_t b = 0; b < a; ++b) {
-      const double low = std::max(of[a].front(), of[b].front());
-      const double high = std::min(of[a].back(), of[b].back());
-      const auto within = [&](const std::vector<double>& phase) {
-        return std::ranges::count_if(phase, [&](double mm) { return mm >= low && mm <= high; });
-      };
-      if (within(of[a]) >= kFewest && within(of[b]) >= kFewest) return true;
+      if (areInterleaved(of[b], of[a])) return true;
     }
   }
   return false;
 }
 
-// Each slice's phase by the value of a key, of few values.
-std::optional<std::vector<int>> byValue(const Key& key,
-                                        const std::vector<const DicomHeader*>& slices) {
-  std::map<double, int> numbers;
-  std::vector<double> values;
-  for (const DicomHeader* slice : slices) {
-    const std::optional<double> value = key.of(*slice);
-    if (!value) return std::nullopt;
-    values.push_back(*value);
-    numbers[*value] = 0;
+// A number of each slice, by which scans may be told apart; none where it does not say.
+using Numbers = std::vector<std::optional<double>>;
+
+double medianStep_mm(const std::vector<double>& places_mm) {
+  std::vector<double> steps;
+  for (std::size_t n = 1; n < places_mm.size(); ++n) {
+    steps.push_back(places_mm[n] - places_mm[n - 1]);
   }
-  if (numbers.size() < 2 || 3 * numbers.size() > slices.size()) return std::nullopt;
-  int number = 0;
-  for (auto& [value, its] : numbers) its = number++;
-  std::vector<int> phases;
-  for (const double value : values) phases.push_back(numbers.at(value));
+  std::ranges::sort(steps);
+  return steps.empty() ? 0.0 : steps[steps.size() / 2];
+}
+
+// Each slice's phase where the slices are gone through in the order of their numbers again and
+// again, in whatever direction: a slice, or several of one number, among those of the phase so far
+// start the next, together with one before that is no step away. What says nothing is a phase of
+// its own.
+std::vector<int> bySweep(const Numbers& numbers, const std::vector<double>& places_mm) {
+  constexpr double kLeastStep = 0.75;
+  std::map<double, std::vector<std::size_t>> order;
+  std::vector<std::size_t> silent;
+  for (std::size_t n = 0; n < numbers.size(); ++n) {
+    numbers[n] ? order[*numbers[n]].push_back(n) : silent.push_back(n);
+  }
+  std::vector<int> phases(numbers.size(), 0);
+  int phase = -1;
+  std::vector<std::pair<double, std::vector<std::size_t>>> sweep;  // of the phase so far
+  double low = 0.0, high = 0.0;
+  // There and back: the first of the way back lies beyond the last of the way there.
+  const auto turned = [&] {
+    if (sweep.size() < 4) return false;
+    std::vector<double> steps;
+    for (std::size_t n = 1; n < sweep.size(); ++n) {
+      steps.push_back(std::abs(sweep[n].first - sweep[n - 1].first));
+    }
+    const double last = steps.back();
+    std::ranges::sort(steps);
+    return last < kLeastStep * steps[steps.size() / 2];
+  };
+  for (const auto& [number, slices] : order) {
+    double from = places_mm[slices.front()], to = from;
+    for (const std::size_t n : slices) {
+      from = std::min(from, places_mm[n]);
+      to = std::max(to, places_mm[n]);
+    }
+    if (phase < 0 || (from < high && to > low)) {
+      ++phase;
+      low = from;
+      high = to;
+      if (turned()) {
+        sweep.erase(sweep.begin(), sweep.end() - 1);
+        for (const std::size_t n : sweep.back().second) {
+          phases[n] = phase;
+          low = std::min(low, places_mm[n]);
+          high = std::max(high, places_mm[n]);
+        }
+      } else {
+        sweep.clear();
+      }
+    }
+    low = std::min(low, from);
+    high = std::max(high, to);
+    sweep.emplace_back(0.5 * (from + to), slices);
+    for (const std::size_t n : slices) phases[n] = phase;
+  }
+  if (!silent.empty()) ++phase;
+  for (const std::size_t n : silent) phases[n] = phase;
   return phases;
 }
 
-// Each slice's phase where a number grows from slice to slice along the scan, and the scan is gone
-// through again and again in one direction: a step back starts the next.
-std::optional<std::vector<int>> bySweep(
-    const std::function<std::optional<double>(const DicomHeader&)>& number,
-    const std::vector<const DicomHeader*>& slices, const std::vector<double>& places_mm) {
-  std::vector<std::pair<double, std::size_t>> order;
-  for (std::size_t n = 0; n < slices.size(); ++n) {
-    const std::optional<double> value = number(*slices[n]);
-    if (!value) return std::nullopt;
-    order.emplace_back(*value, n);
+// Two phases, before and after the longest pause in the numbers: in each they may be in any order.
+// One phase where these two are no wider stacks than both together, as any half of the slices is.
+std::vector<int> byPause(const Numbers& numbers, const std::vector<double>& places_mm) {
+  constexpr double kWider = 1.5;
+  const std::vector<int> one(numbers.size(), 0);
+  std::vector<double> sorted;
+  for (const std::optional<double>& number : numbers) {
+    if (!number) return one;
+    sorted.push_back(*number);
   }
-  std::ranges::sort(order);
-  std::size_t up = 0;
-  for (std::size_t i = 1; i < order.size(); ++i) {
-    if (order[i].first == order[i - 1].first) return std::nullopt;
-    up += places_mm[order[i].second] > places_mm[order[i - 1].second] ? 1 : 0;
+  std::ranges::sort(sorted);
+  double longest = 0.0, after = sorted.front();
+  for (std::size_t n = 1; n < sorted.size(); ++n) {
+    if (sorted[n] - sorted[n - 1] <= longest) continue;
+    longest = sorted[n] - sorted[n - 1];
+    after = sorted[n];
   }
-  const bool upwards = 2 * up > order.size();
-  std::vector<int> phases(slices.size(), 0);
-  int phase = 0;
-  for (std::size_t i = 1; i < order.size(); ++i) {
-    const bool rises = places_mm[order[i].second] > places_mm[order[i - 1].second];
-    if (rises != upwards) ++phase;
-    phases[order[i].second] = phase;
+  std::vector<int> phases;
+  std::vector<double> of[2];
+  for (std::size_t n = 0; n < numbers.size(); ++n) {
+    phases.push_back(*numbers[n] >= after ? 1 : 0);
+    of[phases.back()].push_back(places_mm[n]);
   }
-  return phase > 0 ? std::optional(phases) : std::nullopt;
+  const double least_mm = std::min(medianStep_mm(of[0]), medianStep_mm(of[1]));
+  return least_mm >= kWider * medianStep_mm(places_mm) ? phases : one;
+}
+
+// Scans whose slices lie between one another.
+struct Interleaved {
+  std::vector<int> phases;
+  std::string told_apart_by;
+};
+
+std::optional<Interleaved> interleaved(const std::vector<const DicomHeader*>& slices,
+                                       const std::vector<double>& places_mm,
+                                       const std::vector<Key>& keys) {
+  const auto numbersBy = [&](const auto& key) {
+    Numbers numbers;
+    for (const DicomHeader* slice : slices) numbers.push_back(key(*slice));
+    return numbers;
+  };
+  const auto instance = [](const DicomHeader& h) { return parseDecimal(h.instance_number); };
+  // Times of the heart's cycle differ a little from beat to beat.
+  const auto alike = [](Numbers numbers) {
+    constexpr double kSame = 0.03;
+    std::map<double, double> least;
+    for (const auto& number : numbers) {
+      if (number) least[*number] = *number;
+    }
+    double before = 0.0;
+    for (auto& [number, its] : least) {
+      if (number - before <= kSame * std::abs(number)) its = before;
+      before = its;
+    }
+    for (auto& number : numbers) {
+      if (number) number = least.at(*number);
+    }
+    return numbers;
+  };
+  std::vector<std::pair<std::string, Numbers>> all;
+  for (const Key& key : keys) {
+    const std::string_view unit = key.unit;
+    const bool of_heart = unit == " ms" || unit.starts_with(" %");
+    Numbers numbers = numbersBy(key.of);
+    all.emplace_back(key.name, of_heart ? alike(std::move(numbers)) : std::move(numbers));
+  }
+  all.emplace_back("instance number", numbersBy(instance));
+  for (const auto& [name, numbers] : all) {
+    for (std::vector<int> phases : {bySweep(numbers, places_mm), byPause(numbers, places_mm)}) {
+      if (anyInterleaved(phases, places_mm)) return Interleaved{std::move(phases), name};
+    }
+  }
+  return std::nullopt;
+}
+
+// Of phases that were told apart, those that are several scans all the same, by other keys.
+void refine(const std::vector<const DicomHeader*>& slices, const std::vector<double>& places_mm,
+            const std::vector<Key>& keys, std::vector<int>& phases, std::string& told_apart_by) {
+  for (int phase = 0; phase <= std::ranges::max(phases); ++phase) {
+    std::vector<std::size_t> own;
+    for (std::size_t n = 0; n < phases.size(); ++n) {
+      if (phases[n] == phase) own.push_back(n);
+    }
+    std::vector<const DicomHeader*> its;
+    std::vector<double> its_mm;
+    for (const std::size_t n : own) {
+      its.push_back(slices[n]);
+      its_mm.push_back(places_mm[n]);
+    }
+    if (its.size() < 2) continue;
+    const auto parts = interleaved(its, its_mm, keys);
+    const int most = std::ranges::max(phases);
+    if (!parts || most + 1 + std::ranges::max(parts->phases) > kMostPhases) continue;
+    for (std::size_t i = 0; i < own.size(); ++i) {
+      if (parts->phases[i] > 0) phases[own[i]] = most + parts->phases[i];
+    }
+    if (told_apart_by.find(parts->told_apart_by) == told_apart_by.npos) {
+      told_apart_by += " and " + parts->told_apart_by;
+    }
+  }
 }
 
 // The slices' rank at their place, and the key that tells them apart everywhere; where none does,
@@ -389,29 +538,25 @@ std::vector<std::size_t> chooseRepeats(const std::vector<const DicomHeader*>& sl
     told_apart_by = by;
   };
   const auto instance = [](const DicomHeader& h) { return parseDecimal(h.instance_number); };
-  // Scans that lie between one another share no place.
+  const bool scanned_again = areMostRepeated(places);
   const bool single = most.count() == 1 && places.size() > 1;
-  if (single) {
-    const auto interleaved = [&](std::optional<std::vector<int>> some, const char* by) {
-      if (some && areInterleaved(*some, places_mm)) found(std::move(some), by);
-    };
-    for (const Key& key : keys) interleaved(byValue(key, slices), key.name);
-    for (const Key& key : keys) {
-      const bool is_time = std::string_view(key.name).ends_with(" time");
-      if (is_time && !phases) interleaved(bySweep(key.of, slices, places_mm), key.name);
+  // Scans that lie between one another share hardly any place.
+  bool woven = false;
+  if (!scanned_again && places.size() > 1) {
+    if (auto scans = interleaved(slices, places_mm, keys)) {
+      woven = true;
+      found(std::move(scans->phases), scans->told_apart_by.c_str());
     }
-    if (!phases) interleaved(bySweep(instance, slices, places_mm), "instance number");
   }
   if ((single && !phases) || places.size() == 1) {
     for (std::size_t n = 0; n < slices.size(); ++n) chosen.push_back(n);
     return chosen;
   }
-  const bool scanned_again = areMostRepeated(places);
   for (std::size_t key = 0; scanned_again && key < keys.size() && !phases; ++key) {
     found(phasesBy(keys[key], slices, places), keys[key].name);
   }
   const Ranks rank = ranks(slices, places, keys);
-  if (rank.key && !single && least.count() == most.count() && most.count() <= kMostPhases) {
+  if (rank.key && least.count() == most.count() && most.count() <= kMostPhases) {
     found(rank.of, rank.key);
   }
   for (std::size_t key = 0; scanned_again && key < keys.size() && !phases; ++key) {
@@ -430,6 +575,8 @@ std::vector<std::size_t> chooseRepeats(const std::vector<const DicomHeader*>& sl
   };
 
   if (phases) {
+    const std::string first_key = told_apart_by;
+    refine(slices, places_mm, keys, *phases, told_apart_by);
     report.phases = 1 + std::ranges::max(*phases);
     const bool by_kernel = told_apart_by == "convolution kernel";
     Choice choice{"PHASES",
@@ -447,7 +594,7 @@ std::vector<std::size_t> chooseRepeats(const std::vector<const DicomHeader*>& sl
       choice.options.push_back(std::to_string(phase + 1));
       choice.words.push_back((by_kernel ? "Reconstruction " : "Phase ") +
                              std::to_string(phase + 1) + (by_kernel ? "" : " by " + told_apart_by) +
-                             valueText(keys, told_apart_by, middle) +
+                             valueText(keys, first_key, middle) +
                              (middle.kernel.empty() ? "" : ", kernel " + shownTerm(middle.kernel)) +
                              timeText(middle) + ", " + counted(its.size(), "slice"));
       choice.on_screen.push_back(middle.description);
@@ -462,7 +609,7 @@ std::vector<std::size_t> chooseRepeats(const std::vector<const DicomHeader*>& sl
     const std::string answer = ask(std::move(choice), answers, report.choices);
     const std::string text = "The series holds " + std::to_string(report.phases) +
                              (by_kernel ? " reconstructions" : " phases or repeated acquisitions") +
-                             (single ? " whose slices lie between one another" : "") +
+                             (woven ? " whose slices lie between one another" : "") +
                              ", told apart by " + told_apart_by;
     if (answer == "all") {
       report.findings.push_back(

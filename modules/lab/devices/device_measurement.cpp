@@ -158,7 +158,7 @@ Status runClosedLoop(const Subject& subject, double seconds, DeviceRow& row,
                      const Progress& progress) {
   Result<Scene> scene = sceneOn(subject.arms);
   if (!scene) return scene.error();
-  const Result<Case> of = openCase(*scene);
+  const Result<Placement> of = openCase(*scene);
   if (!of) return of.error();
   LoopWatch watch(std::size_t((seconds + 10.0) * kRate_hz));
   Result<Rig> rig = rigOf(*scene, subject.arms);
@@ -166,7 +166,7 @@ Status runClosedLoop(const Subject& subject, double seconds, DeviceRow& row,
   SessionOptions options;
   options.probe = &watch;
   options.rig = *rig;
-  Result<std::unique_ptr<Session>> session = Session::create(*scene, *of, options);
+  Result<std::unique_ptr<Session>> session = Session::create(*of, options);
   if (!session) return session.error();
   if (Status started = (*session)->start(seconds); !started) return started;
   const std::int64_t begin_ns = hostTime_ns();
@@ -418,7 +418,7 @@ Result<DeviceTrial> tryDevice(const TrialOptions& options, const fs::path& recor
   if (Status there = plugIn(subject); !there) return there.error();
   Result<Scene> scene = sceneOn(subject.arms);
   if (!scene) return scene.error();
-  const Result<Case> of = openCase(*scene);
+  const Result<Placement> of = openCase(*scene);
   if (!of) return of.error();
   LoopWatch watch(std::size_t(40.0 * kRate_hz));
   SessionOptions session_options;
@@ -427,7 +427,7 @@ Result<DeviceTrial> tryDevice(const TrialOptions& options, const fs::path& recor
   Result<Rig> rig = rigOf(*scene, subject.arms);
   if (!rig) return rig.error();
   session_options.rig = *std::move(rig);
-  Result<std::unique_ptr<Session>> session = Session::create(*scene, *of, session_options);
+  Result<std::unique_ptr<Session>> session = Session::create(*of, session_options);
   if (!session) return session.error();
   if (Status started = (*session)->start(30.0); !started) return started.error();
   std::this_thread::sleep_for(std::chrono::duration<double>(options.wait_s));
@@ -491,7 +491,8 @@ Result<DeviceTrial> tryDevice(const TrialOptions& options, const fs::path& recor
   const auto reader = SessionReader::open(recording);
   if (!reader) return trial;
   const Result<ReplayResult> again =
-      replay(**reader, *of->volume, of->labels.get(), Progress(), of->sha256);
+      replay(**reader, *of->patient.volume, of->labels.get(), Progress(),
+             of->patient.sha256);
   trial.replayed = again && again->identical && !again->cut_short;
   return trial;
 }

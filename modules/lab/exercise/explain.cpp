@@ -16,7 +16,7 @@
 #include "scene/arm_limits.h"
 #include "scene/names.h"
 #include "session/arm_devices.h"
-#include "session/case.h"
+#include "case/placement.h"
 #include "session/operator_script.h"
 #include "session/run_statistics.h"
 #include "volume/case_memory.h"
@@ -95,18 +95,18 @@ Result<Json> warningsAtStart(Scene& scene, const Rig& rig, const Progress& progr
   if (scene.case_source.empty() || scene.operator_file.empty()) return Json(nullptr);
   Result<OperatorScript> script = readOperatorScript(scene.operator_file, scene);
   if (!script) return script.error();
-  const Result<Case> of = openCase(scene, progress);
+  const Result<Placement> of = openCase(scene, progress);
   if (!of) return of.error();
-  if (of->misfit) return *of->misfit;
-  const Scene fixed = withFixedMaps(scene, of->landmarks);
-  const double needed_mb = exerciseMb(of->volume->geometry.voxelCount());
+  if (of->error) return *of->error;
+  const Scene& fixed = of->scene;
+  const double needed_mb = exerciseMb(of->patient.volume->geometry.voxelCount());
   if (Status enough = enoughMemory(needed_mb, "The first tick", "the case"); !enough) {
     return enough.error();
   }
-  Grid grid(Volume(*of->volume), of->labels);
+  Grid grid(Volume(*of->patient.volume), of->labels);
   HapticCore core(hapticParameters(fixed, rig), *grid.takeWriter());
   std::array<OperatorSetPoint, kMaxArms> set_points{};
-  ScriptOperator(*script, fixed, armFrames(scene, of->landmarks))
+  ScriptOperator(*script, fixed, armFrames(fixed, of->landmarks))
       .setPoints(0, set_points.data(), scene.arms.size());
   TickInput input;
   for (std::size_t i = 0; i < scene.arms.size(); ++i) {

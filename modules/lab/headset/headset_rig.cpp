@@ -94,7 +94,7 @@ Status HeadsetRig::open(const std::filesystem::path& file, const std::filesystem
   session_.reset();
   Result<Scene> scene = readScene(file);
   if (!scene) return scene.error();
-  Result<Case> of = openCase(*scene, progress);
+  Result<Placement> of = openCase(*scene, progress);
   if (!of) return of.error();
   SessionOptions options;
   options.recording = recording_ = recording;
@@ -103,10 +103,10 @@ Status HeadsetRig::open(const std::filesystem::path& file, const std::filesystem
     if (!script) return script.error();
     options.script = *std::move(script);
   }
-  Result<std::unique_ptr<Session>> session = Session::create(*scene, *of, options);
+  Result<std::unique_ptr<Session>> session = Session::create(*of, options);
   if (!session) return session.error();
-  scene_ = *std::move(scene);
-  case_ = *std::move(of);
+  scene_ = std::move(of->scene);
+  case_ = std::move(of->patient);
   session_ = *std::move(session);
   renderer_->setTissues(scene_->tissues, scene_->view.looks);
   renderer_->setVolume(session_->grid(), case_->volume);
@@ -134,7 +134,7 @@ bool HeadsetRig::replays(const Progress& progress) const {
   const auto reader = SessionReader::open(recording_);
   if (!reader) return false;
   const Result<ReplayResult> again =
-      replay(**reader, *case_->volume, case_->labels.get(), progress, case_->sha256);
+      replay(**reader, *case_->volume, session_->grid().labels().get(), progress, case_->sha256);
   return again && again->identical && !again->cut_short;
 }
 

@@ -49,11 +49,11 @@ Status measureExercise(const char* file, const RenderSubject& subject, const Ren
   Case known = caseOf(subject.volume);
   known.built_in = true;
   known.structures = subject.labels;
-  const Result<Case> of = placedIn(*scene, std::move(known), Progress(progress, 0.0, 0.2));
+  const Result<Placement> of = place(*scene, std::move(known), Progress(progress, 0.0, 0.2));
   if (!of) return of.error();
   Result<OperatorScript> script = readOperatorScript(scene->operator_file, *scene);
   if (!script) return script.error();
-  Result<std::unique_ptr<Session>> made = Session::create(*scene, *of, {"", *script});
+  Result<std::unique_ptr<Session>> made = Session::create(*of, {"", *script});
   if (!made) return made.error();
   Session& session = **made;
   auto renderer_made = SceneRenderer::offscreen(options.moving[0], options.moving[1]);
@@ -63,7 +63,7 @@ Status measureExercise(const char* file, const RenderSubject& subject, const Ren
   constexpr double kFrame_ms = 20.0, kBetween_ms = 10.0;
   const double distance = options.sample_distances.front();
   renderer.setSampleDistance(distance);
-  renderer.setTissues(scene->tissues, scene->view.looks);
+  renderer.setTissues(of->scene.tissues, scene->view.looks);
   renderer.setVolume(session.grid());
   lookAtExercise(renderer, session);
   for (int n = 0; n < 2; ++n) renderer.paint(0);  // the first one sends the volume

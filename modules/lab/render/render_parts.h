@@ -15,7 +15,7 @@
 #include "lab/render/render_measurement.h"
 #include "render/scene_renderer.h"
 #include "scene/landmark.h"
-#include "session/case.h"
+#include "case/placement.h"
 
 namespace trephine {
 

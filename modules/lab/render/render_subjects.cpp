@@ -61,12 +61,12 @@ Result<std::vector<RenderSubject>> renderSubjects(const std::string& case_source
 
   Result<Scene> liver = readScene(resourceFolder() / "scenes" / "liver.json");
   if (!liver) return liver.error();
-  const Result<Case> abdomen = openCase(*liver, Progress(progress, 0.3, 0.8));
+  const Result<Placement> abdomen = openCase(*liver, Progress(progress, 0.3, 0.8));
   if (!abdomen) return abdomen.error();
-  if (abdomen->misfit) return *abdomen->misfit;
+  if (abdomen->error) return *abdomen->error;
   RenderSubject subject{
-      liver->case_source, "liver",           abdomen->volume, abdomen->labels,
-      liver->tissues,     liver->view.looks, std::nullopt,    liver->view.distance_mm};
+      liver->case_source,     "liver",           abdomen->patient.volume, abdomen->labels,
+      abdomen->scene.tissues, liver->view.looks, std::nullopt,            liver->view.distance_mm};
   for (const PlacedLandmark& landmark : abdomen->landmarks) {
     if (landmark.id == liver->view.landmark) subject.at = landmark.frame;
   }

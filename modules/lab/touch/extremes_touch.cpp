@@ -9,7 +9,7 @@
 #include "lab/common/on_all_processors.h"
 #include "lab/touch/placed_scene.h"
 #include "lab/touch/rest_measurement.h"
-#include "session/case.h"
+#include "case/case.h"
 #include "volume/phantom_file.h"
 
 namespace trephine {

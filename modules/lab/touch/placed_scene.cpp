@@ -6,7 +6,7 @@
 #include "base/system.h"
 #include "scene/arm_limits.h"
 #include "session/arm_devices.h"
-#include "session/case.h"
+#include "case/placement.h"
 
 namespace trephine {
 
@@ -23,17 +23,17 @@ Result<PlacedScene> placeScene(const std::string& name, const std::string& case_
   for (std::size_t i = 0; i < scene->arms.size(); ++i) {
     scene->arms[i].max_force_N = mostForce_N(scene->arms[i], rig.arms[i].dynamics);
   }
-  if (!case_source.empty()) useCase(*scene, case_source);
-  const Result<Case> of = openCase(*scene, progress);
+  if (!case_source.empty()) scene = onCase(*std::move(scene), case_source);
+  const Result<Placement> of = openCase(*scene, progress);
   if (!of) return of.error();
-  if (of->misfit) return *of->misfit;
+  if (of->error) return *of->error;
   for (const Warning& warning : of->warnings) {
     if (warning.code != "NO_LANDMARK") continue;  // a figure would be of another place
     return Error{warning.code, warning.text, "scene '" + name + "'",
                  "Choose a case of the scene's anatomy"};
   }
-  return PlacedScene{withFixedMaps(*scene, of->landmarks), std::move(rig), of->volume, of->labels,
-                     armFrames(*scene, of->landmarks)};
+  return PlacedScene{of->scene, std::move(rig), of->patient.volume, of->labels,
+                     armFrames(of->scene, of->landmarks)};
 }
 
 Tool withoutMotor(const Tool& tool) {

@@ -10,7 +10,7 @@
 #include "gui_support.h"
 #include "library/case_library.h"
 #include "session/arm_devices.h"
-#include "session/case.h"
+#include "case/placement.h"
 #include "tissue/tissue_edits.h"
 
 namespace trephine {
@@ -285,7 +285,7 @@ class ExerciseGuiTest : public test::WindowTest {
     choose("armChoice", QString("left"));
     const Vec3 before = scene().arms[0].map.offset_mm;
     const auto centre = [&] {
-      return withFixedMaps(scene(), workstation().currentCase()->landmarks)
+      return withFixedMaps(scene(), workstation().placed()->landmarks)
           .arms[0]
           .map.fixed->centre_mm;
     };
@@ -328,7 +328,7 @@ class ExerciseGuiTest : public test::WindowTest {
     QVERIFY(scene().arms[0].map.offset_mm == before);
     // By an edge of it as well.
     const WorkspaceMap map =
-        *withFixedMaps(scene(), workstation().currentCase()->landmarks).arms[0].map.fixed;
+        *withFixedMaps(scene(), workstation().placed()->landmarks).arms[0].map.fixed;
     const double half_mm = 500.0 * workstation().workspaces_mm()[0].z * 1e-3;
     const Vec3 edge_mm = map.centre_mm - map.rotation * Vec3(0.0, 0.0, half_mm);
     const QPoint at = coronal.fromPatient(edge_mm).toPoint();
@@ -362,7 +362,7 @@ class ExerciseGuiTest : public test::WindowTest {
   void anArmIsFixedInThePatientAndGoesBackToItsLandmark() {
     showTab(PrepareWorkspace::kToolTab);
     choose("armChoice", QString("left"));
-    const auto& landmarks = workstation().currentCase()->landmarks;
+    const auto& landmarks = workstation().placed()->landmarks;
     const auto centre = [&] {
       return withFixedMaps(scene(), landmarks).arms[0].map.fixed->centre_mm;
     };
@@ -426,7 +426,7 @@ class ExerciseGuiTest : public test::WindowTest {
     refused(PrepareWorkspace::kExerciseTab, "chooseElsewhere", "elsewhereDialog", text);
     find<QListWidget>("toolList")->setCurrentRow(0);
     refused(PrepareWorkspace::kToolTab, "chooseMesh", "meshDialog", text);
-    QVERIFY(sameScene(scene(), before));
+    QVERIFY(scene() == before);
     // Each kind of file is asked for where it was last.
     const auto opensIn = [&](const char* button, const char* dialog) {
       find<QToolButton>(button)->click();

@@ -8,7 +8,7 @@
 
 #include "gui_support.h"
 #include "imaging/importer.h"
-#include "session/case.h"
+#include "case/placement.h"
 #include "tissue/tissue_edits.h"
 
 namespace trephine {

@@ -253,7 +253,7 @@ class Structures3dGuiTest : public test::WindowTest {
     QSignalSpy started(&workstation(), &Workstation::sessionStarted);
     window_->startExercise();
     QVERIFY(started.count() == 1 || started.wait(kLong_ms));
-    QVERIFY(views().mirror().labels() == workstation().currentCase()->labels);
+    QVERIFY(views().mirror().labels() == workstation().placed()->labels);
     for (const Tissue& tissue : workstation().session()->scene().tissues.tissues) {
       QVERIFY2(!tissue.id.starts_with("structure:"), tissue.id.c_str());
     }

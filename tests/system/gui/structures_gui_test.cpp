@@ -233,11 +233,11 @@ class StructuresGuiTest : public test::WindowTest {
     QVERIFY(started.count() == 1 || started.wait(kLong_ms));
     computing_ms_ += clock.elapsed();
     QVERIFY(!window_->findChild<QMessageBox*>("misfitQuestion"));
-    const Case& of = *workstation().currentCase();
+    const Placement& of = *workstation().placed();
     QVERIFY(of.warnings.empty());
     QVERIFY(of.labels->find("capsule"));
-    QVERIFY(!of.structures->find("capsule"));
-    QCOMPARE(int(*workstation().scene()->tissues.find("liver")->label),
+    QVERIFY(!of.patient.structures->find("capsule"));
+    QCOMPARE(int(*of.scene.tissues.find("liver")->label),
              of.labels->find("liver")->label);
   }
 

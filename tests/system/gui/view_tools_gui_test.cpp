@@ -105,7 +105,7 @@ class ViewToolsGuiTest : public test::WindowTest {
     window_->show();
     QVERIFY(QTest::qWaitForWindowExposed(window_.get()));
     window_->workstation().openPhantom("cranium");
-    QTRY_VERIFY_WITH_TIMEOUT(window_->workstation().currentCase().has_value(), kLong_ms);
+    QTRY_VERIFY_WITH_TIMEOUT(window_->workstation().currentCase() != nullptr, kLong_ms);
     QTRY_VERIFY_WITH_TIMEOUT(!shot().rgb.empty(), kLong_ms);
     opened_ = shot();
   }

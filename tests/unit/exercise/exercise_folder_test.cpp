@@ -15,7 +15,7 @@
 #include "base/system.h"
 #include "packed_words.h"
 #include "scene/scene.h"
-#include "session/case.h"
+#include "case/placement.h"
 #include "support.h"
 #include "volume/phantom.h"
 #include "volume/segmentation.h"
@@ -108,9 +108,9 @@ TEST_F(ExerciseFolder, TheCaseGoesWithItVoxelByVoxelAndWithItsStructures) {
   const ImportedExercise there = imported();
   ASSERT_TRUE(there.check.verified());
   Scene before = *readScene(scene_file), after = *readScene(there.scene);
-  const Result<Case> of = openCase(before), again = openCase(after);
+  const Result<Placement> of = openCase(before), again = openCase(after);
   ASSERT_TRUE(of && again);
-  EXPECT_EQ(again->sha256, of->sha256);
+  EXPECT_EQ(again->patient.sha256, of->patient.sha256);
   EXPECT_EQ(again->labels->labels, of->labels->labels);
   ASSERT_EQ(again->landmarks.size(), of->landmarks.size());
   EXPECT_EQ(again->landmarks[0].frame.position_mm, of->landmarks[0].frame.position_mm);

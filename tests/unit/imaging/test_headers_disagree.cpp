@@ -537,6 +537,26 @@ TEST_F(NiftiForms, OneThatSaysNothingOfItsPlaceAndHasTheCtsSizeIsAskedAbout) {
   }
 }
 
+// A CT whose first voxel lies a whole number of its steps from 0.
+TEST_F(NiftiForms, OneThatSaysNothingOfItsPlaceIsAskedAboutOnWholeStepsToo) {
+  for (const Vec3& origin : {Vec3(-10, -10, -20), Vec3(0, 0, 30), Vec3(-8, 4, 0)}) {
+    Nifti of;
+    of.size = {8, 8, 8};
+    of.pixdim = Vec3(2.0);
+    const Mat4 here = glm::scale(Mat4(1.0), of.pixdim);
+    of.sform = of.qform = here;
+    (*of.sform)[3] = glm::dvec4(origin, 1.0);
+    of.qform = of.sform;
+    writeCt(of);
+    const Result<Volume> ct = readVolume(folder() / "ct.nii");
+    ASSERT_TRUE(ct.ok());
+    of.labels = true;
+    of.sform = of.qform = here;
+    writeBytes(temporary_ / "labels.nii", niftiBytes(of));
+    EXPECT_EQ(importStructures(temporary_ / "labels.nii", *ct).error().code, "NO_AFFINE");
+  }
+}
+
 // --- Volume files ---
 
 // A header's numbers are the file's own, and voxels are what lies behind it.
@@ -599,6 +619,53 @@ TEST_F(NiftiForms, AWrongByteOrderIsDoubtedAndAsksNoOther) {
     const Error why = refusal();
     EXPECT_EQ(why.code, "IMPLAUSIBLE_HU");
     EXPECT_NE(why.what.find("byte order"), std::string::npos) << why.what;
+  }
+}
+
+// A wide scan whose first rows are of one value, as around a round field.
+TEST_F(NiftiForms, AWrongByteOrderIsDoubtedWhereverTheBodyLies) {
+  for (const int around : {-1024, -1000, -2000, -3024, 0}) {
+    Volume volume;
+    volume.geometry.size = {256, 256, 4};
+    std::mt19937 random(11);
+    for (std::size_t at = 0; at < volume.geometry.voxelCount(); ++at) {
+      const int x = int(at % 256) - 128, y = int(at / 256 % 256) - 128, square = x * x + y * y;
+      volume.hu.push_back(std::int16_t(square > 15000  ? around
+                                       : square > 6000 ? -1000 + int(random() % 30)
+                                                       : 40 + int(random() % 30)));
+    }
+    fs::create_directories(folder());
+    ASSERT_TRUE(writeVolume(volume, folder() / "ct.nii"));
+    std::string bytes = readBytes(folder() / "ct.nii");
+    for (std::size_t at = 352; at < bytes.size(); at += 2) std::swap(bytes[at], bytes[at + 1]);
+    writeBytes(folder() / "ct.nii", bytes);
+    EXPECT_EQ(refusal().code, "IMPLAUSIBLE_HU") << around;
+  }
+  // A phantom without noise, in steps of 256.
+  Volume phantom;
+  phantom.geometry.size = {32, 32, 8};
+  for (std::size_t at = 0; at < phantom.geometry.voxelCount(); ++at) {
+    const int x = int(at % 32) - 16, y = int(at / 32 % 32) - 16, square = x * x + y * y;
+    phantom.hu.push_back(std::int16_t(square > 200 ? -1024 : square > 50 ? 0 : 512));
+  }
+  ASSERT_TRUE(writeVolume(phantom, folder() / "ct.nii"));
+  scan();
+  EXPECT_EQ(import().hu, phantom.hu);
+}
+
+TEST_F(NiftiForms, AHeaderIsNeverReadAsVoxels) {
+  const Volume volume = rampVolume({20, 20, 10});
+  fs::create_directories(folder());
+  ASSERT_TRUE(writeVolume(volume, folder() / "ct.mha"));
+  std::string bytes = readBytes(folder() / "ct.mha");
+  const std::size_t at = bytes.find("ElementDataFile");
+  ASSERT_NE(at, bytes.npos);
+  bytes.insert(at, "HeaderSize = -1\n");
+  writeBytes(folder() / "ct.mha", bytes);
+  EXPECT_EQ(import().hu, volume.hu);
+  for (const std::size_t cut : {1, 2, 100, 200}) {
+    writeBytes(folder() / "ct.mha", bytes.substr(0, bytes.size() - cut));
+    EXPECT_EQ(refusal().code, "UNREADABLE") << cut;
   }
 }
 
@@ -789,7 +856,7 @@ TEST_F(HeadersDisagree, EmptyFilesBesideASeriesAreNotedAsWhatMayBeMissing) {
   writeBytes(slice(8), "");
   const CtFolder ct = scan();
   ASSERT_NE(find(ct.report().series.front(), "INCOMPLETE"), nullptr);
-  EXPECT_NE(find(ct.report().series.front(), "INCOMPLETE")->text.find("1 empty file lies"),
+  EXPECT_NE(find(ct.report().series.front(), "INCOMPLETE")->text.find("1 file lies beside"),
             std::string::npos);
   EXPECT_EQ(ct.report().series.front().verdict, Verdict::pass);
   // One that lies elsewhere is none of it.

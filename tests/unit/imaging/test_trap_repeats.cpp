@@ -271,6 +271,115 @@ TEST_F(TrapRepeats, AScanThatCoversAPartOfAnotherIsAskedAboutToo) {
   EXPECT_EQ(import({{"PHASES", "1"}}).geometry.size[2], kSlices);
 }
 
+TEST_F(TrapRepeats, HoweverTheSlicesOfEachAreNumberedAndTimed) {
+  constexpr int kMany = 16;
+  const auto set = [](DcmDataset& data, const DcmTagKey& tag, int value) {
+    put(data, tag, std::to_string(value));
+  };
+  std::mt19937 random(2);
+  std::vector<int> shuffled(kMany);
+  for (int k = 0; k < kMany; ++k) shuffled[std::size_t(k)] = k;
+  std::ranges::shuffle(shuffled, random);
+  using Mark = std::function<void(DcmDataset&, int phase, int k)>;
+  const std::vector<std::pair<const char*, Mark>> ways = {
+      {"an acquisition a rotation of four",
+       [&](DcmDataset& d, int p, int k) { set(d, DCM_AcquisitionNumber, 1 + 4 * p + k / 4); }},
+      {"an acquisition a slice",
+       [&](DcmDataset& d, int p, int k) { set(d, DCM_AcquisitionNumber, 1 + kMany * p + k); }},
+      {"a time a rotation",
+       [&](DcmDataset& d, int p, int k) { set(d, DCM_AcquisitionTime, 100000 + 500 * p + k / 4); }},
+      {"times in disorder",
+       [&](DcmDataset& d, int p, int k) {
+         set(d, DCM_ContentTime, 100000 + 500 * p + shuffled[std::size_t(k)]);
+       }},
+      {"there and back",
+       [&](DcmDataset& d, int p, int k) {
+         set(d, DCM_InstanceNumber, 1 + (p ? 2 * kMany - 1 - k : k));
+       }},
+      {"there and back, by time",
+       [&](DcmDataset& d, int p, int k) {
+         set(d, DCM_AcquisitionTime, 100000 + (p ? 2 * kMany - 1 - k : k));
+       }},
+      {"one says nothing",
+       [&](DcmDataset& d, int p, int) {
+         if (p) set(d, DCM_AcquisitionNumber, 2);
+       }},
+      {"a pause, in disorder", [&](DcmDataset& d, int p, int k) {
+         set(d, DCM_InstanceNumber, 1 + 100 * p + shuffled[std::size_t(k)]);
+       }}};
+  for (const auto& [what, mark] : ways) {
+    for (const double shift_mm : {1.0, 0.6}) {
+      std::filesystem::remove_all(folder());
+      for (int phase = 0; phase < 2; ++phase) {
+        for (int k = 0; k < kMany; ++k) {
+          Image slice = image(phase, k, 2 * k + phase + 1);
+          slice.position_mm.z += shift_mm * phase;
+          addSlice(slice, [&, m = mark](DcmDataset& data) { m(data, phase, k); });
+        }
+      }
+      const CtFolder ct = scan();
+      EXPECT_NE(find(ct.report().series.front(), "PHASES"), nullptr)
+          << what << " " << shift_mm << ": " << codes(ct.report().series.front());
+      EXPECT_EQ(import({{"PHASES", "1"}}).geometry.size[2], kMany) << what;
+      EXPECT_EQ(import({{"PHASES", "2"}}).geometry.size[2], kMany) << what;
+    }
+  }
+}
+
+TEST_F(TrapRepeats, WhereSlicesAreMissingOrPlacesRoundedOrAThirdScanIsShort) {
+  constexpr int kMany = 14;
+  const auto series = [&](const std::function<double(int phase, int k)>& place_mm,
+                          const std::function<bool(int phase, int k)>& wanted, int phases) {
+    std::filesystem::remove_all(folder());
+    for (int phase = 0; phase < phases; ++phase) {
+      for (int k = 0; k < kMany; ++k) {
+        if (!wanted(phase, k)) continue;
+        Image slice = image(phase, k, 2 * k + phase + 1);
+        slice.position_mm.z = place_mm(phase, k);
+        addSlice(slice, [&](DcmDataset& data) {
+          put(data, DCM_AcquisitionNumber, std::to_string(phase + 1));
+        });
+      }
+    }
+    const CtFolder ct = scan();
+    const SeriesReport& found = ct.report().series.front();
+    EXPECT_NE(find(found, "PHASES"), nullptr) << codes(found);
+    EXPECT_EQ(found.verdict, Verdict::refused);
+  };
+  const auto all = [](int, int) { return true; };
+  series([](int p, int k) { return 100.0 + 2.0 * k + p; },
+         [](int p, int k) { return p == 0 || (k != 4 && k != 9); }, 2);
+  series([](int p, int k) { return std::round(10.0 * (100.0 + 1.25 * k + 0.625 * p)) / 10.0; }, all,
+         2);
+  series([](int p, int k) { return 100.0 + 2.0 * k + p + 0.05 * (k % 3 - 1); }, all, 2);
+  series([](int p, int k) { return 100.0 + 2.0 * k + 0.7 * p; },
+         [](int p, int k) { return p < 2 || k < 4; }, 3);
+  series([](int p, int k) { return 100.0 + 8.0 * k + p; }, all, 8);
+}
+
+// Two kernels of two scans: neither answer may mix the scans.
+TEST_F(TrapRepeats, WhatIsToldApartIsLookedAtByTheOtherKeysAsWell) {
+  for (int scan = 0; scan < 2; ++scan) {
+    for (int kernel = 0; kernel < 2; ++kernel) {
+      for (int k = 0; k < 12; ++k) {
+        Image slice = image(2 * scan + kernel, k, 1 + k + 12 * kernel + 24 * scan);
+        slice.position_mm.z += scan;
+        addSlice(slice, [&](DcmDataset& data) {
+          put(data, DCM_ConvolutionKernel, kernel ? "B70f" : "B30f");
+          put(data, DCM_AcquisitionNumber, std::to_string(scan + 1));
+        });
+      }
+    }
+  }
+  const CtFolder ct = scan();
+  EXPECT_EQ(ct.report().series.front().phases, 4);
+  for (const char* number : {"1", "2", "3", "4"}) {
+    const Volume volume = import({{"PHASES", number}});
+    EXPECT_EQ(volume.geometry.size[2], 12);
+    EXPECT_NEAR(volume.geometry.spacing_mm.z, 2.0, 1e-9);
+  }
+}
+
 TEST_F(TrapRepeats, OneScanIsOneHoweverItsSlicesAreNumberedAndTimed) {
   using Mark = std::function<void(Image&, DcmDataset&, int k)>;
   constexpr int kMany = 24;
@@ -296,8 +405,6 @@ TEST_F(TrapRepeats, OneScanIsOneHoweverItsSlicesAreNumberedAndTimed) {
        }},
       {"fours turned round",
        [&](Image&, DcmDataset& d, int k) { set(d, DCM_InstanceNumber, k / 4 * 4 + 3 - k % 4); }},
-      {"there and back", [&](Image&, DcmDataset& d,
-                             int k) { set(d, DCM_InstanceNumber, k % 2 ? 2 * kMany - k : k); }},
       {"one number", [&](Image&, DcmDataset& d, int) { set(d, DCM_InstanceNumber, 1); }},
       {"an acquisition a slice",
        [&](Image&, DcmDataset& d, int k) { set(d, DCM_AcquisitionNumber, k + 1); }},
@@ -325,6 +432,10 @@ TEST_F(TrapRepeats, OneScanIsOneHoweverItsSlicesAreNumberedAndTimed) {
        [&](Image&, DcmDataset& d, int k) { set(d, DCM_AcquisitionTime, 100050 - k); }},
       {"one time", [&](Image&, DcmDataset& d, int) { set(d, DCM_AcquisitionTime, 100000); }},
       {"heart beats", [&](Image&, DcmDataset& d, int k) { set(d, DCM_TriggerTime, 750 + k % 7); }},
+      {"step and shoot in blocks by turns",
+       [&](Image&, DcmDataset& d, int k) { set(d, DCM_TriggerTime, k / 6 % 2 ? 310 : 250); }},
+      {"acquisitions in blocks by turns",
+       [&](Image&, DcmDataset& d, int k) { set(d, DCM_AcquisitionNumber, 1 + k / 6 % 2); }},
       {"a position of time a slice",
        [&](Image&, DcmDataset& d, int k) { set(d, DCM_TemporalPositionIdentifier, k); }},
       {"delays in blocks",

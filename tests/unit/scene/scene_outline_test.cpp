@@ -92,13 +92,13 @@ TEST(Outline, WithoutAFrameIsOfOnePatientAndLeftOutOnAnother) {
   const Volume volume = ball(kCentre_mm, kRadius_mm);
   const auto drawn = outlineOn(scene, {}, volume);
   EXPECT_EQ(drawn.front(), scene.outline->points_mm.front());
-  useCase(scene, "phantom:cranium");
+  scene = onCase(scene, "phantom:cranium");
   EXPECT_TRUE(scene.outline) << "its own case";
-  useCase(scene, "/data/ct");
+  scene = onCase(scene, "/data/ct");
   EXPECT_FALSE(scene.outline);
 
   Scene framed = *parseScene(burrHole(), burrHoleFile());
-  useCase(framed, "/data/ct");
+  framed = onCase(framed, "/data/ct");
   EXPECT_TRUE(framed.outline);
   EXPECT_TRUE(outlineOn(framed, {}, volume).empty()) << "its landmark has no place there";
 }

@@ -25,7 +25,7 @@ Error errorWithDeviceFile(const std::function<void(Json&)>& change, double rate_
   SessionOptions options;
   options.rig = simulatedRig(scene);
   options.rig.arms[0].device.config = (folder / "device.json").string();
-  const auto session = Session::create(scene, test::placed(scene, smallHead()), options);
+  const auto session = Session::create(test::placed(scene, smallHead()), options);
   return session ? Error{} : session.error();
 }
 
@@ -49,7 +49,7 @@ TEST(Session, RefusesADeviceFileNestedWithoutEndAndOneThatIsAPipe) {
   ASSERT_EQ(::mkfifo((folder / "pipe.json").c_str(), 0600), 0);
   for (const char* name : {"deep.json", "pipe.json"}) {
     options.rig.arms[0].device.config = (folder / name).string();
-    const auto session = Session::create(scene, test::placed(scene, smallHead()), options);
+    const auto session = Session::create(test::placed(scene, smallHead()), options);
     ASSERT_FALSE(session.ok()) << name;
     EXPECT_NE(session.error().where.find(name), std::string::npos) << session.error().sentence();
   }
@@ -70,7 +70,7 @@ TEST(Session, SaysWhenAPluginIsMissing) {
   SessionOptions options;
   options.rig = simulatedRig(scene);
   for (Rig::Arm& arm : options.rig.arms) arm.device.plugin = "nosuch";
-  auto session = Session::create(scene, test::placed(scene, smallHead()), options);
+  auto session = Session::create(test::placed(scene, smallHead()), options);
   ASSERT_FALSE(session.ok());
   EXPECT_EQ(session.error().code, "NO_PLUGIN");
 }

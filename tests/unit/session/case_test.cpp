@@ -20,7 +20,7 @@ TEST(Case, CanBeCancelledWhileItsLandmarksAreFound) {
   running = &progress;
   const Case of = caseOf(std::make_shared<const Volume>(smallHead()));
   Scene scene = cranium();
-  const auto placed = placedIn(scene, of, progress);
+  const auto placed = place(scene, of, progress);
   ASSERT_FALSE(placed.ok());
   EXPECT_EQ(placed.error().code, "CANCELLED");
 }
@@ -45,7 +45,7 @@ TEST(Session, CutsATissueOnlyWhereItsLabelIsAndReplaysWithThatLabelMapAlone) {
   test::TemporaryFolder folder;
   const auto labels = strips();
   auto session =
-      Session::create(craniumOfLabels(), test::placed(craniumOfLabels(), smallHead(), labels),
+      Session::create(test::placed(craniumOfLabels(), smallHead(), labels),
                       scripted(folder / "s.h5"));
   ASSERT_TRUE(session.ok()) << session.error().sentence();
   ASSERT_TRUE((*session)->freewheel(10.0).ok());
@@ -94,10 +94,10 @@ TEST(Case, FitsALabelMapToItsVoxels) {
   };
   const auto labelled = withLabels(head, file("turned.mha"));
   ASSERT_TRUE(labelled.ok()) << labelled.error().sentence();
-  EXPECT_EQ(labelled->labels->labels, straight->labels);
+  EXPECT_EQ(labelled->structures->labels, straight->labels);
   Scene scene = craniumOfLabels();
-  const Case of = *placedIn(scene, *labelled);
-  auto session = Session::create(scene, of, scripted(folder / "s.h5"));
+  const Placement of = *place(scene, *labelled);
+  auto session = Session::create(of, scripted(folder / "s.h5"));
   ASSERT_TRUE(session.ok()) << session.error().sentence();
   ASSERT_TRUE((*session)->freewheel(0.5).ok());
   EXPECT_TRUE(replay(**SessionReader::open(folder / "s.h5"), smallHead(), &turned)->identical);
@@ -107,19 +107,19 @@ TEST(Case, FitsALabelMapToItsVoxels) {
 
 TEST(Session, ATissueOfALabelWithoutALabelMapIsRefused) {
   const auto refused =
-      Session::create(craniumOfLabels(), test::placed(craniumOfLabels(), smallHead()), {});
+      Session::create(test::placed(craniumOfLabels(), smallHead()), {});
   ASSERT_FALSE(refused.ok());
   EXPECT_EQ(refused.error().code, "NO_LABELS");
   EXPECT_NE(refused.error().what.find("'bone' is restricted to label 7"), std::string::npos);
 
-  const auto session = *Session::create(cranium(), test::placed(cranium(), smallHead()), {});
+  const auto session = *Session::create(test::placed(cranium(), smallHead()), {});
   EXPECT_EQ(session->setTissues(craniumOfLabels().tissues).error().code, "NO_LABELS");
 }
 
 TEST(Session, SaysWhenTheCaseDoesNotFitTheScene) {
   Volume air = smallHead();
   std::fill(air.hu.begin(), air.hu.end(), kAirHu);
-  auto session = Session::create(cranium(), test::placed(cranium(), air), {});
+  auto session = Session::create(test::placed(cranium(), air), {});
   ASSERT_FALSE(session.ok());
   EXPECT_EQ(session.error().code, "TISSUE_NOT_FOUND");
 }
@@ -140,19 +140,19 @@ Case caseWithoutAVault() {
 
 TEST(Case, ThatShowsAnotherAnatomyIsBegunAtItsSurfaceAndSaysSo) {
   Scene scene = cranium();
-  Case of = caseWithoutAVault();
-  of.anatomy = Anatomy{BodyRegion::abdomen};
-  of = *placedIn(scene, of);
-  ASSERT_FALSE(of.misfit) << of.misfit->sentence();
+  Case vaultless = caseWithoutAVault();
+  vaultless.anatomy = Anatomy{BodyRegion::abdomen};
+  const Placement of = *place(scene, vaultless);
+  ASSERT_FALSE(of.error) << of.error->sentence();
   ASSERT_EQ(of.warnings.size(), 2u);
   EXPECT_EQ(of.warnings[0].code, "OTHER_ANATOMY");
   EXPECT_EQ(of.warnings[1].code, "NO_LANDMARK");
   EXPECT_NE(of.warnings[1].text.find("does not meet the tissue 'bone'"), std::string::npos);
   // The ball's top, above its middle.
   ASSERT_EQ(of.landmarks.size(), 1u);
-  const Vec3 top_mm = of.volume->geometry.centre_mm() + Vec3(0.0, 0.0, 44.0);
+  const Vec3 top_mm = of.patient.volume->geometry.centre_mm() + Vec3(0.0, 0.0, 44.0);
   EXPECT_LT(glm::length(of.landmarks[0].frame.position_mm - top_mm), 2.0);
-  EXPECT_TRUE(Session::create(scene, of, scripted()).ok());
+  EXPECT_TRUE(Session::create(of, scripted()).ok());
 }
 
 TEST(Case, WithoutTheLandmarksTissueIsNoDeadEndWhateverItShows) {
@@ -160,11 +160,11 @@ TEST(Case, WithoutTheLandmarksTissueIsNoDeadEndWhateverItShows) {
   Case of = caseWithoutAVault();
   for (const BodyRegion region : {BodyRegion::head, BodyRegion::not_sure}) {
     of.anatomy = Anatomy{region, true};
-    const Case placed = *placedIn(scene, of);
-    ASSERT_FALSE(placed.misfit) << placed.misfit->sentence();
+    const Placement placed = *place(scene, of);
+    ASSERT_FALSE(placed.error) << placed.error->sentence();
     ASSERT_EQ(placed.warnings.size(), 1u);
     EXPECT_EQ(placed.warnings[0].code, "NO_LANDMARK");
-    EXPECT_TRUE(Session::create(scene, placed, scripted()).ok());
+    EXPECT_TRUE(Session::create(placed, scripted()).ok());
   }
 }
 
@@ -180,8 +180,8 @@ TEST(Case, ThatIsTooThinForTheLandmarksBallIsBegunAtItsSurface) {
       for (int i = 20; i < 80; ++i) thin.hu[thin.geometry.indexOf(i, j, k)] = 200;
     }
   }
-  const Case of = *placedIn(scene, caseOf(std::make_shared<const Volume>(std::move(thin))));
-  ASSERT_FALSE(of.misfit) << of.misfit->sentence();
+  const Placement of = *place(scene, caseOf(std::make_shared<const Volume>(std::move(thin))));
+  ASSERT_FALSE(of.error) << of.error->sentence();
   ASSERT_EQ(of.warnings.size(), 2u);
   EXPECT_EQ(of.warnings[0].code, "LACKS_STRUCTURE");
   EXPECT_EQ(of.warnings[1].code, "NO_LANDMARK");
@@ -200,52 +200,52 @@ TEST(Case, ThatIsMissingIsNamed) {
 
 TEST(Case, AMissingLabelMapIsNamedAndNoneIsNoError) {
   const Case head = caseOf(std::make_shared<const Volume>(smallHead()));
-  EXPECT_EQ(withLabels(head, "")->labels, nullptr);
+  EXPECT_EQ(withLabels(head, "")->structures, nullptr);
   const auto missing = withLabels(head, "/no/such/seg.nii");
   ASSERT_FALSE(missing.ok());
   EXPECT_EQ(missing.error().code, "MISSING_FILE");
   EXPECT_NE(missing.error().where.find("/no/such/seg.nii"), std::string::npos);
   Scene scene = cranium();
   scene.labels_file = "/no/such/seg.nii";
-  const Case of = *placedIn(scene, head);
-  ASSERT_TRUE(of.misfit);
-  EXPECT_EQ(Session::create(scene, of, {}).error().code, "MISSING_FILE");
+  const Placement of = *place(scene, head);
+  ASSERT_TRUE(of.error);
+  EXPECT_EQ(Session::create(of, {}).error().code, "MISSING_FILE");
 }
 
 TEST(Case, ABuiltInAbdomenBringsItsLabelMapAndAnotherReplacesIt) {
   test::TemporaryFolder folder;
   Scene scene = *readScene(resourceFolder() / "scenes" / "liver.json");
   const Case read = *readCase("phantom:abdomen");
-  ASSERT_TRUE(read.labels);
-  const Case own = *placedIn(scene, read);
-  EXPECT_EQ(own.labels, read.labels);
-  EXPECT_FALSE(own.misfit) << own.misfit->sentence();
+  ASSERT_TRUE(read.structures);
+  const Placement own = *place(scene, read);
+  EXPECT_EQ(own.labels, read.structures);
+  EXPECT_FALSE(own.error) << own.error->sentence();
   // What a session recorded with them is replayed with them.
-  auto session = Session::create(
-      scene, own, {folder / "s.h5", *readOperatorScript(scene.operator_file, scene)});
+  auto session = Session::create(own, {folder / "s.h5", *readOperatorScript(scene.operator_file, scene)});
   ASSERT_TRUE(session.ok()) << session.error().sentence();
   ASSERT_TRUE((*session)->freewheel(2.0).ok());
   const auto reader = *SessionReader::open(folder / "s.h5");
-  EXPECT_TRUE(replay(*reader, *read.volume, read.labels.get())->identical);
+  EXPECT_TRUE(replay(*reader, *read.volume, read.structures.get())->identical);
 
   const GridGeometry& g = read.volume->geometry;
   Volume given{g, Voxels(g.voxelCount(), std::int16_t(1))};
   ASSERT_TRUE(writeVolume(given, folder / "given.nii").ok());
   scene.labels_file = (folder / "given.nii").string();
-  const Case other = *placedIn(scene, read);
+  const Placement other = *place(scene, read);
   ASSERT_TRUE(other.labels);
   EXPECT_EQ(other.labels->labels.front(), 1);
-  EXPECT_FALSE(other.structures_built_in);
-  EXPECT_EQ(placedIn(scene, other)->labels, other.labels) << "read once";
+  EXPECT_FALSE(other.patient.structures_built_in);
+  EXPECT_EQ(place(scene, other.patient)->labels, other.labels) << "read once";
 }
 
 TEST(Case, IsHashedOnceAndKeepsItsVoxelsWhenTheExerciseCutsThem) {
   const auto voxels = std::make_shared<const Volume>(smallHead());
   Scene scene = cranium();
-  const Case of = *placedIn(scene, caseOf(voxels));
+  const Placement placed = *place(scene, caseOf(voxels));
+  const Case& of = placed.patient;
   EXPECT_EQ(of.sha256, volumeSha256(smallHead()));
   EXPECT_EQ(caseOf(voxels, "known").sha256, "known");
-  auto session = *Session::create(scene, of, scripted());
+  auto session = *Session::create(placed, scripted());
   ASSERT_TRUE(session->freewheel(10.0).ok());
   EXPECT_EQ(session->report().volume_sha256_before, of.sha256);
   EXPECT_EQ(session->report().volume_sha256, volumeSha256(session->grid().snapshot()));
@@ -257,13 +257,13 @@ TEST(Scene, OnAnotherCaseHasNoLabelMapOfItsOwn) {
   Scene scene = cranium();
   scene.case_source = "phantom:cranium";
   scene.labels_file = "labels.nii";
-  useCase(scene, "phantom:cranium");
+  scene = onCase(scene, "phantom:cranium");
   EXPECT_EQ(scene.labels_file, "labels.nii");
-  useCase(scene, "");
+  scene = onCase(scene, "");
   EXPECT_EQ(scene.labels_file, "");
   EXPECT_FALSE(toJson(scene).contains("case")) << "a recording must not name another case";
   scene.labels_file = "of the case that is given.nii";
-  useCase(scene, "head.mha");
+  scene = onCase(scene, "head.mha");
   EXPECT_EQ(scene.labels_file, "of the case that is given.nii");
 }
 

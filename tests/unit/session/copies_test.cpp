@@ -48,20 +48,19 @@ TEST(Copies, AreOneOfACaseAndAnotherOfTheGridThatIsCutAndTheyAreHashedAndSearche
     return head.geometry.voxelCount();
   }();
   const double copy_mb = voxelsMb(count);
-  useCase(scene, (folder / "head.mha").string());
+  scene = onCase(scene, (folder / "head.mha").string());
 
   test::hashed_bytes = 0;
   const double before_mb = test::privateDirtyMb();
-  const Result<Case> of = openCase(scene);
+  const Result<Placement> of = openCase(scene);
   ASSERT_TRUE(of.ok()) << of.error().sentence();
-  ASSERT_FALSE(of->misfit) << of->misfit->sentence();
+  ASSERT_FALSE(of->error) << of->error->sentence();
   const double opened_mb = test::privateDirtyMb();
   EXPECT_NEAR((opened_mb - before_mb) / copy_mb, 1.0, 0.1);
-  EXPECT_EQ(of->volume->hu.size(), count);
+  EXPECT_EQ(of->patient.volume->hu.size(), count);
   EXPECT_EQ(test::hashed_bytes, 2 * count) << "once";
 
-  auto session = Session::create(
-      scene, *of, {folder / "s.h5", *readOperatorScript(scene.operator_file, scene)});
+  auto session = Session::create(*of, {folder / "s.h5", *readOperatorScript(scene.operator_file, scene)});
   ASSERT_TRUE(session.ok()) << session.error().sentence();
   const double made_mb = test::privateDirtyMb() - opened_mb;
   EXPECT_GT(made_mb / copy_mb, 1.0) << "the grid";

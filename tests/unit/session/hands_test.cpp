@@ -65,7 +65,7 @@ TEST(HandStart, WhatLiesFartherOutDoesNotKeepItFromTheAirBetween) {
 
 Scene liver() {
   Scene scene = *readScene(resourceFolder() / "scenes" / "liver-one-arm.json");
-  useCase(scene, "");
+  scene = onCase(scene, "");
   EXPECT_TRUE(placeStructures(scene, nullptr).ok());  // by HU: it has no labels
   Landmark& landmark = scene.landmarks[0];  // found by a ray, in a belly that is quick to make
   landmark.bulk_radius_mm = 0.0;
@@ -86,7 +86,7 @@ void freewheelTalking(Session& session, double seconds, const std::function<void
 
 TEST(Hands, BeginOutsideOfTheTissueThatTheScenePutsThemIn) {
   for (const bool outside : {false, true}) {
-    auto made = Session::create(liver(), test::placed(liver(), smallBelly()), {{}, {}, outside});
+    auto made = Session::create(test::placed(liver(), smallBelly()), {{}, {}, outside});
     ASSERT_TRUE(made.ok()) << made.error().sentence();
     ASSERT_TRUE((*made)->freewheel(0.3).ok());
     const ArmRecord& arm = (*made)->state().record.arms[0];
@@ -98,7 +98,7 @@ TEST(Hands, BeginOutsideOfTheTissueThatTheScenePutsThemIn) {
 }
 
 TEST(Hands, AreBackWhereTheyBeganAfterAReset) {
-  auto made = Session::create(liver(), test::placed(liver(), smallBelly()), {{}, {}, true});
+  auto made = Session::create(test::placed(liver(), smallBelly()), {{}, {}, true});
   ASSERT_TRUE(made.ok()) << made.error().sentence();
   Session& session = **made;
   const Vec3 begin_mm = session.handTarget_mm(0);
@@ -124,7 +124,7 @@ TEST(Hands, AScriptsHandsBeginWhereTheScriptSays) {
   ASSERT_TRUE(script.ok()) << script.error().sentence();
   Vec3 first_mm[2];
   for (const bool outside : {false, true}) {
-    auto made = Session::create(scene, test::placed(scene, smallBelly()), {{}, *script, outside});
+    auto made = Session::create(test::placed(scene, smallBelly()), {{}, *script, outside});
     ASSERT_TRUE(made.ok()) << made.error().sentence();
     ASSERT_TRUE((*made)->freewheel(0.001).ok());
     first_mm[outside] = (*made)->state().record.arms[0].patient_position_mm;
@@ -134,12 +134,12 @@ TEST(Hands, AScriptsHandsBeginWhereTheScriptSays) {
 
 TEST(Hands, PressAsHardAfterAPauseAsBefore) {
   Scene scene = liver();
-  for (Tissue& tissue : scene.tissues.tissues) {  // one firm thing that nothing cuts
+  for (Tissue& tissue : scene.tissues_elsewhere->tissues) {  // one firm thing that nothing cuts
     tissue.cuttable = false;
     tissue.solid = true;
     tissue.stiffness_N_per_m.value = 800.0;
   }
-  auto made = Session::create(scene, test::placed(scene, smallBelly()), {{}, {}, true});
+  auto made = Session::create(test::placed(scene, smallBelly()), {{}, {}, true});
   ASSERT_TRUE(made.ok()) << made.error().sentence();
   Session& session = **made;
   const Vec3 out = session.scene().arms[0].map.fixed->rotation * Vec3(0.0, 0.0, 1.0);

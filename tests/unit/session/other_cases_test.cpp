@@ -9,7 +9,7 @@
 
 #include "base/system.h"
 #include "scene/scene_structures.h"
-#include "session/case.h"
+#include "case/placement.h"
 #include "session/session.h"
 #include "support.h"
 
@@ -40,12 +40,12 @@ std::vector<std::string> placedOnes() {
 // What a fifth of a second of an exercise warns of on a case, read once for all of them.
 Codes warnings(const std::string& name, const Case& of, const std::string& source) {
   Scene scene = sceneOf(name);
-  useCase(scene, source);
-  const auto placed = placedIn(scene, of);
-  EXPECT_TRUE(placed.ok() && !placed->misfit) << name;
+  scene = onCase(scene, source);
+  const auto placed = place(scene, of);
+  EXPECT_TRUE(placed.ok() && !placed->error) << name;
   const auto script = readOperatorScript(scene.operator_file, scene);
   EXPECT_TRUE(script.ok()) << name;
-  auto session = Session::create(scene, *placed, {{}, *script});
+  auto session = Session::create(*placed, {{}, *script});
   EXPECT_TRUE(session.ok()) << name << ": " << session.error().sentence();
   if (!session) return {"NOT_CREATED"};
   EXPECT_TRUE((*session)->freewheel(0.2).ok()) << name;

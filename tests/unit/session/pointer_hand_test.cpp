@@ -56,7 +56,7 @@ using Talk = std::function<void(Session&, double)>;
 Played run(const std::vector<Pointed>& path, bool cuttable, const Talk& talk = {}) {
   const test::TemporaryFolder folder;
   const Scene scene = cranium(cuttable);
-  auto made = Session::create(scene, test::placed(scene, smallHead()), {folder / "s.h5", {}, true});
+  auto made = Session::create(test::placed(scene, smallHead()), {folder / "s.h5", {}, true});
   EXPECT_TRUE(made.ok()) << made.error().sentence();
   Session& session = **made;
   Played out;
@@ -284,7 +284,7 @@ struct PutDown {
 
 PutDown putDown(double seconds, const Talk& talk = {}) {
   const Scene scene = cranium(true);
-  auto made = Session::create(scene, test::placed(scene, smallHead()), {{}, {}, true});
+  auto made = Session::create(test::placed(scene, smallHead()), {{}, {}, true});
   EXPECT_TRUE(made.ok()) << made.error().sentence();
   Session& session = **made;
   PointerUser user(session, kArm, {{0, 4, 0, 0}, {0.5, 4, 0, 2.0}, {2.0, 4, 0, 2.0}}, 125.0);
@@ -339,7 +339,7 @@ TEST(PointerHand, AToolThatWasPutDownComesOutWhereTissueComesBackAroundIt) {
 TEST(PointerHand, TurnsTheToolInATenthOfASecondWithinBoundsAndBack) {
   const test::TemporaryFolder folder;
   const Scene scene = cranium(true);
-  auto made = Session::create(scene, test::placed(scene, smallHead()), {{}, {}, true});
+  auto made = Session::create(test::placed(scene, smallHead()), {{}, {}, true});
   ASSERT_TRUE(made.ok()) << made.error().sentence();
   Session& session = **made;
   PointerUser user(session, kArm, {{0, 4, 0, 0}, {9.0, 4, 0, 0}}, 125.0);
@@ -373,7 +373,7 @@ TEST(PointerHand, AnUndoTakesThePushAwayAndTheToolComesOut) {
   bool undone = false;
   const test::TemporaryFolder folder;
   const Scene scene = cranium(true);
-  auto made = Session::create(scene, test::placed(scene, smallHead()), {{}, {}, true});
+  auto made = Session::create(test::placed(scene, smallHead()), {{}, {}, true});
   ASSERT_TRUE(made.ok()) << made.error().sentence();
   Session& session = **made;
   PointerUser user(session, kArm, {{0, 4, 0, 0}, {0.5, 4, 0, 2.0}, {2.0, 4, 0, 2.0}}, 125.0);
@@ -464,7 +464,7 @@ TEST(PointerHand, WithTurnsHandsAndClutchesReplaysBitForBit) {
 
 TEST(PointerHand, OfARunningSessionTakesTheHostsTimes) {
   const Scene scene = cranium(true);
-  auto made = Session::create(scene, test::placed(scene, smallHead()), {{}, {}, true});
+  auto made = Session::create(test::placed(scene, smallHead()), {{}, {}, true});
   ASSERT_TRUE(made.ok()) << made.error().sentence();
   Session& session = **made;
   PointerUser user(session, kArm, {{0, 12, 0, 0}, {9.0, 12, 0, 0}}, 125.0);

@@ -5,7 +5,7 @@
 
 #include "base/system.h"
 #include "pointer_exercises.h"
-#include "session/case.h"
+#include "case/placement.h"
 #include "support.h"
 #include "training/session_reader.h"
 #include "uncut_bone.h"
@@ -16,15 +16,15 @@ namespace {
 using test::Exercise;
 using test::PointerUser;
 
-Case placed(Scene& scene) {
+Placement placed(const Scene& scene) {
   static std::map<std::string, Case> all;
   if (!all.contains(scene.case_source)) all[scene.case_source] = *readCase(scene.case_source);
-  return *placedIn(scene, all[scene.case_source]);
+  return *place(scene, all[scene.case_source]);
 }
 
 struct Done : test::Cut {
   RunReport report;
-  Case of;
+  Placement of;
   double removed_mm3 = 0.0;
 };
 
@@ -32,7 +32,7 @@ Done done(const Exercise& exercise, double rate_hz, const std::filesystem::path&
   Scene scene = *readScene(resourceFolder() / "scenes" / (exercise.name + ".json"));
   Done out;
   out.of = placed(scene);
-  auto made = Session::create(scene, out.of, {recording, {}, true});
+  auto made = Session::create(out.of, {recording, {}, true});
   EXPECT_TRUE(made.ok()) << made.error().sentence();
   Session& session = **made;
   out.frame = session.landmarks()[0].frame;
@@ -79,7 +79,7 @@ void expectNoBoneInTheTools(const std::string& name, const Done& run,
   ASSERT_TRUE(reader.ok()) << reader.error().sentence();
   const auto ticks = *(*reader)->ticks(0, (*reader)->tickCount());
   const auto carves = *(*reader)->carves();
-  Volume volume = *run.of.volume;
+  Volume volume = *run.of.patient.volume;
   std::size_t next = 0;
   test::Inside inside;
   for (const TickRecord& tick : ticks) {

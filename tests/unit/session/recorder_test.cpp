@@ -26,7 +26,7 @@ TEST(Recorder, ThatComesLateWritesWhatWaitsBeforeItReturns) {
   test::TemporaryFolder folder;
   Scene scene = cranium();
   scene.rate_hz = 100.0;
-  auto session = Session::create(scene, test::placed(scene, ball()), scripted(folder / "s.h5"));
+  auto session = Session::create(test::placed(scene, ball()), scripted(folder / "s.h5"));
   ASSERT_TRUE(session.ok()) << session.error().sentence();
   int looks = 0;
   const Progress look([&](double fraction, const std::string&) {
@@ -47,7 +47,7 @@ int held_up[2];
 TEST(Recorder, ThatWasHeldUpCountsItAndLosesNothing) {
   test::TemporaryFolder folder;
   auto session =
-      Session::create(cranium(), test::placed(cranium(), ball()), scripted(folder / "s.h5"));
+      Session::create(test::placed(cranium(), ball()), scripted(folder / "s.h5"));
   ASSERT_TRUE(session.ok()) << session.error().sentence();
   ASSERT_EQ(::pipe(held_up), 0);
   ASSERT_TRUE((*session)->start(3.0).ok());

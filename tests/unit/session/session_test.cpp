@@ -22,7 +22,7 @@ using test::waitUntil;
 TEST(Session, BothArmsCutBoneWithinTheForceLimitAndItReplaysIdentically) {
   test::TemporaryFolder folder;
   auto session =
-      Session::create(cranium(), test::placed(cranium(), smallHead()), scripted(folder / "s.h5"));
+      Session::create(test::placed(cranium(), smallHead()), scripted(folder / "s.h5"));
   ASSERT_TRUE(session.ok()) << session.error().sentence();
   ASSERT_TRUE((*session)->freewheel(10.0).ok());
   const RunReport report = (*session)->report();
@@ -50,7 +50,7 @@ TEST(Session, BothArmsCutBoneWithinTheForceLimitAndItReplaysIdentically) {
 TEST(Session, FreewheelsToTheSameVoxelsTwice) {
   std::string first;
   for (int i = 0; i < 2; ++i) {
-    auto session = Session::create(cranium(), test::placed(cranium(), smallHead()), scripted());
+    auto session = Session::create(test::placed(cranium(), smallHead()), scripted());
     ASSERT_TRUE((*session)->freewheel(5.0).ok());
     const std::string hash = (*session)->report().volume_sha256;
     if (i == 0) first = hash;
@@ -61,7 +61,7 @@ TEST(Session, FreewheelsToTheSameVoxelsTwice) {
 TEST(Session, RunsInRealTimeTakesLiveInputAndReplaysIdentically) {
   test::TemporaryFolder folder;
   auto made =
-      Session::create(cranium(), test::placed(cranium(), smallHead()), {folder / "s.h5", {}});
+      Session::create(test::placed(cranium(), smallHead()), {folder / "s.h5", {}});
   ASSERT_TRUE(made.ok()) << made.error().sentence();
   Session& session = **made;
   ASSERT_TRUE(session.start().ok());
@@ -111,7 +111,7 @@ TEST(Session, InAPauseAHandThatWasPressingDoesNotSinkInAndNothingMovesIt) {
     tissue.cuttable = false;
     tissue.friction_N.value = 3.0;
   }
-  auto made = Session::create(scene, test::placed(scene, smallHead()), {});
+  auto made = Session::create(test::placed(scene, smallHead()), {});
   ASSERT_TRUE(made.ok()) << made.error().sentence();
   Session& session = **made;
   const Vec3 down_mm = glm::normalize(-session.landmarks()[0].frame.position_mm);
@@ -151,7 +151,7 @@ TEST(Session, InAPauseAHandThatWasPressingDoesNotSinkInAndNothingMovesIt) {
 }
 
 TEST(Session, AScriptsHandIsHeldInAPauseAndGoesOnAfterIt) {
-  auto made = Session::create(cranium(), test::placed(cranium(), smallHead()), scripted());
+  auto made = Session::create(test::placed(cranium(), smallHead()), scripted());
   ASSERT_TRUE(made.ok()) << made.error().sentence();
   Session& session = **made;
   std::vector<Vec3> tips_mm;
@@ -170,7 +170,7 @@ TEST(Session, AScriptsHandIsHeldInAPauseAndGoesOnAfterIt) {
 TEST(Session, UndoRewindAndParametersWhileItCutsLeaveARecordingThatReplaysIdentically) {
   test::TemporaryFolder folder;
   auto made =
-      Session::create(cranium(), test::placed(cranium(), smallHead()), scripted(folder / "s.h5"));
+      Session::create(test::placed(cranium(), smallHead()), scripted(folder / "s.h5"));
   ASSERT_TRUE(made.ok()) << made.error().sentence();
   Session& session = **made;
   ASSERT_TRUE(session.start(4.0).ok());
@@ -217,7 +217,7 @@ TEST(Session, UndoRewindAndParametersWhileItCutsLeaveARecordingThatReplaysIdenti
 TEST(Session, AToolThatIsChangedOnTheWayReplaysIdenticallyAndItsCutsAreUndone) {
   test::TemporaryFolder folder;
   auto made =
-      Session::create(cranium(), test::placed(cranium(), smallHead()), scripted(folder / "s.h5"));
+      Session::create(test::placed(cranium(), smallHead()), scripted(folder / "s.h5"));
   ASSERT_TRUE(made.ok()) << made.error().sentence();
   Session& session = **made;
   EXPECT_FALSE(session.changeTool(1, 3)) << "it has three";
@@ -266,7 +266,7 @@ TEST(Session, AToolThatIsChangedOnTheWayReplaysIdenticallyAndItsCutsAreUndone) {
 TEST(Session, APokeCutsNothingWhateverIsEditedAndTellsForceAgainstDepth) {
   SessionOptions options = scripted();
   options.poke = true;
-  auto session = *Session::create(cranium(), test::placed(cranium(), smallHead()), options);
+  auto session = *Session::create(test::placed(cranium(), smallHead()), options);
   EXPECT_TRUE(session->isPoke());
   TissueSet softer = session->scene().tissues;
   for (Tissue& tissue : softer.tissues) {
@@ -299,7 +299,7 @@ TEST(Session, APokeIsFeltAsTheExerciseIsUntilThatCuts) {
   const auto felt = [](const Scene& scene, bool poke) {
     SessionOptions options = scripted();
     options.poke = poke;
-    auto session = *Session::create(scene, test::placed(scene, smallHead()), options);
+    auto session = *Session::create(test::placed(scene, smallHead()), options);
     std::vector<double> forces_N;
     freewheelTalking(*session, 8.0, [&] {
       for (std::size_t arm = 0; arm < session->scene().arms.size(); ++arm) {
@@ -320,7 +320,7 @@ TEST(Session, APokeIsFeltAsTheExerciseIsUntilThatCuts) {
 TEST(Session, AnEditIsFeltWithinTwoTicksAndTheForceNeverJumps) {
   test::TemporaryFolder folder;
   auto session =
-      *Session::create(cranium(), test::placed(cranium(), smallHead()), scripted(folder / "s.h5"));
+      *Session::create(test::placed(cranium(), smallHead()), scripted(folder / "s.h5"));
   const TissueSet own = session->scene().tissues;
   TissueSet soft = own, hard = own;
   for (Tissue& tissue : soft.tissues) {
@@ -383,7 +383,7 @@ std::size_t commandsIn(const std::filesystem::path& recording) {
 TEST(Session, RecolouringATissueNeverReachesTheHapticThread) {
   test::TemporaryFolder folder;
   auto session =
-      *Session::create(cranium(), test::placed(cranium(), smallHead()), scripted(folder / "s.h5"));
+      *Session::create(test::placed(cranium(), smallHead()), scripted(folder / "s.h5"));
   TissueSet tissues = session->scene().tissues;
   for (int step = 0; step < 200; ++step) {  // more than the ring of commands holds
     tissues.tissues[3].opacity = 0.001 * step;
@@ -419,7 +419,7 @@ TEST(Session, NamesTheArmsThatWereLostInItsReport) {
   const Scene scene = cranium();
   SessionOptions options = scripted(folder / "s.h5");
   options.rig = rigOf(scene, arms(folder.path(), {{"vanish_after_s", 0.3}}));
-  auto session = *Session::create(scene, test::placed(scene, smallHead()), options);
+  auto session = *Session::create(test::placed(scene, smallHead()), options);
   ASSERT_TRUE(session->freewheel(0.5).ok());
   const RunReport report = session->report();
   ASSERT_EQ(report.faults.size(), 2u);
@@ -430,7 +430,7 @@ TEST(Session, NamesTheArmsThatWereLostInItsReport) {
   EXPECT_NE(toText(report).find("FAULT at 0.300 s, left: the arm did not answer"),
             std::string::npos);
 
-  auto sound = *Session::create(scene, test::placed(scene, smallHead()), scripted());
+  auto sound = *Session::create(test::placed(scene, smallHead()), scripted());
   ASSERT_TRUE(sound->freewheel(0.5).ok());
   EXPECT_TRUE(sound->report().faults.empty());
   EXPECT_EQ(toJson(sound->report())["faults"], Json::array());
@@ -451,8 +451,8 @@ TEST(Session, OneArmsDeviceIsLostTheOtherGoesOnAndTheRecordingReplays) {
   options.script->commands = {
       at(0.3, CommandKind::device_lost, 0), at(0.6, CommandKind::clear_faults, -1),
       at(0.8, CommandKind::device_back, 0), at(0.9, CommandKind::clear_faults, -1)};
-  const Case of = test::placed(scene, smallHead());
-  auto session = *Session::create(scene, of, options);
+  const Placement of = test::placed(scene, smallHead());
+  auto session = *Session::create(of, options);
   ASSERT_TRUE(session->freewheel(1.2).ok());
   const RunReport report = session->report();
   ASSERT_EQ(report.faults.size(), 2u) << "once more after the first clearing";
@@ -468,13 +468,13 @@ TEST(Session, OneArmsDeviceIsLostTheOtherGoesOnAndTheRecordingReplays) {
     }
     EXPECT_EQ(tick.arms[1].faults, 0u) << tick.tick;
   }
-  const Result<ReplayResult> again = replay(*reader, *of.volume, of.labels.get());
+  const Result<ReplayResult> again = replay(*reader, *of.patient.volume, of.labels.get());
   ASSERT_TRUE(again) << again.error().sentence();
   EXPECT_TRUE(again->identical);
 }
 
 TEST(Session, StandsStillWhileItsVoxelsAreReadAndGoesOnAfterwards) {
-  auto session = *Session::create(cranium(), test::placed(cranium(), smallHead()), scripted());
+  auto session = *Session::create(test::placed(cranium(), smallHead()), scripted());
   ASSERT_TRUE(session->start(30.0).ok());
   ASSERT_TRUE(waitUntil([&] { return session->state().can_undo; })) << "something was cut";
   ASSERT_TRUE(waitUntil([&] { return session->freeze(); }));
@@ -511,7 +511,7 @@ TEST(Session, IsReplayedOnlyWhereThereIsMemoryForIt) {
   const Volume head = smallHead();
   {
     auto session =
-        *Session::create(cranium(), test::placed(cranium(), head), scripted(folder / "s.h5"));
+        *Session::create(test::placed(cranium(), head), scripted(folder / "s.h5"));
     ASSERT_TRUE(session->freewheel(0.1).ok());
   }
   const auto reader = SessionReader::open(folder / "s.h5");
@@ -528,19 +528,19 @@ TEST(Session, IsReplayedOnlyWhereThereIsMemoryForIt) {
 
 TEST(Session, ThatNeverCameToATickHasTheVoxelsThatItBeganWith) {
   test::TemporaryFolder folder;
-  const Case of = test::placed(cranium(), smallHead());
-  { ASSERT_TRUE(Session::create(cranium(), of, scripted(folder / "s.h5")).ok()); }
+  const Placement of = test::placed(cranium(), smallHead());
+  { ASSERT_TRUE(Session::create(of, scripted(folder / "s.h5")).ok()); }
   const auto reader = SessionReader::open(folder / "s.h5");
   ASSERT_TRUE(reader.ok()) << reader.error().sentence();
   ASSERT_TRUE((*reader)->end());
-  EXPECT_EQ((*reader)->end()->volume_sha256, of.sha256);
+  EXPECT_EQ((*reader)->end()->volume_sha256, of.patient.sha256);
 }
 
 TEST(Session, KeepsAScriptsCommandsWhileItsVoxelsAreRead) {
   SessionOptions options = scripted();
   Command back{CommandKind::reset, 0, {}};
   options.script->commands = {{4.0, back}};
-  auto session = *Session::create(cranium(), test::placed(cranium(), smallHead()), options);
+  auto session = *Session::create(test::placed(cranium(), smallHead()), options);
   ASSERT_TRUE(session->startStepped(30.0).ok());
   const auto advanceUntil = [&](const std::function<bool()>& condition) {
     while (!condition() && !session->finished()) session->advance(0.005);
@@ -567,7 +567,7 @@ TEST(Session, AStallIsAFaultInTheReportAndReplaysIdentically) {
   const Scene scene = cranium();
   SessionOptions options = scripted(folder / "s.h5");
   options.rig = rigOf(scene, arms(folder.path(), {{"block_after_s", 0.3}, {"block_for_s", 0.1}}));
-  auto session = *Session::create(scene, test::placed(scene, smallHead()), options);
+  auto session = *Session::create(test::placed(scene, smallHead()), options);
   ASSERT_TRUE(session->start(0.6).ok());
   ASSERT_TRUE(waitUntil([&] { return session->finished(); }));
   ASSERT_TRUE(session->stop().ok());
@@ -597,7 +597,7 @@ long lockedKiB() {
 TEST(Session, HoldsItsMemoryWhileItRunsInRealTimeOrSaysHowThatIsAllowed) {
   if (test::kSanitized) GTEST_SKIP() << "A sanitizer holds no memory";
   const long before = lockedKiB();
-  auto session = *Session::create(cranium(), test::placed(cranium(), smallHead()), scripted());
+  auto session = *Session::create(test::placed(cranium(), smallHead()), scripted());
   EXPECT_FALSE(session->memoryLocked()) << "not known yet";
   ASSERT_TRUE(session->start(60.0).ok());
   ASSERT_TRUE(waitUntil([&] { return session->state().ticks > 0; }));
@@ -611,7 +611,7 @@ TEST(Session, HoldsItsMemoryWhileItRunsInRealTimeOrSaysHowThatIsAllowed) {
 }
 
 TEST(Session, TwoArmsThatShareVoxelsShareTheirVolumeInTheReport) {
-  auto session = *Session::create(cranium(), test::placed(cranium(), smallHead()), scripted());
+  auto session = *Session::create(test::placed(cranium(), smallHead()), scripted());
   ASSERT_TRUE(session->freewheel(10.0).ok());
   const RunReport report = session->report();
   double of_arms = 0.0, of_tissues = 0.0;
@@ -621,7 +621,7 @@ TEST(Session, TwoArmsThatShareVoxelsShareTheirVolumeInTheReport) {
 }
 
 TEST(Session, RefusesTissuesThatCannotBe) {
-  auto session = Session::create(cranium(), test::placed(cranium(), smallHead()), {});
+  auto session = Session::create(test::placed(cranium(), smallHead()), {});
   TissueSet bad = (*session)->scene().tissues;
   bad.tissues[0].damping_Ns_per_m.value = -1.0;
   EXPECT_FALSE((*session)->setTissues(bad).ok());
@@ -638,7 +638,7 @@ TEST(FreshFile, OfAFolderThatCannotBeLookedIntoIsLeftToWhoWritesThere) {
   const std::filesystem::path folder(std::string(300, 'x'));  // longer than names may be
   EXPECT_EQ(freshFile(folder, "a", ".h5"), folder / "a.h5");
   const auto made =
-      Session::create(cranium(), test::placed(cranium(), smallHead()), scripted(folder / "a.h5"));
+      Session::create(test::placed(cranium(), smallHead()), scripted(folder / "a.h5"));
   ASSERT_FALSE(made.ok());
   EXPECT_EQ(made.error().code, "CANNOT_WRITE");
 }
@@ -647,13 +647,13 @@ TEST(Session, AMissingTemporaryFolderIsAnErrorWhereOneIsNeeded) {
   test::TemporaryFolder folder;
   const test::Environment missing("TMPDIR", (folder / "none").string());
   const auto unrecorded =
-      Session::create(cranium(), test::placed(cranium(), smallHead()), scripted());
+      Session::create(test::placed(cranium(), smallHead()), scripted());
   ASSERT_FALSE(unrecorded.ok());
   EXPECT_EQ(unrecorded.error().code, "NO_TEMPORARY_FOLDER");
 
   // Beside a recording there is room for what does not fit into memory; a replay has no such place.
   auto recorded =
-      Session::create(cranium(), test::placed(cranium(), smallHead()), scripted(folder / "s.h5"));
+      Session::create(test::placed(cranium(), smallHead()), scripted(folder / "s.h5"));
   ASSERT_TRUE(recorded.ok()) << recorded.error().sentence();
   ASSERT_TRUE((*recorded)->freewheel(0.1).ok());
   const auto reader = SessionReader::open(folder / "s.h5");

@@ -10,7 +10,7 @@
 #include "haptics/bounded_controller.h"
 #include "scene/entry_point.h"
 #include "scene/scene_structures.h"
-#include "session/case.h"
+#include "case/placement.h"
 #include "session/energy_watch.h"
 #include "session/run_statistics.h"
 #include "session/session.h"
@@ -38,13 +38,13 @@ const Case& caseOf(const Scene& scene) {
   }
   return all[source];
 }
-Case placed(Scene& scene) {
-  return *placedIn(scene, caseOf(scene));
+Placement placed(const Scene& scene) {
+  return *place(scene, caseOf(scene));
 }
 
 Scene shipped(const std::string& name, const std::string& case_source) {
   Scene scene = *readScene(resourceFolder() / "scenes" / (name + ".json"));
-  if (!case_source.empty()) useCase(scene, case_source);
+  if (!case_source.empty()) scene = onCase(scene, case_source);
   return scene;
 }
 
@@ -62,11 +62,11 @@ Recorded record(const std::string& name, const std::string& case_source) {
   const test::TemporaryFolder folder;
   Scene scene = shipped(name, case_source);
   Recorded out;
-  const Case of = placed(scene);
-  out.before = *of.volume;
+  const Placement of = placed(scene);
+  out.before = *of.patient.volume;
   out.labels = of.labels;
   const SessionOptions options{folder / "s.h5", *readOperatorScript(scene.operator_file, scene)};
-  auto session = Session::create(scene, of, options);
+  auto session = Session::create(of, options);
   EXPECT_TRUE(session.ok()) << session.error().sentence();
   EXPECT_TRUE((*session)->freewheel(kSeconds).ok());
   out.scene = (*session)->scene();
@@ -202,24 +202,26 @@ TEST(ShippedScenes, CutTheLiverInTheLiverScenes) {
 // Where a patient's case has no liver.
 TEST(ShippedScenes, KnowTissueByHuOnOtherCasesThanTheirOwn) {
   Scene scene = shipped("liver", "");
-  useCase(scene, "/some/ct");
+  scene = onCase(scene, "/some/ct");
   const auto placed = placeStructures(scene, nullptr);
   ASSERT_TRUE(placed.ok());
   EXPECT_EQ(placed->warnings.size(), 1u);
-  for (const Tissue& tissue : scene.tissues.tissues) EXPECT_TRUE(tissue.isAnywhere()) << tissue.id;
-  EXPECT_TRUE(checkLabels(scene.tissues, nullptr).ok());
+  ASSERT_TRUE(placed->elsewhere);
+  const TissueSet& tissues = *scene.tissues_elsewhere;
+  for (const Tissue& tissue : tissues.tissues) EXPECT_TRUE(tissue.isAnywhere()) << tissue.id;
+  EXPECT_TRUE(checkLabels(tissues, nullptr).ok());
 }
 // How many points of a line are within a millimetre of bone that begins there.
-int onBone(const std::vector<Vec3>& points, const Scene& scene, const Case& of) {
+int onBone(const std::vector<Vec3>& points, const Scene& scene, const Placement& of) {
   const LandmarkFrame& frame = of.landmarks[0].frame;
   const Vec3 out = frame.rotation * Vec3(0.0, 0.0, 1.0);
   const TissueTable tissues = tissueTable(scene.tissues);
   const int bone = int(scene.tissues.find("bone") - scene.tissues.tissues.data());
   const auto isBone = [&](const Vec3& at_mm) {
-    return classify(tissues, sampleHu(*of.volume, at_mm)) == bone;
+    return classify(tissues, sampleHu(*of.patient.volume, at_mm)) == bone;
   };
   const Landmark& vault = *scene.findLandmarkById("vault");
-  const auto surface = ontoSurface(points, out, 5.0, vault, *of.volume, scene.tissues);
+  const auto surface = ontoSurface(points, out, 5.0, vault, *of.patient.volume, scene.tissues);
   int count = 0;
   for (std::size_t i = 0; i < points.size(); ++i) {
     count += glm::length(points[i] - surface[i]) < 1.0 && isBone(points[i] - out) &&
@@ -235,13 +237,13 @@ TEST(ShippedScenes, HaveTheirOutlineOnTheBoneOfTheirOwnCase) {
     Scene scene = shipped(name, "");
     if (!scene.outline) continue;
     ++outlines;
-    const Case of = placed(scene);
+    const Placement of = placed(scene);
     ASSERT_TRUE(scene.outline->frame) << name << ": so that it holds on other patients";
     const Vec3 was_mm = scene.outline->frame->at.position_mm;
     EXPECT_LT(glm::length(was_mm - of.landmarks[0].frame.position_mm), 0.01) << name;
     const std::vector<Vec3>& points = scene.outline->points_mm;
     EXPECT_EQ(onBone(points, scene, of), int(points.size())) << name;
-    const auto drawn = outlineOn(scene, of.landmarks, *of.volume);
+    const auto drawn = outlineOn(scene, of.landmarks, *of.patient.volume);
     EXPECT_GT(drawn.size(), points.size());
     EXPECT_EQ(onBone(drawn, scene, of), int(drawn.size())) << name;
   }
@@ -252,9 +254,9 @@ TEST(ShippedScenes, HaveTheirOutlineOnTheBoneOfARealCaseToo) {
   TREPHINE_TEST_DATA_OR_SKIP(data);
   for (const char* name : {"burr-hole", "cranium", "cranium-one-arm"}) {
     Scene scene = shipped(name, realCase(data, name));
-    const Case of = placed(scene);
-    ASSERT_FALSE(of.misfit) << of.misfit->sentence();
-    const auto drawn = outlineOn(scene, of.landmarks, *of.volume);
+    const Placement of = placed(scene);
+    ASSERT_FALSE(of.error) << of.error->sentence();
+    const auto drawn = outlineOn(scene, of.landmarks, *of.patient.volume);
     ASSERT_FALSE(drawn.empty());
     std::printf("%s: %d of %zu points of the outline on bone\n", name, onBone(drawn, scene, of),
                 drawn.size());
@@ -267,8 +269,8 @@ TEST(ShippedScenes, BeginWithTheToolsOutsideOfTissueInTheWindow) {
   for (const char* name : {"burr-hole", "cranium", "cranium-one-arm", "liver", "liver-one-arm",
                            "seed-cranium", "seed-liver"}) {
     Scene scene = shipped(name, "");
-    const Case of = placed(scene);
-    auto session = Session::create(scene, of, {{}, {}, true});
+    const Placement of = placed(scene);
+    auto session = Session::create(of, {{}, {}, true});
     ASSERT_TRUE(session.ok()) << session.error().sentence();
     ASSERT_TRUE((*session)->freewheel(0.5).ok());
     EXPECT_EQ((*session)->report().removed_voxels, 0u) << name;
@@ -299,7 +301,7 @@ TEST(ShippedScenes, GiveOutEnergyWhereAnArmShakesOnFirmBone) {
       tissue.cuttable = false;
       if (tissue.id == "bone") tissue.stiffness_N_per_m.value = 10000.0;
     }
-    auto session = Session::create(scene, placed(scene), {{}, {}, true});
+    auto session = Session::create(placed(scene), {{}, {}, true});
     ASSERT_TRUE(session.ok()) << session.error().sentence();
     const Vec3 down = (*session)->scene().arms[0].map.fixed->rotation * Vec3(0.0, 0.0, -1.0);
     EnergyWatch watch;
@@ -338,11 +340,11 @@ struct Probed {
 };
 
 Probed probe(const Scene& placed, const Rig& rig, std::size_t arm, const LandmarkFrame& frame, const Vec3& aside_mm,
-             const Case& of) {
+             const Placement& of) {
   HapticParameters p = hapticParameters(placed, rig);
   p.arms = {p.arms[arm]};
   p.journal_voxels = 1'000'000;
-  Grid grid{Volume(*of.volume), of.labels};
+  Grid grid{Volume(*of.patient.volume), of.labels};
   HapticCore core(p, *grid.takeWriter());
   TickInput input;
   TickRecord record;
@@ -368,8 +370,8 @@ Probed probe(const Scene& placed, const Rig& rig, std::size_t arm, const Landmar
 
 std::vector<Probed> probesOf(const std::string& name, const std::string& case_source) {
   Scene scene = shipped(name, case_source);
-  const Case of = placed(scene);
-  auto session = Session::create(scene, of, {});
+  const Placement of = placed(scene);
+  auto session = Session::create(of, {});
   EXPECT_TRUE(session.ok()) << session.error().sentence();
   const LandmarkFrame& frame = (*session)->landmarks()[0].frame;
   const Vec3 aside_mm = name.starts_with("liver") ? Vec3(8, -34, 0) : Vec3(0.0);  // below the ribs
@@ -422,32 +424,32 @@ TEST(ShippedScenes, LetTheCapsuleOfTheLiverBeToldFromItsParenchyma) {
 TEST(ShippedScenes, CutByStructureRemoveNoVoxelOutsideOfIt) {
   for (const bool in_blocks : {false, true}) {
     Scene scene = shipped("liver", "");
-    Case of = caseOf(scene);
-    auto structures = std::make_shared<LabelMap>(*of.structures);
+    const Case bare = caseOf(scene);
+    auto structures = std::make_shared<LabelMap>(*bare.structures);
     for (std::size_t v = 0; in_blocks && v < structures->labels.size(); ++v) {
       const Index3 at = structures->geometry.indicesOf(v);
       if ((at[0] / 16 + at[1] / 16 + at[2] / 16) % 2 == 0) structures->labels[v] = 0;
     }
     // Where the whole liver is met.
-    const Case whole = *placedIn(scene, of);
+    const Placement whole = *place(scene, bare);
     const LandmarkFrame& enters = whole.landmarks.front().frame;
     scene.landmarks.front() = placedAt(scene.landmarks.front(), enters.position_mm,
                                        enters.rotation * Vec3(0.0, 0.0, 1.0));
-    of = *placedIn(scene, withStructures(of, structures));
-    ASSERT_FALSE(of.misfit) << of.misfit->sentence();
+    Placement of = *place(scene, withStructures(bare, structures));
+    ASSERT_FALSE(of.error) << of.error->sentence();
     std::array<bool, 256> to_cut{};
-    for (Tissue& tissue : scene.tissues.tissues) {
+    for (Tissue& tissue : of.scene.tissues.tissues) {
       if (tissue.isAnywhere()) tissue.cuttable = false;
       if (tissue.cuttable && tissue.label) to_cut[std::size_t(*tissue.label)] = true;
     }
     const test::TemporaryFolder folder;
     const SessionOptions options{folder / "s.h5", *readOperatorScript(scene.operator_file, scene)};
-    auto session = Session::create(scene, of, options);
+    auto session = Session::create(of, options);
     ASSERT_TRUE(session) << session.error().sentence();
     ASSERT_TRUE((*session)->freewheel(kSeconds).ok());
     std::size_t inside = 0, outside = 0;
-    for (std::size_t v = 0; v < of.volume->hu.size(); ++v) {
-      if ((*session)->grid().hu(v) == of.volume->hu[v]) continue;
+    for (std::size_t v = 0; v < of.patient.volume->hu.size(); ++v) {
+      if ((*session)->grid().hu(v) == of.patient.volume->hu[v]) continue;
       ++(to_cut[of.labels->labels[v]] ? inside : outside);
     }
     std::printf("cut by structure%s: %zu voxels inside, %zu outside\n",

@@ -17,7 +17,7 @@ using test::smallHead;
 
 std::unique_ptr<Session> made(const std::filesystem::path& recording = {}) {
   auto session =
-      Session::create(cranium(), test::placed(cranium(), smallHead()), scripted(recording));
+      Session::create(test::placed(cranium(), smallHead()), scripted(recording));
   EXPECT_TRUE(session.ok()) << session.error().sentence();
   return *std::move(session);
 }

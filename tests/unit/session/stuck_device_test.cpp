@@ -37,7 +37,7 @@ TEST(StuckDevice, IsLeftBehindByStopAndNotOfferedAgain) {
   const Scene scene = cranium();
   SessionOptions options{folder / "s.h5", *readOperatorScript(scene.operator_file, scene)};
   options.rig = blocking(folder.path(), kBlock_s);
-  auto made = Session::create(scene, test::placed(scene, block()), options);
+  auto made = Session::create(test::placed(scene, block()), options);
   ASSERT_TRUE(made.ok()) << made.error().sentence();
   auto session = *std::move(made);
   ASSERT_TRUE(session->start(60.0).ok());
@@ -55,7 +55,7 @@ TEST(StuckDevice, IsLeftBehindByStopAndNotOfferedAgain) {
 
   SessionOptions without;
   without.rig = blocking(folder.path(), 0.0);
-  const auto again = Session::create(scene, test::placed(scene, block()), without);
+  const auto again = Session::create(test::placed(scene, block()), without);
   ASSERT_FALSE(again.ok());
   EXPECT_EQ(again.error().code, "DEVICE_STUCK");
   EXPECT_EQ(test::threadsNamed("haptic").size(), 1u) << "the call still blocks";

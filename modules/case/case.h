@@ -14,7 +14,6 @@
 #include "imaging/report/report.h"
 #include "imaging/steps/anatomy.h"
 #include "imaging/structure_importer.h"
-#include "scene/scene.h"
 #include "volume/label_map.h"
 #include "volume/segmentation.h"
 #include "volume/volume.h"
@@ -24,6 +23,7 @@ namespace trephine {
 struct Case {
   std::shared_ptr<const Volume> volume;
   std::string sha256;                    // of its voxels
+  std::string source;                    // as readCase() was told; empty: a person's own
   std::optional<Provenance> provenance;  // of what was imported
   // Whom it is of, where it was read from DICOM: to compare names with, and for nothing else.
   std::shared_ptr<const SourceIdentity> identity;
@@ -35,13 +35,6 @@ struct Case {
   bool structures_built_in = false;  // they came with it, and a file that is given replaces them
   std::vector<StructureCard> structure_cards;  // of the file that they are from, and what is to be
   std::vector<Warning> structure_warnings;     // said of it
-
-  // In the scene that it was placed in: its structures and the shells that the scene's tissues
-  // need; where its landmarks are, or why not. It can be looked at all the same.
-  std::shared_ptr<const LabelMap> labels;
-  std::vector<PlacedLandmark> landmarks;
-  std::vector<Warning> warnings;
-  std::optional<Error> misfit;
 };
 
 // The exercises that a region of the body is for: "cranium", "abdomen"; "" where it is not known.
@@ -80,18 +73,5 @@ StructureRequest requestOf(const Case& of, const NameHider& hide);
 Case withFit(Case of, StructureFit fit);
 // These structures, which are on the volume's grid, instead of what it had; null for none.
 Case withStructures(Case of, std::shared_ptr<const LabelMap> structures);
-
-// Placed in a scene: with the label map that it names, unless one was given, and its landmarks. The
-// scene's tissues get the labels of the case's structures (placeStructures). A case that shows
-// another anatomy is warned of (OTHER_ANATOMY, NO_VAULT). Where a landmark has no place in it, the
-// landmarks are where their rays meet the body, with the warning NO_LANDMARK. Error: CANCELLED; all
-// others are the case's `misfit`.
-// `hide` as of withLabels().
-Result<Case> placedIn(Scene& scene, Case of, const Progress& progress = Progress(),
-                      const NameHider& hide = {});
-
-// The scene's own case, placed in it.
-Result<Case> openCase(Scene& scene, const Progress& progress = Progress(),
-                      const NameHider& hide = {});
 
 }  // namespace trephine
