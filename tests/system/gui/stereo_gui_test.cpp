@@ -99,6 +99,7 @@ class StereoGuiTest : public test::TrainTest {
     find<QDialog>("headsetDialog")->close();
     QVERIFY(!shown()->isActiveWindow());
     QTRY_VERIFY(window_->isActiveWindow());
+    view().setFocus();  // whichever view lies under the pointer
     // The status line follows what the pictures take, though nothing is switched.
     const QString before = find<QLabel>("eyes")->text();
     int keys = 0;
