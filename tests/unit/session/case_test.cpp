@@ -253,6 +253,44 @@ TEST(Case, IsHashedOnceAndKeepsItsVoxelsWhenTheExerciseCutsThem) {
   EXPECT_EQ(voxels->hu, smallHead().hu);
 }
 
+// --- An exercise on a case ---
+
+TEST(Placement, LeavesTheExerciseAsItIsAndFollowsItsEdits) {
+  const Scene liver = *readScene(resourceFolder() / "scenes" / "liver.json");
+  Scene exercise = liver;
+  const Placement placed = *place(exercise, *readCase("phantom:abdomen"));
+  ASSERT_FALSE(placed.error) << placed.error->sentence();
+  EXPECT_EQ(exercise, liver);
+  EXPECT_FALSE(placed.elsewhere);
+  EXPECT_FALSE(exercise.tissues.find("liver")->label) << "a label is the case's";
+  EXPECT_EQ(placed.scene.tissues.find("liver")->label, placed.labels->find("liver")->label);
+  for (const SceneArm& arm : placed.scene.arms) EXPECT_TRUE(arm.map.fixed);
+  for (Tissue& tissue : exercise.tissues.tissues) tissue.opacity = 0.25;
+  exercise.arms[0].map.offset_mm.z += 5.0;
+  const Scene edited = placedScene(exercise, placed);
+  EXPECT_EQ(edited.tissues.find("liver")->opacity, 0.25);
+  EXPECT_EQ(edited.tissues.find("liver")->label, placed.scene.tissues.find("liver")->label);
+  EXPECT_NEAR(glm::length(edited.arms[0].map.fixed->centre_mm -
+                          placed.scene.arms[0].map.fixed->centre_mm),
+              5.0, 1e-9);
+  EXPECT_EQ(placedScene(liver, placed), placed.scene);
+}
+
+TEST(Placement, WithoutAStructureTheOtherSetIsInForceAndItsEditsAre) {
+  const Scene liver = *readScene(resourceFolder() / "scenes" / "liver.json");
+  Case bare = *readCase("phantom:abdomen");
+  bare.structures = nullptr;
+  const Placement placed = *place(liver, bare);
+  ASSERT_FALSE(placed.error) << placed.error->sentence();
+  EXPECT_TRUE(placed.elsewhere);
+  EXPECT_EQ(placed.scene.tissues, *liver.tissues_elsewhere);
+  Scene exercise = liver;
+  for (Tissue& tissue : exercise.tissues.tissues) tissue.opacity = 0.25;
+  EXPECT_EQ(placedScene(exercise, placed).tissues, *liver.tissues_elsewhere);
+  for (Tissue& tissue : exercise.tissues_elsewhere->tissues) tissue.opacity = 0.5;
+  EXPECT_EQ(placedScene(exercise, placed).tissues.tissues.front().opacity, 0.5);
+}
+
 TEST(Scene, OnAnotherCaseHasNoLabelMapOfItsOwn) {
   Scene scene = cranium();
   scene.case_source = "phantom:cranium";

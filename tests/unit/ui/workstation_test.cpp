@@ -393,6 +393,7 @@ TEST_F(WorkstationTest, TissuesThatWereEditedComeBackWithTheStructuresThatTheyAr
   ASSERT_TRUE(wait());
   EXPECT_TRUE(workstation_.isElsewhere()) << "those by HU are in force";
   EXPECT_EQ(workstation_.tissues(), *workstation_.scene()->tissues_elsewhere);
+  EXPECT_TRUE(workstation_.sceneEdited()) << "the set that waits is not saved";
   EXPECT_FALSE(workstation_.tissuesEdited());
   // What is saved now is the exercise, not what this case leaves of it.
   TissueSet by_hu = workstation_.tissues();
