@@ -388,6 +388,9 @@ Result<VolumeFileHeader> readNiftiHeader(const fs::path& file) {
   } else if (h->slope() != 0.0) {
     header.slope = h->slope();
     header.intercept = h->intercept();
+    if (header.slope < 0.0) {
+      header.notes.push_back("The rescale slope is negative: look whether bone is bright");
+    }
   }
   if (!std::isfinite(header.intercept)) {
     return notHu("The rescale intercept is no number", file);

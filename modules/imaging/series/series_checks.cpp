@@ -313,6 +313,11 @@ void checkSlopes(const Answers& answers, Findings& findings) {
       [](const DicomHeader& h) { return h.has_pixels && h.format.slope < 0.0; });
   const auto rising = findings.slicesWhere(
       [](const DicomHeader& h) { return h.has_pixels && h.format.slope > 0.0; });
+  if (!falling.empty() && rising.empty()) {
+    findings.notice("NEGATIVE_SLOPE",
+                    "The rescale slope is negative: a higher stored value is a lower HU",
+                    "Nothing was changed; look whether bone is bright");
+  }
   if (falling.empty() || rising.empty()) return;
   const auto& fewer = falling.size() < rising.size() ? falling : rising;
   findings.askConsent(

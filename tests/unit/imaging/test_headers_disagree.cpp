@@ -896,6 +896,17 @@ TEST_F(HeadersDisagree, SlopesOfAnotherSignAreAskedAbout) {
   EXPECT_EQ(chosen().verdict, Verdict::repaired);
 }
 
+TEST_F(HeadersDisagree, ANegativeSlopeIsSaid) {
+  write(rampVolume({7, 5, 6}));
+  EXPECT_EQ(find(scan().report().series.front(), "NEGATIVE_SLOPE"), nullptr);
+  editAll([](DcmDataset& data) {
+    put(data, DCM_RescaleSlope, "-1");
+    put(data, DCM_RescaleIntercept, "1024");
+  });
+  const CtFolder ct = scan();
+  EXPECT_NE(find(ct.report().series.front(), "NEGATIVE_SLOPE"), nullptr);
+}
+
 TEST_F(HeadersDisagree, ScansOfTwoDaysArePartsAndOneThatGoesOnPastMidnightIsNone) {
   const auto dated = [&](const char* second_day, const char* first_time, const char* second_time) {
     fs::remove_all(folder());
