@@ -29,6 +29,7 @@ OUTLETS = {
             "ui/prepare/trade_view.cpp": "settings of the recommended file are escaped",
             "ui/train/exercise_panel.cpp": "names and steps are escaped",
             "ui/train/result_page.cpp": "names are escaped",
+            "ui/train/start_card.cpp": "steps are escaped",
         }),
     "the terminal": (
         re.compile(r"(?<![\w.>])(std::)?(v?f?printf|fputs|puts|putchar|perror)\s*\("

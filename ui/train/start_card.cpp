@@ -22,6 +22,7 @@ StartCard::StartCard(QWidget& over) : FloatingCard(over, At::middle, kStartWides
   goal_->setProperty("large", true);
   steps_ = new QLabel;
   steps_->setObjectName("startCardSteps");
+  steps_->setTextFormat(Qt::RichText);  // a numbered list, of escaped steps
   hands_ = new QLabel;
   hands_->setObjectName("startCardHands");
   keys_ = new QLabel(

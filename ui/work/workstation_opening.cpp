@@ -349,6 +349,7 @@ void Workstation::opened(Result<Opened> outcome) {
   }
   const bool structures_alone = outcome->structures_alone;
   const bool may_edit = !isLocked(Lock::tissues);
+  const bool was_elsewhere = isElsewhere();
   placed_ = std::move(outcome->placed);
   placed_with_ = tissueTable(placed_->scene.tissues);
   if (!outcome->same_scene) {
@@ -364,6 +365,8 @@ void Workstation::opened(Result<Opened> outcome) {
     tissuesOf(*scene_) = *outcome->tissues;
     tissuesSaved(*outcome->tissues);
   }
+  // What was edited in a set that is not shown any more is not taken back unseen.
+  if (was_elsewhere != isElsewhere()) history_.begin(*scene_);
   history_.settle(*scene_);
   history_.close();
   refreshPlaced();

@@ -39,7 +39,8 @@ class StrangersGuiTest : public test::TrainTest {
   // No label takes text for markup by itself, and those that do so on purpose are known.
   void allLabelsArePlain(const QWidget& of) {
     const QStringList on_purpose{"reportCard", "exerciseSteps",   "exerciseRemoved", "resultRows",
-                                 "tradeView",  "structureReport", "controllerTrade"};
+                                 "tradeView",  "structureReport", "controllerTrade",
+                                 "startCardSteps"};
     for (const QLabel* label : of.findChildren<QLabel*>()) {
       if (!label->testAttribute(Qt::WA_WState_Polished)) continue;
       const QString what = label->objectName() + " \"" + label->text().left(60) + '"';
@@ -77,8 +78,11 @@ class StrangersGuiTest : public test::TrainTest {
     QTRY_VERIFY(find<QWidget>("startCard")->isVisible());
     rest();
     QCOMPARE(find<QLabel>("startCardGoal")->text(), toQt(name()));
-    for (const char* label :
-         {"startCardTitle", "startCardGoal", "startCardSteps", "startCardHands"}) {
+    auto* steps = find<QLabel>("startCardSteps");  // a numbered list of ours
+    QCOMPARE(steps->textFormat(), Qt::RichText);
+    QVERIFY(steps->text().contains(toQt(name()).toHtmlEscaped()));
+    QVERIFY(!steps->text().contains(toQt(name())));
+    for (const char* label : {"startCardTitle", "startCardGoal", "startCardHands"}) {
       if (auto* shown = window_->findChild<QLabel*>(label)) {
         QCOMPARE(shown->textFormat(), Qt::PlainText);
       }

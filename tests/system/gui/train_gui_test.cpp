@@ -44,6 +44,10 @@ class TrainGuiTest : public test::TrainTest {
     QVERIFY(card);
     QCOMPARE(find<QLabel>("startCardGoal")->text(), toQt(card->goal));
     QVERIFY(find<QLabel>("startCardSteps")->text().contains(toQt(card->steps.front())));
+    for (const char* list : {"startCardSteps", "exerciseSteps"}) {  // a list is read as one
+      QVERIFY(!find<QLabel>(list)->text().contains('<') ||
+              find<QLabel>(list)->textFormat() == Qt::RichText);
+    }
     QCOMPARE(find<QLabel>("startCardHands")->text(), toQt(card->hands));
     QVERIFY(window_->grab().save(TREPHINE_ARTEFACTS "/train-card.png"));
     write(settings::kLanguage, QString("zh_TW"));
