@@ -165,11 +165,11 @@ double evenStep_mm(const std::vector<double>& places_mm) {
 }
 
 // Whether the slices of two stacks lie between one another, at places of their own: each is even by
-// itself, and where they overlap most neighbours are of the other one. Places ascend.
+// itself, and where they overlap those of the one that has fewer there lie among the other's.
+// Places ascend.
 bool areInterleaved(const std::vector<double>& a, const std::vector<double>& b) {
   constexpr std::size_t kFewest = 4;     // slices of a scan
   constexpr std::ptrdiff_t kShared = 3;  // of each where they overlap
-  constexpr double kLeastTurns = 0.5;    // of the neighbours there
   if (a.size() < kFewest || b.size() < kFewest) return false;
   const double step_a = evenStep_mm(a), step_b = evenStep_mm(b);
   if (!(std::min(step_a, step_b) > 2.0 * kSamePlace_mm)) return false;
@@ -192,7 +192,7 @@ bool areInterleaved(const std::vector<double>& a, const std::vector<double>& b) 
   for (std::size_t n = 1; n < within.size(); ++n) {
     turns += within[n].second != within[n - 1].second ? 1.0 : 0.0;
   }
-  return turns >= kLeastTurns * double(within.size() - 1);
+  return turns >= double(std::min(counts[0], counts[1]));
 }
 
 bool anyInterleaved(const std::vector<int>& phases, const std::vector<double>& places_mm) {

@@ -355,6 +355,9 @@ TEST_F(TrapRepeats, WhereSlicesAreMissingOrPlacesRoundedOrAThirdScanIsShort) {
   series([](int p, int k) { return 100.0 + 2.0 * k + 0.7 * p; },
          [](int p, int k) { return p < 2 || k < 4; }, 3);
   series([](int p, int k) { return 100.0 + 8.0 * k + p; }, all, 8);
+  // One of wide steps among one of narrow ones.
+  series([](int p, int k) { return 100.0 + (p ? 5.0 * k + 0.5 : 1.0 * k); },
+         [](int p, int k) { return p == 0 || k < 4; }, 2);
 }
 
 // Two kernels of two scans: neither answer may mix the scans.
