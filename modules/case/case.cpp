@@ -75,8 +75,7 @@ const char* exerciseAnatomy(BodyRegion region) {
   return region == BodyRegion::head ? "cranium" : region == BodyRegion::abdomen ? "abdomen" : "";
 }
 
-Result<Case> readCase(const std::string& source, const Progress& progress,
-                      const Answers& answers) {
+Result<Case> readCase(const std::string& source, const Progress& progress, const Answers& answers) {
   if (source.empty()) {
     return Error{"NO_CASE", "The scene names no case and none was given", "--case",
                  "Give a folder of CT, or phantom:cranium or phantom:abdomen"};

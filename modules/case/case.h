@@ -27,10 +27,10 @@ struct Case {
   std::optional<Provenance> provenance;  // of what was imported
   // Whom it is of, where it was read from DICOM: to compare names with, and for nothing else.
   std::shared_ptr<const SourceIdentity> identity;
-  std::string name;                      // for the screen alone: it may be a series' description
+  std::string name;  // for the screen alone: it may be a series' description
   bool built_in = false;
-  std::string stored;  // its id in the workstation's library; empty: not there
-  std::optional<Anatomy> anatomy;              // what it shows; none where it was not asked
+  std::string stored;              // its id in the workstation's library; empty: not there
+  std::optional<Anatomy> anatomy;  // what it shows; none where it was not asked
   std::shared_ptr<const LabelMap> structures;  // fitted to the volume; null: none
   bool structures_built_in = false;  // they came with it, and a file that is given replaces them
   std::vector<StructureCard> structure_cards;  // of the file that they are from, and what is to be
@@ -57,7 +57,8 @@ Result<Case> readCase(const std::string& source, const Progress& progress = Prog
 // is in a folder of DICOM nor that folder itself. Error: CANNOT_WRITE. Reads a header at most.
 Status keepsCase(const std::filesystem::path& target, const std::string& source);
 
-// Gives other names to the segments that tell who it is of; how many there were (library/name_words.h).
+// Gives other names to the segments that tell who it is of; how many there were
+// (library/name_words.h).
 using NameHider = std::function<int(Segmentation&, const SourceIdentity&)>;
 
 // The structures of a file, instead of what it had; "" for none. What a person would be asked is

@@ -1,5 +1,5 @@
-// An exercise on a case: where the one finds in the other what it needs, or why it does not. Neither
-// is changed by it.
+// An exercise on a case: where the one finds in the other what it needs, or why it does not.
+// Neither is changed by it.
 #pragma once
 
 #include <memory>
@@ -27,9 +27,10 @@ struct Placement {
 
 // With the label map that the exercise names, unless one was given, and its landmarks. What the
 // exercise says of a case of its own has to hold of this one (onCase). A case that shows another
-// anatomy is warned of (OTHER_ANATOMY, NO_VAULT). Where a landmark has no place in it, the landmarks
-// are where their rays meet the body, with the warning NO_LANDMARK. Error: CANCELLED; all others are
-// `Placement::error`. `hide` as of withLabels(). Any thread; takes a second on a large case.
+// anatomy is warned of (OTHER_ANATOMY, NO_VAULT). Where a landmark has no place in it, the
+// landmarks are where their rays meet the body, with the warning NO_LANDMARK. Error: CANCELLED; all
+// others are `Placement::error`. `hide` as of withLabels(). Any thread; takes a second on a large
+// case.
 Result<Placement> place(const Scene& exercise, Case patient, const Progress& progress = Progress(),
                         const NameHider& hide = {});
 

@@ -3,11 +3,11 @@
 #include <set>
 
 #include "base/file.h"
+#include "case/case.h"
 #include "exercise/exercise_folder.h"
 #include "exercise/exercise_parts.h"
 #include "exercise/named_files.h"
 #include "scene/scene.h"
-#include "case/case.h"
 #include "session/operator_script.h"
 #include "volume/phantom.h"
 #include "volume/segmentation.h"

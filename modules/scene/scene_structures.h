@@ -17,11 +17,12 @@ struct PlacedStructures {
   std::vector<Warning> warnings;  // LACKS_STRUCTURE
 };
 
-// What the tissues of `scene` find in `labels` (fitted to the CT; null: none). Where the case lacks a
-// structure that the scene needs, the tissues for elsewhere take their place, known by HU. Error:
+// What the tissues of `scene` find in `labels` (fitted to the CT; null: none). Where the case lacks
+// a structure that the scene needs, the tissues for elsewhere take their place, known by HU. Error:
 // NO_STRUCTURE where one is needed, a tissue is known by it alone and there are no tissues for
 // elsewhere. Pure.
-Result<PlacedStructures> placeStructures(const Scene& scene, std::shared_ptr<const LabelMap> labels);
+Result<PlacedStructures> placeStructures(const Scene& scene,
+                                         std::shared_ptr<const LabelMap> labels);
 
 // The case's labels with the shells that tissues ask for where it has none of that name, each with
 // the lowest label that is free: so always the same for the same case.

@@ -1,8 +1,8 @@
 // The cases that pictures are of: built in, no patient's.
 #pragma once
 
-#include "golden_line.h"
 #include "case/placement.h"
+#include "golden_line.h"
 
 namespace trephine::test {
 

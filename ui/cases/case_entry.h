@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "library/case_library.h"
 #include "case/case.h"
+#include "library/case_library.h"
 #include "training/recording_list.h"
 #include "volume/phantom.h"
 

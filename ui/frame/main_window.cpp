@@ -233,8 +233,7 @@ void MainWindow::closeEvent(QCloseEvent* event) {
   bench_.takeTyped();
   const bool running = phase != Phase::empty && phase != Phase::ready;
   const bool unsaved = bench_.cutsUnsaved() || workstation().tissuesEdited() ||
-                       workstation().sceneEdited() ||
-                       prepare_->structuresEdited();
+                       workstation().sceneEdited() || prepare_->structuresEdited();
   if (may_close_ || !(running || unsaved)) {
     keep();
     return QMainWindow::closeEvent(event);

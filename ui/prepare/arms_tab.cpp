@@ -29,8 +29,8 @@ ArmsTab::ArmsTab(Bench& bench, ToolsPanel& tools)
     return workstation_.edit(what, change);
   };
   tools_->mapAt = [this](const Scene& scene, std::size_t arm, const std::string& landmark) {
-    const Case* of = workstation_.currentCase();
-    return of ? movedTo(scene, arm, landmark, workstation_.placed()->landmarks) : scene.arms[arm].map;
+    const std::optional<Placement>& placed = workstation_.placed();
+    return placed ? movedTo(scene, arm, landmark, placed->landmarks) : scene.arms[arm].map;
   };
   connect(tools_, &ToolsPanel::armChosen, this, &ArmsTab::showBoxes);
   connect(tools_, &ToolsPanel::toolFileWanted, this, [this] {

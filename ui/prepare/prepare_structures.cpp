@@ -276,9 +276,8 @@ void PrepareWorkspace::placeEntry(const Vec3& at_mm, const Vec3& from_mm) {
   if (!landmark) return bench_.say(tr("This exercise is fixed in its own patient."));
   Vec3 outward = from_mm - at_mm;
   if (!(glm::length(outward) > 0.0)) {
-    const auto out =
-        outwardAt(*of->volume, workstation_.placedTissues(), workstation_.placed()->labels.get(),
-                  landmark->tissue, at_mm);
+    const auto out = outwardAt(*of->volume, workstation_.placedTissues(),
+                               workstation_.placed()->labels.get(), landmark->tissue, at_mm);
     const auto before = workstation_.viewLandmark();
     outward = out ? *out : before ? before->rotation * Vec3(0.0, 0.0, 1.0) : Vec3(0.0, -1.0, 0.0);
   }

@@ -101,8 +101,9 @@ void Workstation::begin(const std::filesystem::path& recordings,
         Result<Rig> used = chosen.empty() ? Result<Rig>(std::move(rig)) : rigOf(scene, chosen);
         if (!used) return used.error();
         if (Status made = poke ? Status() : makeFolder(recordings); !made) return made.error();
-        placed.scene = placedScene(scene, placed);
-        if (again) {
+        if (!again) {
+          placed.scene = placedScene(scene, placed);
+        } else {
           Result<Placement> anew = place(scene, placed.patient, progress, hideNamesOf);
           if (!anew) return anew.error();
           placed = *std::move(anew);

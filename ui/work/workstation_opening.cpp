@@ -20,12 +20,12 @@ namespace trephine {
 struct Workstation::Opened {
   Scene scene;
   std::filesystem::path scene_file;
-  std::optional<Case> of;            // none: that of `source` is read
-  bool same_scene = false;           // it stays as it is edited
-  std::string labels_file{};         // instead of what the case has; empty: that stays
-  Answers answers{};                 // about them
-  bool structures_alone = false;     // the open case with others of them
-  bool any_scene = false;            // nobody chose the scene: one that fits what the case shows
+  std::optional<Case> of;         // none: that of `source` is read
+  bool same_scene = false;        // it stays as it is edited
+  std::string labels_file{};      // instead of what the case has; empty: that stays
+  Answers answers{};              // about them
+  bool structures_alone = false;  // the open case with others of them
+  bool any_scene = false;         // nobody chose the scene: one that fits what the case shows
   std::string source{};
   std::optional<Error> no_labels{};  // why the case opened without them
   // The case comes from there, and its own tissues with it.
@@ -298,9 +298,9 @@ void Workstation::openInBackground(Opened opening) {
           opening.of = *std::move(read);
         }
         const Scene here = onCase(opening.scene, opening.of->source);
-        Result<Placement> placed = place(here, *std::exchange(opening.of, {}),
-                                         Progress(progress, at_hand ? 0.0 : kRead, 1.0),
-                                         hideNamesOf);
+        Result<Placement> placed =
+            place(here, *std::exchange(opening.of, {}),
+                  Progress(progress, at_hand ? 0.0 : kRead, 1.0), hideNamesOf);
         if (!placed) return placed.error();
         opening.placed = *std::move(placed);
         if (opening.scene.tissues_elsewhere && !here.tissues_elsewhere) {

@@ -4,6 +4,7 @@
 #include <cstdlib>
 #include <limits>
 
+#include "imaging/common/stored_values.h"
 #include "volume/volume.h"
 
 namespace trephine {
@@ -12,8 +13,8 @@ namespace {
 
 constexpr int kLowest = std::numeric_limits<std::int16_t>::min();
 constexpr int kHighest = std::numeric_limits<std::int16_t>::max();
-// Air with noise and undershoot lies between; what is lower was not scanned.
-constexpr int kLowestOfAir = -1100, kHighestOfAir = -300;
+// Air with noise and undershoot lies between this and kLowestAir_HU.
+constexpr int kHighestOfAir = -300;
 constexpr int kNear = 20;          // HU to either side of a mode
 constexpr int kNotAScale = -3339;  // below what 12 bits reach with any usual intercept (-3072)
 
@@ -63,7 +64,7 @@ std::uint64_t HuLook::count(int from, int to) const {
 }
 
 bool HuLook::hasAir() const {
-  return count(kLowestOfAir, kHighestOfAir - 1) > 0;
+  return count(kLowestAir_HU, kHighestOfAir - 1) > 0;
 }
 
 std::vector<std::string> HuLook::doubts(int lowest, int highest) const {
@@ -75,12 +76,12 @@ std::vector<std::string> HuLook::doubts(int lowest, int highest) const {
   if (lowest == kNotAScale || counts_[std::size_t(kNotAScale - kLowest)] > 0) {
     doubts.push_back("values down to " + std::to_string(kNotAScale) + " are below any scale");
   }
-  const auto scanned = double(count(kLowestOfAir, kHighest));
+  const auto scanned = double(count(kLowestAir_HU, kHighest));
   if (scanned == 0.0) return doubts;
   const auto share = [&](int from, int to) { return double(count(from, to)) / scanned; };
-  const double air = share(kLowestOfAir, kHighestOfAir - 1);
+  const double air = share(kLowestAir_HU, kHighestOfAir - 1);
   // The corners beyond the field of view are padding that no file names: of one value, at an end.
-  int first = kLowestOfAir, last = kHighest;
+  int first = kLowestAir_HU, last = kHighest;
   while (count(first, first) == 0) ++first;
   while (count(last, last) == 0) --last;
   const auto around = [&](int hu) {
@@ -127,17 +128,17 @@ std::vector<std::string> HuLook::doubts(int lowest, int highest) const {
   constexpr double kLeastTissue = 0.01, kLittleTissue = 0.05, kBelow = 0.1;
   const double tissue = share(-200, 200);
   std::uint64_t padding = 0;
-  for (int hu = kLowest; hu < kLowestOfAir; ++hu) padding = std::max(padding, count(hu, hu));
-  const double below = double(count(kLowest, kLowestOfAir - 1) - padding) / scanned;
+  for (int hu = kLowest; hu < kLowestAir_HU; ++hu) padding = std::max(padding, count(hu, hu));
+  const double below = double(count(kLowest, kLowestAir_HU - 1) - padding) / scanned;
   // A dry skull is bone and air.
-  if ((share(-200, kHighest) < kLeastTissue && share(kLowestOfAir, -800) > 0.5) ||
+  if ((share(-200, kHighest) < kLeastTissue && share(kLowestAir_HU, -800) > 0.5) ||
       (tissue < kLittleTissue && below > kBelow)) {
     doubts.push_back("hardly any of the voxels (" + percent(tissue) +
                      ") lie where tissue does, as of an intercept that was applied twice");
     return doubts;
   }
   constexpr int kWater = -20;  // with its noise
-  if (highest < kWater && share(kLowestOfAir, -800) > 0.3) {
+  if (highest < kWater && share(kLowestAir_HU, -800) > 0.3) {
     doubts.push_back("none lies above " + std::to_string(highest) +
                      ", and tissue lies near 0: as of an intercept that was applied twice");
     return doubts;

@@ -102,7 +102,8 @@ class Unpacker {
       progress_.at(from + (to - from) * std::clamp(share, 0.0, 1.0), "Unpacking");
       archive_entry* entry = nullptr;
       const int next = archive_read_next_header(in.get(), &entry);
-      if (next < ARCHIVE_WARN || next == ARCHIVE_RETRY) return reason.empty() ? Reason(kDamaged) : reason;
+      if (next < ARCHIVE_WARN || next == ARCHIVE_RETRY)
+        return reason.empty() ? Reason(kDamaged) : reason;
       const int format = archive_format(in.get());
       const bool packed_tar = archive_filter_count(in.get()) > 1;
       if (next == ARCHIVE_EOF) {

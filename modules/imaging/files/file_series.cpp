@@ -186,9 +186,9 @@ Result<Volume> readFileSeries(const std::filesystem::path& file, const Answers& 
     return Error{finding.code, finding.text, report.uid, finding.action};
   }
   // Values that are multiples of 256 alone are of a phantom, or of 8 bits.
-  const bool coarse =
-      std::ranges::all_of(reading->volume.hu, [](std::int16_t hu) { return hu % 256 == 0; });
-  const bool exchanged = reading->bytes_exchanged && !coarse && reading->header.slope == 1.0;
+  const bool exchanged =
+      reading->bytes_exchanged && reading->header.slope == 1.0 &&
+      !std::ranges::all_of(reading->volume.hu, [](std::int16_t hu) { return hu % 256 == 0; });
   if (exchanged) {
     look.doubt(
         "neighbours differ far less with the bytes of each voxel exchanged, as of a header "

@@ -61,8 +61,8 @@ Headers chooseParts(const Series& series, Headers placed, const Answers& answers
                            std::to_string(count) + " of " + counted(placed.size(), "slice"));
   }
   const bool offers_part = choice.options.size() > 2;
-  const std::string text = "The series falls into " + counted(counts.size(), "part") +
-                           " that differ in " + differing;
+  const std::string text =
+      "The series falls into " + counted(counts.size(), "part") + " that differ in " + differing;
   const std::string answer = ask(std::move(choice), answers, report.choices);
   if (answer == "join") {
     findings.repaired("PARTS", text,

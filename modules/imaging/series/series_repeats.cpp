@@ -140,18 +140,28 @@ std::optional<std::vector<int>> phasesInTurn(
   return phases;
 }
 
-// The step of these places, where nearly all of them lie on it, a few missing [mm]; 0: they do not.
-// Rounded to 0.1 mm, steps may be off by as much.
-double evenStep_mm(const std::vector<double>& places_mm) {
-  constexpr double kSame = 0.1, kRounded_mm = 0.11, kMostUneven = 0.1, kLeastSingle = 0.5;
+// Between places that ascend; their middle one, or 0 where there is none.
+std::vector<double> stepsOf_mm(const std::vector<double>& places_mm) {
   std::vector<double> steps;
   for (std::size_t n = 1; n < places_mm.size(); ++n) {
     steps.push_back(places_mm[n] - places_mm[n - 1]);
   }
+  return steps;
+}
+
+double medianStep_mm(const std::vector<double>& places_mm) {
+  std::vector<double> steps = stepsOf_mm(places_mm);
+  std::ranges::sort(steps);
+  return steps.empty() ? 0.0 : steps[steps.size() / 2];
+}
+
+// The step of these places, where nearly all of them lie on it, a few missing [mm]; 0: they do not.
+// Rounded to 0.1 mm, steps may be off by as much.
+double evenStep_mm(const std::vector<double>& places_mm) {
+  constexpr double kSame = 0.1, kRounded_mm = 0.11, kMostUneven = 0.1, kLeastSingle = 0.5;
+  const std::vector<double> steps = stepsOf_mm(places_mm);
   if (steps.size() < 2) return 0.0;
-  std::vector<double> sorted = steps;
-  std::ranges::sort(sorted);
-  const double median = sorted[sorted.size() / 2];
+  const double median = medianStep_mm(places_mm);
   const double tolerance_mm = std::max(kSame * median, std::min(kRounded_mm, 0.4 * median));
   double uneven = 0.0, single = 0.0;
   for (const double step : steps) {
@@ -212,15 +222,6 @@ bool anyInterleaved(const std::vector<int>& phases, const std::vector<double>& p
 
 // A number of each slice, by which scans may be told apart; none where it does not say.
 using Numbers = std::vector<std::optional<double>>;
-
-double medianStep_mm(const std::vector<double>& places_mm) {
-  std::vector<double> steps;
-  for (std::size_t n = 1; n < places_mm.size(); ++n) {
-    steps.push_back(places_mm[n] - places_mm[n - 1]);
-  }
-  std::ranges::sort(steps);
-  return steps.empty() ? 0.0 : steps[steps.size() / 2];
-}
 
 // Each slice's phase where the slices are gone through in the order of their numbers again and
 // again, in whatever direction: a slice, or several of one number, among those of the phase so far

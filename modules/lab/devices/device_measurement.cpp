@@ -491,8 +491,7 @@ Result<DeviceTrial> tryDevice(const TrialOptions& options, const fs::path& recor
   const auto reader = SessionReader::open(recording);
   if (!reader) return trial;
   const Result<ReplayResult> again =
-      replay(**reader, *of->patient.volume, of->labels.get(), Progress(),
-             of->patient.sha256);
+      replay(**reader, *of->patient.volume, of->labels.get(), Progress(), of->patient.sha256);
   trial.replayed = again && again->identical && !again->cut_short;
   return trial;
 }

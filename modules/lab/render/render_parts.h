@@ -11,11 +11,11 @@
 
 #include "base/progress.h"
 #include "base/result.h"
+#include "case/placement.h"
 #include "lab/render/ray_settings.h"
 #include "lab/render/render_measurement.h"
 #include "render/scene_renderer.h"
 #include "scene/landmark.h"
-#include "case/placement.h"
 
 namespace trephine {
 

@@ -64,9 +64,14 @@ Result<std::vector<RenderSubject>> renderSubjects(const std::string& case_source
   const Result<Placement> abdomen = openCase(*liver, Progress(progress, 0.3, 0.8));
   if (!abdomen) return abdomen.error();
   if (abdomen->error) return *abdomen->error;
-  RenderSubject subject{
-      liver->case_source,     "liver",           abdomen->patient.volume, abdomen->labels,
-      abdomen->scene.tissues, liver->view.looks, std::nullopt,            liver->view.distance_mm};
+  RenderSubject subject{liver->case_source,
+                        "liver",
+                        abdomen->patient.volume,
+                        abdomen->labels,
+                        abdomen->scene.tissues,
+                        liver->view.looks,
+                        std::nullopt,
+                        liver->view.distance_mm};
   for (const PlacedLandmark& landmark : abdomen->landmarks) {
     if (landmark.id == liver->view.landmark) subject.at = landmark.frame;
   }

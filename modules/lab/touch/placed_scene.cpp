@@ -4,9 +4,9 @@
 #include <utility>
 
 #include "base/system.h"
+#include "case/placement.h"
 #include "scene/arm_limits.h"
 #include "session/arm_devices.h"
-#include "case/placement.h"
 
 namespace trephine {
 

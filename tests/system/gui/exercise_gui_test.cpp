@@ -6,11 +6,11 @@
 #include <QPlainTextEdit>
 #include <QRegularExpression>
 
+#include "case/placement.h"
 #include "exercise/exercise_folder.h"
 #include "gui_support.h"
 #include "library/case_library.h"
 #include "session/arm_devices.h"
-#include "case/placement.h"
 #include "tissue/tissue_edits.h"
 
 namespace trephine {
@@ -285,9 +285,7 @@ class ExerciseGuiTest : public test::WindowTest {
     choose("armChoice", QString("left"));
     const Vec3 before = scene().arms[0].map.offset_mm;
     const auto centre = [&] {
-      return withFixedMaps(scene(), workstation().placed()->landmarks)
-          .arms[0]
-          .map.fixed->centre_mm;
+      return withFixedMaps(scene(), workstation().placed()->landmarks).arms[0].map.fixed->centre_mm;
     };
     SliceView& coronal = slice(SliceAxis::coronal);
     const Vec3 from_mm = centre();

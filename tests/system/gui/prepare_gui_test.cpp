@@ -6,9 +6,9 @@
 #include <QSpinBox>
 #include <QToolButton>
 
+#include "case/placement.h"
 #include "gui_support.h"
 #include "imaging/importer.h"
-#include "case/placement.h"
 #include "tissue/tissue_edits.h"
 
 namespace trephine {

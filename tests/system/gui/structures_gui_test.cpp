@@ -237,8 +237,7 @@ class StructuresGuiTest : public test::WindowTest {
     QVERIFY(of.warnings.empty());
     QVERIFY(of.labels->find("capsule"));
     QVERIFY(!of.patient.structures->find("capsule"));
-    QCOMPARE(int(*of.scene.tissues.find("liver")->label),
-             of.labels->find("liver")->label);
+    QCOMPARE(int(*of.scene.tissues.find("liver")->label), of.labels->find("liver")->label);
   }
 
   // A wheel into the liver and one stroke.

@@ -44,9 +44,8 @@ Scene craniumOfLabels() {
 TEST(Session, CutsATissueOnlyWhereItsLabelIsAndReplaysWithThatLabelMapAlone) {
   test::TemporaryFolder folder;
   const auto labels = strips();
-  auto session =
-      Session::create(test::placed(craniumOfLabels(), smallHead(), labels),
-                      scripted(folder / "s.h5"));
+  auto session = Session::create(test::placed(craniumOfLabels(), smallHead(), labels),
+                                 scripted(folder / "s.h5"));
   ASSERT_TRUE(session.ok()) << session.error().sentence();
   ASSERT_TRUE((*session)->freewheel(10.0).ok());
   const RunReport report = (*session)->report();
@@ -106,8 +105,7 @@ TEST(Case, FitsALabelMapToItsVoxels) {
 }
 
 TEST(Session, ATissueOfALabelWithoutALabelMapIsRefused) {
-  const auto refused =
-      Session::create(test::placed(craniumOfLabels(), smallHead()), {});
+  const auto refused = Session::create(test::placed(craniumOfLabels(), smallHead()), {});
   ASSERT_FALSE(refused.ok());
   EXPECT_EQ(refused.error().code, "NO_LABELS");
   EXPECT_NE(refused.error().what.find("'bone' is restricted to label 7"), std::string::npos);
@@ -221,7 +219,8 @@ TEST(Case, ABuiltInAbdomenBringsItsLabelMapAndAnotherReplacesIt) {
   EXPECT_EQ(own.labels, read.structures);
   EXPECT_FALSE(own.error) << own.error->sentence();
   // What a session recorded with them is replayed with them.
-  auto session = Session::create(own, {folder / "s.h5", *readOperatorScript(scene.operator_file, scene)});
+  auto session =
+      Session::create(own, {folder / "s.h5", *readOperatorScript(scene.operator_file, scene)});
   ASSERT_TRUE(session.ok()) << session.error().sentence();
   ASSERT_TRUE((*session)->freewheel(2.0).ok());
   const auto reader = *SessionReader::open(folder / "s.h5");
@@ -270,9 +269,9 @@ TEST(Placement, LeavesTheExerciseAsItIsAndFollowsItsEdits) {
   const Scene edited = placedScene(exercise, placed);
   EXPECT_EQ(edited.tissues.find("liver")->opacity, 0.25);
   EXPECT_EQ(edited.tissues.find("liver")->label, placed.scene.tissues.find("liver")->label);
-  EXPECT_NEAR(glm::length(edited.arms[0].map.fixed->centre_mm -
-                          placed.scene.arms[0].map.fixed->centre_mm),
-              5.0, 1e-9);
+  EXPECT_NEAR(
+      glm::length(edited.arms[0].map.fixed->centre_mm - placed.scene.arms[0].map.fixed->centre_mm),
+      5.0, 1e-9);
   EXPECT_EQ(placedScene(liver, placed), placed.scene);
 }
 

@@ -60,7 +60,8 @@ TEST(Copies, AreOneOfACaseAndAnotherOfTheGridThatIsCutAndTheyAreHashedAndSearche
   EXPECT_EQ(of->patient.volume->hu.size(), count);
   EXPECT_EQ(test::hashed_bytes, 2 * count) << "once";
 
-  auto session = Session::create(*of, {folder / "s.h5", *readOperatorScript(scene.operator_file, scene)});
+  auto session =
+      Session::create(*of, {folder / "s.h5", *readOperatorScript(scene.operator_file, scene)});
   ASSERT_TRUE(session.ok()) << session.error().sentence();
   const double made_mb = test::privateDirtyMb() - opened_mb;
   EXPECT_GT(made_mb / copy_mb, 1.0) << "the grid";

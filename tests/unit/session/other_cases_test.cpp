@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "base/system.h"
-#include "scene/scene_structures.h"
 #include "case/placement.h"
+#include "scene/scene_structures.h"
 #include "session/session.h"
 #include "support.h"
 

@@ -4,8 +4,8 @@
 #include <string>
 
 #include "base/system.h"
-#include "pointer_exercises.h"
 #include "case/placement.h"
+#include "pointer_exercises.h"
 #include "support.h"
 #include "training/session_reader.h"
 #include "uncut_bone.h"

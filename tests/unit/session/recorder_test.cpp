@@ -46,8 +46,7 @@ int held_up[2];
 
 TEST(Recorder, ThatWasHeldUpCountsItAndLosesNothing) {
   test::TemporaryFolder folder;
-  auto session =
-      Session::create(test::placed(cranium(), ball()), scripted(folder / "s.h5"));
+  auto session = Session::create(test::placed(cranium(), ball()), scripted(folder / "s.h5"));
   ASSERT_TRUE(session.ok()) << session.error().sentence();
   ASSERT_EQ(::pipe(held_up), 0);
   ASSERT_TRUE((*session)->start(3.0).ok());

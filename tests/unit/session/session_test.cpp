@@ -21,8 +21,7 @@ using test::waitUntil;
 
 TEST(Session, BothArmsCutBoneWithinTheForceLimitAndItReplaysIdentically) {
   test::TemporaryFolder folder;
-  auto session =
-      Session::create(test::placed(cranium(), smallHead()), scripted(folder / "s.h5"));
+  auto session = Session::create(test::placed(cranium(), smallHead()), scripted(folder / "s.h5"));
   ASSERT_TRUE(session.ok()) << session.error().sentence();
   ASSERT_TRUE((*session)->freewheel(10.0).ok());
   const RunReport report = (*session)->report();
@@ -60,8 +59,7 @@ TEST(Session, FreewheelsToTheSameVoxelsTwice) {
 
 TEST(Session, RunsInRealTimeTakesLiveInputAndReplaysIdentically) {
   test::TemporaryFolder folder;
-  auto made =
-      Session::create(test::placed(cranium(), smallHead()), {folder / "s.h5", {}});
+  auto made = Session::create(test::placed(cranium(), smallHead()), {folder / "s.h5", {}});
   ASSERT_TRUE(made.ok()) << made.error().sentence();
   Session& session = **made;
   ASSERT_TRUE(session.start().ok());
@@ -169,8 +167,7 @@ TEST(Session, AScriptsHandIsHeldInAPauseAndGoesOnAfterIt) {
 // Both arms cut while everything is changed under them, from another thread than theirs.
 TEST(Session, UndoRewindAndParametersWhileItCutsLeaveARecordingThatReplaysIdentically) {
   test::TemporaryFolder folder;
-  auto made =
-      Session::create(test::placed(cranium(), smallHead()), scripted(folder / "s.h5"));
+  auto made = Session::create(test::placed(cranium(), smallHead()), scripted(folder / "s.h5"));
   ASSERT_TRUE(made.ok()) << made.error().sentence();
   Session& session = **made;
   ASSERT_TRUE(session.start(4.0).ok());
@@ -216,8 +213,7 @@ TEST(Session, UndoRewindAndParametersWhileItCutsLeaveARecordingThatReplaysIdenti
 // The right hand takes a burr in air, wishes its blade back in the bone, and has it once it is out.
 TEST(Session, AToolThatIsChangedOnTheWayReplaysIdenticallyAndItsCutsAreUndone) {
   test::TemporaryFolder folder;
-  auto made =
-      Session::create(test::placed(cranium(), smallHead()), scripted(folder / "s.h5"));
+  auto made = Session::create(test::placed(cranium(), smallHead()), scripted(folder / "s.h5"));
   ASSERT_TRUE(made.ok()) << made.error().sentence();
   Session& session = **made;
   EXPECT_FALSE(session.changeTool(1, 3)) << "it has three";
@@ -319,8 +315,7 @@ TEST(Session, APokeIsFeltAsTheExerciseIsUntilThatCuts) {
 // arm has them two ticks later, and its force goes there no faster than 0.05 N/ms.
 TEST(Session, AnEditIsFeltWithinTwoTicksAndTheForceNeverJumps) {
   test::TemporaryFolder folder;
-  auto session =
-      *Session::create(test::placed(cranium(), smallHead()), scripted(folder / "s.h5"));
+  auto session = *Session::create(test::placed(cranium(), smallHead()), scripted(folder / "s.h5"));
   const TissueSet own = session->scene().tissues;
   TissueSet soft = own, hard = own;
   for (Tissue& tissue : soft.tissues) {
@@ -382,8 +377,7 @@ std::size_t commandsIn(const std::filesystem::path& recording) {
 
 TEST(Session, RecolouringATissueNeverReachesTheHapticThread) {
   test::TemporaryFolder folder;
-  auto session =
-      *Session::create(test::placed(cranium(), smallHead()), scripted(folder / "s.h5"));
+  auto session = *Session::create(test::placed(cranium(), smallHead()), scripted(folder / "s.h5"));
   TissueSet tissues = session->scene().tissues;
   for (int step = 0; step < 200; ++step) {  // more than the ring of commands holds
     tissues.tissues[3].opacity = 0.001 * step;
@@ -510,8 +504,7 @@ TEST(Session, IsReplayedOnlyWhereThereIsMemoryForIt) {
   test::TemporaryFolder folder;
   const Volume head = smallHead();
   {
-    auto session =
-        *Session::create(test::placed(cranium(), head), scripted(folder / "s.h5"));
+    auto session = *Session::create(test::placed(cranium(), head), scripted(folder / "s.h5"));
     ASSERT_TRUE(session->freewheel(0.1).ok());
   }
   const auto reader = SessionReader::open(folder / "s.h5");
@@ -646,14 +639,12 @@ TEST(FreshFile, OfAFolderThatCannotBeLookedIntoIsLeftToWhoWritesThere) {
 TEST(Session, AMissingTemporaryFolderIsAnErrorWhereOneIsNeeded) {
   test::TemporaryFolder folder;
   const test::Environment missing("TMPDIR", (folder / "none").string());
-  const auto unrecorded =
-      Session::create(test::placed(cranium(), smallHead()), scripted());
+  const auto unrecorded = Session::create(test::placed(cranium(), smallHead()), scripted());
   ASSERT_FALSE(unrecorded.ok());
   EXPECT_EQ(unrecorded.error().code, "NO_TEMPORARY_FOLDER");
 
   // Beside a recording there is room for what does not fit into memory; a replay has no such place.
-  auto recorded =
-      Session::create(test::placed(cranium(), smallHead()), scripted(folder / "s.h5"));
+  auto recorded = Session::create(test::placed(cranium(), smallHead()), scripted(folder / "s.h5"));
   ASSERT_TRUE(recorded.ok()) << recorded.error().sentence();
   ASSERT_TRUE((*recorded)->freewheel(0.1).ok());
   const auto reader = SessionReader::open(folder / "s.h5");

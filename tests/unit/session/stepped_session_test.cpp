@@ -16,8 +16,7 @@ using test::scripted;
 using test::smallHead;
 
 std::unique_ptr<Session> made(const std::filesystem::path& recording = {}) {
-  auto session =
-      Session::create(test::placed(cranium(), smallHead()), scripted(recording));
+  auto session = Session::create(test::placed(cranium(), smallHead()), scripted(recording));
   EXPECT_TRUE(session.ok()) << session.error().sentence();
   return *std::move(session);
 }

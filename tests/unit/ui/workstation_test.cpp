@@ -80,8 +80,7 @@ TEST_F(WorkstationTest, ALabelMapBelongsToTheCaseThatIsOpen) {
   ASSERT_TRUE(wait());
   EXPECT_FALSE(failed_) << failed_->sentence();
   ASSERT_TRUE(workstation_.placed()->labels);
-  EXPECT_EQ(workstation_.placed()->labels->labels,
-            std::vector<std::uint8_t>(ball().hu.size(), 7));
+  EXPECT_EQ(workstation_.placed()->labels->labels, std::vector<std::uint8_t>(ball().hu.size(), 7));
 
   workstation_.useLabels(labels(-7));
   ASSERT_TRUE(wait());

@@ -105,8 +105,7 @@ TEST_F(NrrdFile, HeadersAreReadAsTheFormatAllows) {
 }
 
 TEST_F(NrrdFile, TheUnitOfLengthCounts) {
-  for (const auto& [unit, mm] :
-       {std::pair("mm", 1.0), {"cm", 10.0}, {"m", 1000.0}}) {
+  for (const auto& [unit, mm] : {std::pair("mm", 1.0), {"cm", 10.0}, {"m", 1000.0}}) {
     const std::string quote = '"' + std::string(unit) + '"';
     const auto read =
         readVolume(write(header("space units", quote + " " + quote + " " + quote), voxels));
