@@ -5,7 +5,7 @@
 #include "app/lab_commands.h"
 #include "base/system.h"
 #include "base/utf8.h"
-#include "exercise/exercise_folder.h"
+#include "exchange/exercise_folder.h"
 #include "library/name_words.h"
 
 namespace trephine {
@@ -35,9 +35,9 @@ std::string listed(const char* title, const std::vector<std::string>& files) {
 
 }  // namespace
 
-int exportExerciseCommand(const std::string& scene, const std::string& case_source,
+int exportExerciseCommand(const std::string& exercise, const std::string& case_source,
                           const std::string& out, bool json, const Progress& progress) {
-  const auto exported = exportExercise(scene, case_source, out, progress, hideNamesOf);
+  const auto exported = exportExercise(exercise, case_source, out, progress, hideNamesOf);
   if (!exported) return printError("exercise-export", exported.error(), json);
   Json parts = Json::array();
   for (const ExercisePart& part : exported->parts) parts.push_back(toJson(part));
@@ -57,13 +57,13 @@ int importExerciseCommand(const std::string& folder, const std::string& storage,
   if (!imported) return printError("exercise-import", imported.error(), json);
   const ExerciseCheck& check = imported->check;
   if (json) {
-    printAnswer("exercise-import", {{"scene", imported->scene.string()},
+    printAnswer("exercise-import", {{"scene", imported->exercise.string()},
                                     {"verified", check.verified()},
                                     {"missing", check.missing},
                                     {"changed", check.changed},
                                     {"left_devices_out", imported->left_devices_out}});
   } else if (check.verified()) {
-    say("%s\n", cleanUtf8(imported->scene.string()).c_str());
+    say("%s\n", cleanUtf8(imported->exercise.string()).c_str());
     if (imported->left_devices_out) sayError("%s\n", kLeftDevicesOut);
   } else {
     sayError("It is not the exercise that was exported; nothing was written.\n%s%s",

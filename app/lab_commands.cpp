@@ -24,7 +24,7 @@
 #include "lab/touch/rest_measurement.h"
 #include "lab/trades/trade_charts.h"
 #include "lab/trades/trades_measurement.h"
-#include "scene/names.h"
+#include "exercise/names.h"
 #include "case/case.h"
 #include "training/recording_list.h"
 #include "training/replay.h"
@@ -94,10 +94,10 @@ int replayCommand(const std::string& file, const std::string& case_source,
                   const std::string& labels_file, bool json, const Progress& progress) {
   Result<std::unique_ptr<SessionReader>> recording = SessionReader::open(file);
   if (!recording) return printError("replay", recording.error(), json);
-  const Json& scene = (*recording)->header().scene;
+  const Json& exercise = (*recording)->header().exercise;
   std::string source = case_source;
-  if (source.empty() && scene.contains("case") && scene["case"].is_string()) {
-    source = scene["case"].get<std::string>();
+  if (source.empty() && exercise.contains("case") && exercise["case"].is_string()) {
+    source = exercise["case"].get<std::string>();
     // A recording opens no file: it may be a stranger's.
     if (!phantomNamed(source)) source.clear();
   }
@@ -164,21 +164,21 @@ int recordingsCommand(const std::vector<std::string>& files, bool json,
   return all ? 0 : 1;
 }
 
-int explainCommand(const std::string& scene_file, const Policy& policy, bool json,
+int explainCommand(const std::string& exercise_file, const Policy& policy, bool json,
                    const Progress& progress) {
-  Result<Scene> scene = readScene(scene_file);
-  if (!scene) return printError("explain", scene.error(), json);
+  Result<Exercise> exercise = readExercise(exercise_file);
+  if (!exercise) return printError("explain", exercise.error(), json);
   const auto recommended =
       recommendedHere(policy, configFolder().value_or(std::filesystem::path()));
   if (!recommended) return printError("explain", recommended.error(), json);
-  Result<Json> answer = explainScene(*scene, *recommended, progress);
+  Result<Json> answer = explainExercise(*exercise, *recommended, progress);
   if (!answer) return printError("explain", answer.error(), json);
-  const Locks locked = locksOf(policy, *scene);
+  const Locks locked = locksOf(policy, *exercise);
   Json& locks = (*answer)["locks"] = Json::array();
   for (const auto& [name, lock] : kLockNames) {
     if (locked.contains(lock)) locks.push_back(std::string(name));
   }
-  const Status may = checkScene(policy, *scene, scene_file);
+  const Status may = checkExercise(policy, *exercise, exercise_file);
   (*answer)["refused"] = may ? Json() : Json(may.error().sentence());
   if (json) {
     printAnswer("explain", *answer);

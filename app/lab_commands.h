@@ -7,19 +7,19 @@
 
 #include "base/progress.h"
 #include "lab/import/import_measurement.h"
-#include "scene/policy.h"
+#include "exercise/policy.h"
 
 namespace trephine {
 
 struct RunArguments {
-  std::string scene;
-  std::string case_source;  // empty: the scene's own
-  std::string labels;       // empty: the scene's own
-  std::string operator_file;  // empty: the scene's default
-  std::string arms_file;      // empty: the scene's own devices
+  std::string exercise;
+  std::string case_source;  // empty: the exercise's own
+  std::string labels;       // empty: the exercise's own
+  std::string operator_file;  // empty: the exercise's default
+  std::string arms_file;      // empty: the exercise's own devices
   std::optional<double> seconds;  // empty: as long as the script
   std::optional<double> rate_hz;
-  std::string controller;  // empty: the scene's
+  std::string controller;  // empty: the exercise's
   std::string save_volume;
   std::string csv;  // empty: none
   std::string out;
@@ -90,10 +90,10 @@ int importStructuresCommand(const StructureImportArguments& arguments, bool json
 int exportStructuresCommand(const StructureExportArguments& arguments, bool json, const Progress&);
 int phantomCommand(const std::string& name, const std::string& out, bool json, const Progress&);
 int importCommand(const ImportArguments& arguments, bool json, const Progress&);
-// `policy`: what the workstation locks is not changed by an argument, nor by a scene.
+// `policy`: what the workstation locks is not changed by an argument, nor by an exercise.
 int runCommand(const RunArguments& arguments, const Policy& policy, bool json, const Progress&);
 int pinCommand(bool json, const Progress&);
-int exportExerciseCommand(const std::string& scene, const std::string& case_source,
+int exportExerciseCommand(const std::string& exercise, const std::string& case_source,
                           const std::string& out, bool json, const Progress&);
 // Where the window keeps its cases: `given`, or where that is empty the workstation's folder, else
 // the user's own data. Errors: NO_STORAGE, and why the workstation's settings cannot be read.
@@ -116,7 +116,7 @@ int replayCommand(const std::string& file, const std::string& case_source,
                   const std::string& labels, bool json, const Progress&);
 // A row for each file as soon as it is read. 1 where one cannot be replayed.
 int recordingsCommand(const std::vector<std::string>& files, bool json, const Progress&);
-int explainCommand(const std::string& scene, const Policy& policy, bool json, const Progress&);
+int explainCommand(const std::string& exercise, const Policy& policy, bool json, const Progress&);
 int measureUploadCommand(bool json, const Progress&);
 int measureStabilityCommand(const StabilityArguments& arguments, bool json, const Progress&);
 int measureExtremesCommand(const std::string& case_source, const std::string& out, bool json,

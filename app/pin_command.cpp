@@ -9,7 +9,7 @@
 #include "app/answer.h"
 #include "app/lab_commands.h"
 #include "base/pin.h"
-#include "scene/policy.h"
+#include "exercise/policy.h"
 
 namespace trephine {
 

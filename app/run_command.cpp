@@ -9,11 +9,11 @@
 #include "base/file.h"
 #include "base/log.h"
 #include "case/placement.h"
+#include "exercise/arms_file.h"
+#include "exercise/exercise_numbers.h"
+#include "exercise/names.h"
 #include "lab/exercise/exercise_picture.h"
 #include "library/name_words.h"
-#include "scene/arms_file.h"
-#include "scene/names.h"
-#include "scene/scene_numbers.h"
 #include "session/arm_devices.h"
 #include "session/session.h"
 #include "training/tick_table.h"
@@ -30,34 +30,35 @@ Error locked(const std::string& what, const char* option) {
           "Leave the option away"};
 }
 
-// Puts the command line's choices into the scene.
-Status applyChoices(const RunArguments& arguments, const Policy& policy, Scene& scene, Rig& rig) {
-  const Locks locks = locksOf(policy, scene);
-  const bool other_rate = arguments.rate_hz.value_or(scene.rate_hz) != scene.rate_hz;
+// Puts the command line's choices into the exercise.
+Status applyChoices(const RunArguments& arguments, const Policy& policy, Exercise& exercise,
+                    Rig& rig) {
+  const Locks locks = locksOf(policy, exercise);
+  const bool other_rate = arguments.rate_hz.value_or(exercise.rate_hz) != exercise.rate_hz;
   const bool other_controller =
-      !arguments.controller.empty() && arguments.controller != controllerName(scene.controller);
+      !arguments.controller.empty() && arguments.controller != controllerName(exercise.controller);
   if (other_rate && locks.contains(Lock::rate)) return locked("the rate", "--rate");
   if (other_controller && locks.contains(Lock::controller)) {
     return locked("the controller", "--controller");
   }
-  if (!arguments.case_source.empty()) scene = onCase(std::move(scene), arguments.case_source);
-  if (!arguments.labels.empty()) scene.labels_file = arguments.labels;
-  if (arguments.rate_hz) scene.rate_hz = *arguments.rate_hz;
-  if (!(scene.rate_hz >= 100.0 && scene.rate_hz <= 20000.0)) {
+  if (!arguments.case_source.empty()) exercise = onCase(std::move(exercise), arguments.case_source);
+  if (!arguments.labels.empty()) exercise.labels_file = arguments.labels;
+  if (arguments.rate_hz) exercise.rate_hz = *arguments.rate_hz;
+  if (!(exercise.rate_hz >= 100.0 && exercise.rate_hz <= 20000.0)) {
     return Error{"BAD_ARGUMENT", "The rate must lie between 100 and 20000 Hz", "--rate", ""};
   }
   if (!arguments.arms_file.empty()) {
     Result<std::vector<NamedDevice>> arms = readArmsFile(arguments.arms_file);
     if (!arms) return arms.error();
-    Result<Rig> moved = rigWith(scene, *arms, arguments.arms_file);
+    Result<Rig> moved = rigWith(exercise, *arms, arguments.arms_file);
     if (!moved) return moved.error();
     rig = *std::move(moved);
     Rig asked = rig;  // what is not there is said before a case is opened
-    if (Status there = readArmDynamics(scene, asked); !there) return there;
+    if (Status there = readArmDynamics(exercise, asked); !there) return there;
   }
   if (arguments.controller.empty()) return {};
   if (const auto kind = kindOf(kControllerNames, arguments.controller)) {
-    scene.controller = *kind;
+    exercise.controller = *kind;
     return {};
   }
   return Error{"BAD_ARGUMENT", "There is no controller '" + arguments.controller + "'",
@@ -156,19 +157,19 @@ bool isOfThisMachine(const Error& error) {
 // Runs the exercise and leaves its files in `out`. The Error is of a run that took no step.
 Result<RunOutcome> runExercise(const RunArguments& arguments, const Policy& policy,
                                const Progress& progress) {
-  Result<Scene> scene = readScene(arguments.scene);
-  if (!scene) return scene.error();
-  if (Status may = checkScene(policy, *scene, arguments.scene); !may) return may.error();
+  Result<Exercise> exercise = readExercise(arguments.exercise);
+  if (!exercise) return exercise.error();
+  if (Status may = checkExercise(policy, *exercise, arguments.exercise); !may) return may.error();
   SessionOptions options;
-  if (Status chosen = applyChoices(arguments, policy, *scene, options.rig); !chosen) {
+  if (Status chosen = applyChoices(arguments, policy, *exercise, options.rig); !chosen) {
     return chosen.error();
   }
   const std::string script_file =
-      arguments.operator_file.empty() ? scene->operator_file : arguments.operator_file;
+      arguments.operator_file.empty() ? exercise->operator_file : arguments.operator_file;
   if (!script_file.empty()) {
-    Result<OperatorScript> script = readOperatorScript(script_file, *scene);
+    Result<OperatorScript> script = readOperatorScript(script_file, *exercise);
     if (!script) return script.error();
-    if (Status may = checkLocks(*script, locksOf(policy, *scene)); !may) return may.error();
+    if (Status may = checkLocks(*script, locksOf(policy, *exercise)); !may) return may.error();
     options.script = *std::move(script);
   }
   const double seconds =
@@ -187,7 +188,7 @@ Result<RunOutcome> runExercise(const RunArguments& arguments, const Policy& poli
   options.recording = freshFile(out, "session", ".h5");
   if (Status can = checkRunTargets(arguments, options.recording); !can) return can.error();
 
-  Result<Placement> of = openCase(*scene, progress, hideNamesOf);
+  Result<Placement> of = openCase(*exercise, progress, hideNamesOf);
   if (!of) return of.error();
   Result<std::unique_ptr<Session>> session = Session::create(*of, options);
   // Another run may have taken the name meanwhile.
@@ -201,7 +202,7 @@ Result<RunOutcome> runExercise(const RunArguments& arguments, const Policy& poli
 
   // A real arm keeps the clock's pace, and so does what runs with it.
   bool realtime = arguments.realtime;
-  for (std::size_t i = 0; i < scene->arms.size(); ++i) {
+  for (std::size_t i = 0; i < exercise->arms.size(); ++i) {
     realtime = realtime || !(*session)->isSimulated(i);
   }
   const Status ran = realtime ? runRealTime(**session, seconds, progress)

@@ -34,7 +34,7 @@ void reportCrashes(const std::filesystem::path& folder) {
   if (!begun) spdlog::warn("A crash would leave no report: {}", begun.error().code);
 }
 
-int exercise(const ExerciseOptions& options, bool json) {
+int playExercise(const ExerciseOptions& options, bool json) {
   const OutFolder folder(options.out);
   Result<ExerciseOutcome> outcome = runExercise(options, progress);
   if (!outcome) return printError("exercise", outcome.error(), json);
@@ -43,7 +43,7 @@ int exercise(const ExerciseOptions& options, bool json) {
 
 int run(int argc, char** argv) {
   const Policy policy = policyAtStart();
-  std::string path, scene, out, arms;
+  std::string path, exercise, out, arms;
   double seconds = 0.0;
   bool json = false;
   CLI::App cli("Trephine: practise cutting on a CT, with both hands. " +
@@ -52,7 +52,7 @@ int run(int argc, char** argv) {
   auto* path_option =
       cli.add_option("path", path, "A folder of CT, a scene (.json) or a recording (.h5)");
   auto* exercise_option =
-      cli.add_option("--exercise", scene, "Play this scene's script in the window, then end");
+      cli.add_option("--exercise", exercise, "Play this scene's script in the window, then end");
   cli.add_option("--seconds", seconds, "How long; as long as the script where absent")
       ->check(CLI::Range(0.001, kLongest_s))
       ->needs(exercise_option);
@@ -69,17 +69,17 @@ int run(int argc, char** argv) {
                       wantsJson(argc, argv));
   }
 
-  setUpLog(!scene.empty());
+  setUpLog(!exercise.empty());
   if (policy.problem) spdlog::warn("{}", policy.problem->sentence());
   const auto crashes = stateFolder();
   if (crashes) reportCrashes(*crashes);
   prepareMemory();
   const Status display = prepareDisplay();
-  const bool can_say = scene.empty() && !display && display.error().code != "NO_DISPLAY";
+  const bool can_say = exercise.empty() && !display && display.error().code != "NO_DISPLAY";
   if (!display) printError("exercise", display.error(), json);
   if (!display && !can_say) return 1;
   std::unique_ptr<QApplication> application;
-  if (scene.empty()) {
+  if (exercise.empty()) {
     application = std::make_unique<QApplication>(argc, argv);
   } else {
     application = std::make_unique<TimedApplication>(argc, argv);
@@ -89,8 +89,8 @@ int run(int argc, char** argv) {
   const colours::Theme theme =
       read(settings::kTheme) == "light" ? colours::Theme::light : colours::Theme::dark;
   colours::applyTheme(*application, theme, readWithin(settings::kTextScale, 80, 200));
-  if (!scene.empty()) {
-    ExerciseOptions options{scene, arms, {}, out, policy};
+  if (!exercise.empty()) {
+    ExerciseOptions options{exercise, arms, {}, out, policy};
     if (seconds > 0.0) options.seconds = seconds;
     if (out.empty()) {
       const Result<std::filesystem::path> temporary = temporaryFolder();
@@ -99,7 +99,7 @@ int run(int argc, char** argv) {
       if (!::mkdtemp(folder.data())) return printError("exercise", writeError(folder, errno), json);
       options.out = folder;
     }
-    return exercise(options, json);
+    return playExercise(options, json);
   }
   QTimer poll;
   QObject::connect(&poll, &QTimer::timeout, [] {

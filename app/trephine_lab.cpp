@@ -62,7 +62,7 @@ int run(int argc, char** argv) {
   import_command->add_option("--report", wanted.report, "Save the report card as a page (.html)");
 
   auto* run_command = with_json(app.add_subcommand("run", "Run an exercise with a scripted operator"));
-  run_command->add_option("scene", arguments.scene, "A scene file")->required();
+  run_command->add_option("scene", arguments.exercise, "A scene file")->required();
   run_command->add_option("--case", arguments.case_source,
                           "A folder of CT, a volume file, phantom:cranium or phantom:abdomen");
   run_command->add_option("--labels", arguments.labels, "The case's label map, a volume file");

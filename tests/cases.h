@@ -1,5 +1,5 @@
-// Voxels of a test as a case that is placed in a scene. Nothing is counted as failed here: a case
-// that does not fit says so when it is used.
+// Voxels of a test as a case that is placed in an exercise. Nothing is counted as failed here: a
+// case that does not fit says so when it is used.
 #pragma once
 
 #include <memory>
@@ -9,11 +9,11 @@
 
 namespace trephine::test {
 
-inline Placement placed(const Scene& scene, Volume volume,
+inline Placement placed(const Exercise& exercise, Volume volume,
                         std::shared_ptr<const LabelMap> labels = nullptr) {
   Case of = caseOf(std::make_shared<const Volume>(std::move(volume)));
   of.structures = std::move(labels);
-  return *place(scene, std::move(of));
+  return *place(exercise, std::move(of));
 }
 
 }  // namespace trephine::test

@@ -28,7 +28,7 @@ Result<Json> parseJson(std::string_view text, const std::string& file,
 // most kMostWrittenBytes. Errors: MISSING_FILE, also for what is no regular file (a pipe could keep
 // its reader waiting for ever), BAD_JSON for a larger one, and those of parseJson.
 constexpr std::size_t kMostJsonBytes = std::size_t{64} << 20;
-// Of a scene, a tool, a tissue set: what a person writes. Read in 0.1 s.
+// Of an exercise, a tool, a tissue set: what a person writes. Read in 0.1 s.
 constexpr std::size_t kMostWrittenBytes = std::size_t{4} << 20;
 Result<Json> readJsonFile(const std::filesystem::path& file, const Progress& progress = Progress(),
                           std::size_t most_bytes = kMostJsonBytes);

@@ -10,7 +10,7 @@ namespace trephine {
 // "0.1.0 Release": version and build type, in every answer under --json.
 std::string buildName();
 
-// Where scenes, tissues and devices are, ../share/trephine from the program's folder; the
+// Where exercises, tissues and devices are, ../share/trephine from the program's folder; the
 // environment's TREPHINE_RESOURCES comes first.
 std::filesystem::path resourceFolder();
 // Where device plugins are, ../lib/trephine/plugins; the environment's TREPHINE_PLUGINS comes

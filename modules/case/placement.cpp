@@ -4,7 +4,7 @@
 #include <iterator>
 #include <utility>
 
-#include "scene/scene_structures.h"
+#include "exercise/exercise_structures.h"
 
 namespace trephine {
 
@@ -13,15 +13,16 @@ namespace {
 constexpr double kReadShare = 0.9;  // of the work of opening; the rest is finding landmarks
 
 // Where the case shows something else than the exercise is for.
-std::optional<Warning> anatomyWarning(const Scene& scene, const std::optional<Anatomy>& anatomy) {
+std::optional<Warning> anatomyWarning(const Exercise& exercise,
+                                      const std::optional<Anatomy>& anatomy) {
   if (!anatomy || anatomy->region == BodyRegion::not_sure) return {};
   const std::string shown = bodyRegionName(anatomy->region);
-  if (scene.anatomy != exerciseAnatomy(anatomy->region)) {
-    const bool known = scene.anatomy == "cranium" || scene.anatomy == "abdomen";
+  if (exercise.anatomy != exerciseAnatomy(anatomy->region)) {
+    const bool known = exercise.anatomy == "cranium" || exercise.anatomy == "abdomen";
     if (!known) return {};
     return Warning{"OTHER_ANATOMY", "The case shows " +
                                         std::string(shown == "head" ? "a " : "an ") + shown +
-                                        ", and the exercise is for the " + scene.anatomy};
+                                        ", and the exercise is for the " + exercise.anatomy};
   }
   if (anatomy->region == BodyRegion::head && !anatomy->vault) {
     return Warning{"NO_VAULT",
@@ -31,10 +32,10 @@ std::optional<Warning> anatomyWarning(const Scene& scene, const std::optional<An
   return {};
 }
 
-// Where the rays of a scene's landmarks meet the body, whatever it is of.
-Result<std::vector<PlacedLandmark>> onBody(const Scene& scene, const Volume& volume,
+// Where the rays of an exercise's landmarks meet the body, whatever it is of.
+Result<std::vector<PlacedLandmark>> onBody(const Exercise& exercise, const Volume& volume,
                                            const Progress& progress) {
-  Scene on_body = scene;
+  Exercise on_body = exercise;
   for (Landmark& landmark : on_body.landmarks) landmark.tissue.clear();
   auto placed = placeLandmarks(on_body, volume, nullptr, progress);
   if (placed || placed.error().code == "CANCELLED") return placed;
@@ -51,17 +52,17 @@ Result<std::vector<PlacedLandmark>> onBody(const Scene& scene, const Volume& vol
   return placeLandmarks(on_body, volume, nullptr, progress);
 }
 
-// The scene's landmarks. Where one has no place in the case: where their rays meet the body, and a
-// warning says so, for an exercise is no dead end.
-Result<std::vector<PlacedLandmark>> landmarksIn(const Scene& scene, Placement& of,
+// The exercise's landmarks. Where one has no place in the case: where their rays meet the body, and
+// a warning says so, for an exercise is no dead end.
+Result<std::vector<PlacedLandmark>> landmarksIn(const Exercise& exercise, Placement& of,
                                                 const Progress& progress) {
   const Volume& volume = *of.patient.volume;
-  auto placed = placeLandmarks(scene, volume, of.labels.get(), progress);
+  auto placed = placeLandmarks(exercise, volume, of.labels.get(), progress);
   if (placed) return placed;
   const std::string& code = placed.error().code;
   if (code != "NO_SURFACE" && code != "TISSUE_NOT_FOUND") return placed;
   if (std::ranges::min(volume.geometry.size) < 2) return placed;  // one slice is no body
-  auto surface = onBody(scene, volume, progress);
+  auto surface = onBody(exercise, volume, progress);
   if (!surface) return surface.error().code == "CANCELLED" ? surface : placed;
   of.warnings.push_back({"NO_LANDMARK", "The place where the exercise begins is not in the case (" +
                                             placed.error().what +
@@ -70,7 +71,7 @@ Result<std::vector<PlacedLandmark>> landmarksIn(const Scene& scene, Placement& o
 }
 
 // With the tissues in force, and their labels.
-Scene withTissuesOf(Scene exercise, const Placement& in) {
+Exercise withTissuesOf(Exercise exercise, const Placement& in) {
   if (in.elsewhere && exercise.tissues_elsewhere) {
     exercise.tissues = *std::exchange(exercise.tissues_elsewhere, {});
   }
@@ -80,21 +81,21 @@ Scene withTissuesOf(Scene exercise, const Placement& in) {
 
 }  // namespace
 
-Scene placedScene(const Scene& exercise, const Placement& in) {
-  Scene scene = withTissuesOf(exercise, in);
-  return in.error ? scene : withFixedMaps(scene, in.landmarks);
+Exercise placedExercise(const Exercise& exercise, const Placement& in) {
+  Exercise here = withTissuesOf(exercise, in);
+  return in.error ? here : withFixedMaps(here, in.landmarks);
 }
 
-Result<Placement> place(const Scene& exercise, Case patient, const Progress& progress,
+Result<Placement> place(const Exercise& exercise, Case patient, const Progress& progress,
                         const NameHider& hide) {
   progress.at(0.0, "Finding landmarks");
   Placement placed;
   placed.patient = std::move(patient);
-  placed.scene = exercise;
+  placed.exercise = exercise;
   Case& of = placed.patient;
   const auto failed = [&](const Error& why) {
     placed.error = why;
-    placed.scene = placedScene(exercise, placed);
+    placed.exercise = placedExercise(exercise, placed);
     return std::move(placed);
   };
   if (!exercise.labels_file.empty() && (!of.structures || of.structures_built_in)) {
@@ -118,11 +119,12 @@ Result<Placement> place(const Scene& exercise, Case patient, const Progress& pro
     return failed(landmarks.error());
   }
   placed.landmarks = *std::move(landmarks);
-  placed.scene = placedScene(exercise, placed);
+  placed.exercise = placedExercise(exercise, placed);
   return placed;
 }
 
-Result<Placement> openCase(const Scene& exercise, const Progress& progress, const NameHider& hide) {
+Result<Placement> openCase(const Exercise& exercise, const Progress& progress,
+                           const NameHider& hide) {
   Result<Case> read = readCase(exercise.case_source, Progress(progress, 0.0, kReadShare));
   if (!read) return read.error();
   return place(exercise, *std::move(read), Progress(progress, kReadShare, 1.0), hide);

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "case/case.h"
-#include "scene/scene.h"
+#include "exercise/exercise.h"
 
 namespace trephine {
 
@@ -15,7 +15,7 @@ struct Placement {
   Case patient;
   // The exercise as it runs there: the tissues in force with the labels of the case's structures,
   // maps fixed, the outline in the patient.
-  Scene scene;
+  Exercise exercise;
   bool elsewhere = false;  // in force are its tissues for cases that lack a structure
   // The case's structures and the shells that tissues ask for; null: none.
   std::shared_ptr<const LabelMap> labels;
@@ -31,15 +31,15 @@ struct Placement {
 // landmarks are where their rays meet the body, with the warning NO_LANDMARK. Error: CANCELLED; all
 // others are `Placement::error`. `hide` as of withLabels(). Any thread; takes a second on a large
 // case.
-Result<Placement> place(const Scene& exercise, Case patient, const Progress& progress = Progress(),
-                        const NameHider& hide = {});
+Result<Placement> place(const Exercise& exercise, Case patient,
+                        const Progress& progress = Progress(), const NameHider& hide = {});
 
 // The exercise's own case, with the exercise placed in it. Errors: those of readCase() and place().
-Result<Placement> openCase(const Scene& exercise, const Progress& progress = Progress(),
+Result<Placement> openCase(const Exercise& exercise, const Progress& progress = Progress(),
                            const NameHider& hide = {});
 
-// `Placement::scene` of an exercise that was edited since, with the labels and landmarks that were
-// found. Pure.
-Scene placedScene(const Scene& exercise, const Placement& in);
+// `Placement::exercise` of an exercise that was edited since, with the labels and landmarks that
+// were found. Pure.
+Exercise placedExercise(const Exercise& exercise, const Placement& in);
 
 }  // namespace trephine

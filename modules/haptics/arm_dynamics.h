@@ -28,7 +28,7 @@ constexpr Range kDelay_s{0, 0.16, "s"};
 // The delay in periods; one that is whole but for rounding is whole.
 double delaySamples(const ArmDynamics& arm, double period_s);
 
-// Those that a recording keeps; the peak force is the scene's `max_force_N`.
+// Those that a recording keeps; the peak force is the exercise's `max_force_N`.
 inline constexpr NumberOf<ArmDynamics> kArmDynamicsNumbers[] = {
     {{"apparent_mass_kg", kApparentMass_kg, Given::always, "at the tip"},
      &ArmDynamics::apparent_mass_kg},

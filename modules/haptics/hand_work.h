@@ -19,19 +19,19 @@ namespace trephine {
 class HandWork {
  public:
   // Of the period in which `sent_N` acted (device), the arm moving by `moved_m`.
-  void move(const Vec3& sent_N, const Vec3& moved_m, double device_per_model) {
+  void addDeviceWork(const Vec3& sent_N, const Vec3& moved_m, double device_per_model) {
     if (device_per_model > 0.0) done_J_ -= glm::dot(sent_N, moved_m) / (device_per_model * share_);
     shown_ = sent_N != Vec3(0.0);
   }
-  // What the model takes from the same motion, in its own units; once move() was called.
-  void take(double model_J) {
+  // What the model takes from the same motion, in its own units; once addDeviceWork() was called.
+  void addModelWork(double model_J) {
     if (shown_) taken_J_ += model_J;
   }
   // What the springs hold now [J], the share of the model that is rendered in the next period, and
   // the motor's work in this one. Returns by how much D now exceeds its maximum so far, or 0. What
   // an arm gave out, or a spring came to hold without work of the hand, comes off the motor's work
   // too.
-  double hold(double stored_J, double share, double motor_J = 0.0) {
+  double endTick(double stored_J, double share, double motor_J = 0.0) {
     // What the springs hold at first is no work of the hand.
     if (!started_) done_J_ = taken_J_ = most_lost_J_ - motor_J_ + stored_J;
     started_ = true;

@@ -43,7 +43,7 @@ HapticCore::Arm::Arm(const ArmParameters& arm, const HapticParameters& all,
     controllers.push_back(makeController(kind, arm.dynamics, all.period_s));
   }
   controller = controllers[std::size_t(all.controller)];
-  scene_map = arm.map;
+  exercise_map = arm.map;
   removed.reserve(Removal::kMostVoxels);
   removed_indices.reserve(Removal::kMostVoxels);
 }
@@ -174,7 +174,7 @@ void HapticCore::apply(const Command& command, std::uint64_t tick) {
     case CommandKind::reset: {
       const bool restores = journal_.startReset(credits());
       for (std::size_t i = 0; i < arms_.size(); ++i) {
-        arms_[i].wanted = 0;  // the scene's, at once where the tool waits for air anyhow
+        arms_[i].wanted = 0;  // the exercise's, at once where the tool waits for air anyhow
         if (restores && arms_[i].in_hand != 0) takeTool(i, tick);
       }
       if (restores) forgetForces(true);

@@ -104,8 +104,8 @@ class HapticCore {
     // A new map that this command asks for, made with the arm's next sample.
     CommandKind remap = CommandKind::none;
     std::optional<Quat> turn_to;  // of the map
-    bool as_scene = false;        // the map, wherever the arm is
-    WorkspaceMap scene_map;
+    bool as_exercise = false;        // the map, wherever the arm is
+    WorkspaceMap exercise_map;
     HandWork work;
     Vec3 last_model_N{0.0};     // demanded in the tick before, patient axes
     Vec3 last_elastic_Nm{0.0};  // of the rendered springs in the tick before, patient axes

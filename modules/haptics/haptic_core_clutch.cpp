@@ -23,7 +23,7 @@ void HapticCore::releaseArm(const Command& command) {
     if (command.kind == CommandKind::clutch_off && !arm.clutched) return;
     arm.remap = command.kind;
     arm.turn_to.reset();
-    arm.as_scene = command.kind == CommandKind::recentre && command.value == 1;
+    arm.as_exercise = command.kind == CommandKind::recentre && command.value == 1;
     if (command.value == 1 && isRotation(command.rotation)) arm.turn_to = command.rotation;
     return;
   }
@@ -64,9 +64,9 @@ void HapticCore::recentreArm(ArmTick& now, const Pose& device_m) {
   WorkspaceMap& map = parameters_.arms[now.index].map;
   arm.remap = CommandKind::none;
   arm.clutched = false;
-  map = arm.scene_map;
-  if (!arm.as_scene) {
-    map.centre_mm += arm.scene_map.centre_mm - map.toPatient_mm(device_m).position;
+  map = arm.exercise_map;
+  if (!arm.as_exercise) {
+    map.centre_mm += arm.exercise_map.centre_mm - map.toPatient_mm(device_m).position;
   }
   arm.limiter.engage();
   forgetForce(arm, true);

@@ -138,7 +138,7 @@ bool HapticCore::sample(ArmTick& now) {
   }
   now.jumped = glm::length(motion.velocity_m_s) > Removal::kFastest_m_s;
   if (!now.jumped) {
-    arm.work.move(arm.limiter.sent_N(), moved_m, map.force_scale / map.motion_scale);
+    arm.work.addDeviceWork(arm.limiter.sent_N(), moved_m, map.force_scale / map.motion_scale);
   }
   arm.last_pose = pose;
   return true;
@@ -262,11 +262,12 @@ void HapticCore::giveWork(ArmTick& now) {
   const double motor_J = at_work ? T * arm.tool().made.made_from.motor_W : 0.0;
   if (now.finite && !now.jumped) {
     // By the model's own force, the mean of both ends of the period.
-    arm.work.take(-0.5 * T * glm::dot(arm.last_model_N + now.model_N, now.motion.velocity_m_s));
+    arm.work.addModelWork(-0.5 * T *
+                          glm::dot(arm.last_model_N + now.model_N, now.motion.velocity_m_s));
   }
   arm.last_model_N = now.finite ? now.model_N : Vec3(0.0);
   const double more_J =
-      now.finite ? arm.work.hold(now.stored_J, now.out.rendered_share, motor_J) : 0.0;
+      now.finite ? arm.work.endTick(now.stored_J, now.out.rendered_share, motor_J) : 0.0;
   arm.tool().removal.giveWork(at_work && !now.jumped ? more_J : 0.0, arm.work.lost_J(),
                               parameters_.tissues);
 }

@@ -17,8 +17,8 @@ bool HapticCore::wouldTouch(const ArmTool& tool, const Pose& pose_mm) const {
   return tool.contact.wouldTouch(writer_.grid(), *bricks_, lookup_, pose_mm);
 }
 
-// The tool's pose in this tick. Where the scene has no elastic law it is the arm's. In a pause or a
-// fault it only moves through air.
+// The tool's pose in this tick. Where the exercise has no elastic law it is the arm's. In a pause
+// or a fault it only moves through air.
 void HapticCore::moveProxy(ArmTick& now) {
   Arm& arm = now.arm;
   ArmTool& tool = arm.tool();

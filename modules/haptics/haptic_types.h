@@ -47,7 +47,7 @@ enum class CommandKind : std::int32_t {
   rewind,
   // Of one arm. Clutched, it moves without force, and its tool stays where it is. Off again, its
   // map is set so that the tool stays there; re-centred, so that the arm, where it is, is where the
-  // scene puts its device's origin, or as the scene has it.
+  // exercise puts its device's origin, or as the exercise has it.
   clutch_on,
   clutch_off,
   recentre,
@@ -64,7 +64,7 @@ struct Command {
   CommandKind kind = CommandKind::none;
   // controller: a ControllerKind; rewind: to this second of the session; clutch_off: 1, the map
   // turns to `rotation`, device axes to patient axes; 0, it keeps its own; recentre: 1, the map is
-  // the scene's, of a hand that goes back by itself; tool: which of the arm's (ArmParameters).
+  // the exercise's, of a hand that goes back by itself; tool: which of the arm's (ArmParameters).
   std::int32_t value = 0;
   TissueTable tissues{};   // tissues: the new table
   std::int32_t arm = -1;   // clutch_on and what comes after it

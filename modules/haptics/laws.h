@@ -1,5 +1,5 @@
-// The force laws that a scene can name. Each is a small type in its own file under laws/ with one
-// signature, created only when the scene names it:
+// The force laws that an exercise can name. Each is a small type in its own file under laws/ with
+// one signature, created only when the exercise names it:
 //
 //   explicit Law(points)                       room for a tool of so many points
 //   void add(const LawInput&, ContactForce&)   adds its force on the arm; nothing without contact
@@ -85,8 +85,8 @@ constexpr std::array<LawOfTissue, sizeof...(Laws)> lawsOfTissue(const std::varia
 
 inline constexpr auto kLawsOfTissue = detail::lawsOfTissue(static_cast<const Law*>(nullptr));
 
-// Whether a law acts in a tissue, in a scene that names these laws: it is one of them, and none of
-// the others stands in for it there.
+// Whether a law acts in a tissue, in an exercise that names these laws: it is one of them, and none
+// of the others stands in for it there.
 inline bool acts(const std::vector<LawKind>& laws, LawKind law, const TissueClass& tissue) {
   const auto standsIn = [&](LawKind other) {
     const LawOfTissue& of = kLawsOfTissue[std::size_t(other)];

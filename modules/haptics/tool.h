@@ -20,7 +20,7 @@ constexpr Range kToolMotor_W{0, 500, "W"};
 constexpr Range kToolPoints{1, 10'000};
 constexpr Range kToolShaftPoints{0, 1000};
 
-// What a scene or a tool file says of a tool, in the millimetres of files.
+// What an exercise or a tool file says of a tool, in the millimetres of files.
 struct ToolDescription {
   ToolKind kind = ToolKind::needle;
   double length_mm = 0.0;  // needle: drawn; blade: its edge; burr: with its shaft
@@ -63,10 +63,10 @@ struct Tool {
 // A needle of one point touches with its tip alone; more of them lie evenly along its length.
 Tool makeNeedle(double length_m, int count = 1);
 
-// Seed paper, eqs. 2-4: the blade is the line from the tip along (u, v, w), and point k of i lies at
-// t_k = (k / i) L / |(u, v, w)|, k = 0..i. (The paper prints the square of the root; with the unit
-// vector along the tool both readings agree.) `count` points: i = count - 1. The weights are those
-// of the trapezoidal rule, so that the sum of point forces goes to the line integral.
+// Seed paper, eqs. 2-4: the blade is the line from the tip along (u, v, w), and point k of i lies
+// at t_k = (k / i) L / |(u, v, w)|, k = 0..i. (The paper prints the square of the root; with the
+// unit vector along the tool both readings agree.) `count` points: i = count - 1. The weights are
+// those of the trapezoidal rule, so that the sum of point forces goes to the line integral.
 Tool makeBlade(double length_m, int count);
 
 // A sphere (or a rod with round ends) that cuts, its shell evenly covered with points, and a shaft.

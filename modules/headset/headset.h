@@ -1,5 +1,5 @@
 // A head-mounted display through OpenXR, on a thread of its own: it owns every handle of OpenXR and
-// an OpenGL context that shares the window's textures. It knows no scene: it says where the eyes
+// an OpenGL context that shares the window's textures. It knows no exercise: it says where the eyes
 // are and shows what it is given. The window's thread never waits for it, and what hangs in the
 // headset's software holds up nobody.
 //

@@ -1,5 +1,5 @@
 // The window's side of the exchange: textures to draw into, and fences between the two threads. Who
-// draws is asked; this knows no scene. The window's thread, with its OpenGL context current.
+// draws is asked; this knows no exercise. The window's thread, with its OpenGL context current.
 #pragma once
 
 #include <functional>

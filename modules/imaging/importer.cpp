@@ -284,7 +284,7 @@ Status roomToRead(const SeriesReport& series, const ImportRequest& request) {
 struct Reading {
   int slices_used = 0;  // of DICOM
   SourceIds ids;
-  HuLook look;
+  HuSanityCheck look;
 };
 
 // Of slices that are one scan; what they do not agree on stays empty.
@@ -615,7 +615,7 @@ Result<Volume> CtFolder::read(const std::string& uid, const ImportRequest& reque
   report.chosen.reset();
   report.provenance.reset();
   const auto fail = [&](const Error& error) {
-    conclude(source->series);
+    assignVerdict(source->series);
     contents_->publish(*source);
     if (error.code != "CANCELLED") report.error = error;
     return error;
@@ -670,7 +670,7 @@ Result<Volume> CtFolder::read(const std::string& uid, const ImportRequest& reque
   }
   if (!stepped) return fail(stepped.error());
   report.seconds.read = secondsSince(start);
-  conclude(source->series);
+  assignVerdict(source->series);
   series.geometry = volume->geometry;
 
   progress.at(0.95, "Checking");

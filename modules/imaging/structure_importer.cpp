@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <utility>
 
+#include "imaging/common/text.h"
 #include "imaging/dicom/seg_reader.h"
 #include "imaging/report/answers.h"
 #include "volume/grid_place.h"
@@ -35,8 +37,9 @@ bool liesOn(const GridGeometry& of, const GridGeometry& ct) {
 }
 
 // A choice about where the file belongs, as those of fitStructures().
+// `answered` with "keep" by request, or `open`, which is the Error then.
 Status match(const DicomSegmentation& seg, const Volume& ct, const StructureRequest& request,
-             std::optional<Choice>& asked) {
+             std::optional<Choice>& answered, std::optional<Choice>& open) {
   const SourceIds &of = seg.of, &to = request.ct;
   if (to.unreadable) {
     if (liesOn(seg.segmentation.geometry, ct.geometry)) return {};
@@ -68,17 +71,20 @@ Status match(const DicomSegmentation& seg, const Volume& ct, const StructureRequ
   const auto given = request.answers.find(choice.code);
   const bool keep = given != request.answers.end() ? given->second == "keep" : !request.ask_all;
   if (!keep) {
-    return Error{choice.code, choice.question, "the segmentation",
-                 "Choose another file, or answer OTHER_FRAME=keep"};
+    const Error refused{choice.code, choice.question, "the segmentation",
+                        "Choose another file, or answer OTHER_FRAME=keep"};
+    if (given == request.answers.end()) open = std::move(choice);
+    return refused;
   }
-  asked = std::move(choice);
+  answered = std::move(choice);
   return {};
 }
 
 // Of a label map that says in two ways how it lies in the patient (volume_files.h): what was
-// answered, else the one that puts it on the CT's voxels. Empty: none of them alone does.
+// answered, else the one that puts it on the CT's voxels. Empty: none of them alone does, and the
+// choice is `open`.
 std::string formOf(const std::filesystem::path& file, const Volume& ct, const Answers& answers,
-                   std::optional<Finding>& said) {
+                   std::optional<Finding>& said, std::optional<Choice>& open) {
   constexpr const char* kCode = "FORMS_DIFFER";
   constexpr double kSame = 0.1;  // of a voxel
   if (const std::string given = answerTo(answers, kCode); !given.empty()) return given;
@@ -93,7 +99,11 @@ std::string formOf(const std::filesystem::path& file, const Volume& ct, const An
     least_mm = apart_mm;
     nearest = form.name;
   }
-  if (nearest.empty()) return "";
+  if (nearest.empty()) {
+    open = Choice{kCode, header->contradiction, {"refuse"}, {}};
+    for (const VolumeFileHeader::Form& form : header->forms) open->options.push_back(form.name);
+    return "";
+  }
   said = Finding{kCode,
                  "notice",
                  header->contradiction,
@@ -131,38 +141,84 @@ void sayHidden(StructureFit& fit, int hidden) {
 
 }  // namespace
 
-Result<StructureFit> importStructures(const std::filesystem::path& file, const Volume& ct,
-                                      const StructureRequest& request, const Progress& progress) {
-  const Progress reading(progress, 0.0, 0.5), fitting(progress, 0.5, 1.0);
-  const std::string kind = dicomKind(file, reading);
-  if (reading.cancelled()) {
+struct StructureFile::Read {
+  std::filesystem::path file;
+  std::optional<std::string> kind;  // dicomKind()
+  // What was read, and for which answer.
+  std::optional<DicomSegmentation> dicom;
+  double threshold = 0.0;
+  std::optional<Segmentation> map;
+  std::string form;
+
+  Status readKind(const Progress& progress);
+  Status readMap(const std::string& with_form, const Progress& progress);
+  Status readDicom(double with_threshold, const Progress& progress);
+  Result<StructureFit> fitMap(const Volume& ct, const StructureRequest& request,
+                              std::optional<Choice>& open, const Progress& progress);
+  Result<StructureFit> fitDicom(const Volume& ct, const StructureRequest& request,
+                                std::optional<Choice>& open, const Progress& progress);
+};
+
+Status StructureFile::Read::readKind(const Progress& progress) {
+  if (kind) return {};
+  std::string found = dicomKind(file, progress);
+  if (progress.cancelled()) {
     return Error{"CANCELLED", "Reading the segmentation was cancelled", "", ""};
   }
-  if (!isSegmentation(kind)) {
-    if (!kind.empty()) return noSegmentation(kind, file);
-    std::optional<Finding> form;
-    Result<Segmentation> read =
-        readSegmentation(file, reading, formOf(file, ct, request.answers, form));
-    if (!read) return read.error();
-    const int hidden = hideNames(*read, request);
-    Result<StructureFit> fit =
-        fitStructures(*std::move(read), ct, request.answers, request.ask_all, fitting);
-    if (fit && form) fit->findings.push_back(*std::move(form));
-    if (fit) sayHidden(*fit, hidden);
-    return fit;
-  }
-  Result<DicomSegmentation> read = readDicomSegmentation(file, request.threshold, reading);
+  kind = std::move(found);
+  return {};
+}
+
+Status StructureFile::Read::readMap(const std::string& with_form, const Progress& progress) {
+  if (map && form == with_form) return {};
+  map.reset();
+  Result<Segmentation> read = readSegmentation(file, progress, with_form);
   if (!read) return read.error();
-  if (read->fractional && request.ask_threshold) {
-    return Error{"THRESHOLD", "The file says how much of each voxel a structure has",
-                 "the segmentation", "Say from which share on it has a voxel"};
+  map = *std::move(read);
+  form = with_form;
+  return {};
+}
+
+Status StructureFile::Read::readDicom(double with_threshold, const Progress& progress) {
+  if (dicom && (!dicom->fractional || threshold == with_threshold)) return {};
+  dicom.reset();
+  Result<DicomSegmentation> read = readDicomSegmentation(file, with_threshold, progress);
+  if (!read) return read.error();
+  dicom = *std::move(read);
+  threshold = with_threshold;
+  return {};
+}
+
+Result<StructureFit> StructureFile::Read::fitMap(const Volume& ct, const StructureRequest& request,
+                                                 std::optional<Choice>& open,
+                                                 const Progress& progress) {
+  std::optional<Finding> said;
+  const std::string with_form = formOf(file, ct, request.answers, said, open);
+  if (Status read = readMap(with_form, Progress(progress, 0.0, 0.5)); !read) return read.error();
+  Segmentation segmentation = *map;
+  const int hidden = hideNames(segmentation, request);
+  Result<StructureFit> fit = fitStructures(std::move(segmentation), ct, request.answers,
+                                           request.ask_all, Progress(progress, 0.5, 1.0), &open);
+  if (fit && said) fit->findings.push_back(*std::move(said));
+  if (fit) sayHidden(*fit, hidden);
+  return fit;
+}
+
+Result<StructureFit> StructureFile::Read::fitDicom(const Volume& ct,
+                                                   const StructureRequest& request,
+                                                   std::optional<Choice>& open,
+                                                   const Progress& progress) {
+  if (Status read = readDicom(request.threshold, Progress(progress, 0.0, 0.5)); !read) {
+    return read.error();
   }
-  const int hidden = hideNames(read->segmentation, request);
-  std::optional<Choice> asked;
-  if (Status of = match(*read, ct, request, asked); !of) return of.error();
-  Result<StructureFit> fit =
-      fitStructures(std::move(read->segmentation), ct, request.answers, request.ask_all, fitting);
-  if (fit && read->fractional) {
+  Segmentation segmentation = dicom->segmentation;
+  const int hidden = hideNames(segmentation, request);
+  std::optional<Choice> answered;
+  if (Status of = match(*dicom, ct, request, answered, open); !of) return of.error();
+  Result<StructureFit> fit = fitStructures(std::move(segmentation), ct, request.answers,
+                                           request.ask_all, Progress(progress, 0.5, 1.0), &open);
+  if (!fit) return fit;
+  if (dicom->fractional) {
     fit->fractional = true;
     fit->findings.push_back(
         {"FRACTIONAL",
@@ -171,8 +227,8 @@ Result<StructureFit> importStructures(const std::filesystem::path& file, const V
          {},
          "It has a voxel from a share of " + plainNumber(request.threshold) + " on"});
   }
-  if (fit) sayHidden(*fit, hidden);
-  if (fit && request.ct.unreadable) {
+  sayHidden(*fit, hidden);
+  if (request.ct.unreadable) {
     fit->findings.push_back(
         {"SOURCE_UNCHECKED",
          "notice",
@@ -181,11 +237,82 @@ Result<StructureFit> importStructures(const std::filesystem::path& file, const V
          {},
          "Its place alone was compared"});
   }
-  if (fit && asked) {
-    fit->findings.push_back({asked->code, "notice", asked->question, {}, "It was kept"});
-    fit->choices.push_back(*std::move(asked));
+  if (answered) {
+    fit->findings.push_back({answered->code, "notice", answered->question, {}, "It was kept"});
+    fit->choices.push_back(*std::move(answered));
   }
   return fit;
+}
+
+StructureFile::StructureFile(std::filesystem::path file) : read_(std::make_unique<Read>()) {
+  read_->file = std::move(file);
+}
+
+StructureFile::~StructureFile() = default;
+
+const std::filesystem::path& StructureFile::path() const {
+  return read_->file;
+}
+
+namespace {
+
+constexpr const char* kThreshold = "THRESHOLD";
+constexpr const char* kOverlap = "OVERLAP";
+
+// The options that use the file. That a file which says nothing of its place is right as it stands
+// is for who made it: the command line's.
+StructureAsked askedOption(Choice choice) {
+  const bool by_size = std::ranges::find(choice.options, "ct") != choice.options.end();
+  std::erase_if(choice.options, [&](const std::string& option) {
+    return option == "refuse" || (by_size && option == "keep");
+  });
+  choice.words.clear();
+  return {StructureAsked::Kind::option, std::move(choice)};
+}
+
+}  // namespace
+
+Result<StructureAnswer> StructureFile::fit(const Volume& ct, const StructureRequest& request,
+                                           const Progress& progress) {
+  if (Status known = read_->readKind(progress); !known) return known.error();
+  const bool dicom = isSegmentation(*read_->kind);
+  if (!dicom && !read_->kind->empty()) return noSegmentation(*read_->kind, read_->file);
+  StructureRequest wanted = request;
+  const std::string share = answerTo(request.answers, kThreshold);
+  if (!share.empty()) wanted.threshold = parseDecimal(share).value_or(wanted.threshold);
+  if (dicom && request.ask_person && share.empty()) {
+    const Result<bool> fractional = isFractional(read_->file, progress);
+    if (!fractional) return fractional.error();
+    if (*fractional) {
+      return StructureAnswer(StructureAsked{
+          StructureAsked::Kind::threshold,
+          Choice{kThreshold, "From which share of a voxel on has a structure it?", {}, {}}});
+    }
+  }
+  std::optional<Choice> open;
+  Result<StructureFit> fit = dicom ? read_->fitDicom(ct, wanted, open, progress)
+                                   : read_->fitMap(ct, wanted, open, progress);
+  if (!fit && open && request.ask_person) {
+    return StructureAnswer(askedOption(*std::move(open)));
+  }
+  if (!fit) return fit.error();
+  if (request.ask_person && !fit->overlapping.empty() && !request.answers.contains(kOverlap)) {
+    const auto choice = std::ranges::find(fit->choices, kOverlap, &Choice::code);
+    if (choice != fit->choices.end()) {
+      return StructureAnswer(
+          StructureAsked{StructureAsked::Kind::order, *choice, fit->overlapping});
+    }
+  }
+  return StructureAnswer(*std::move(fit));
+}
+
+Result<StructureFit> importStructures(const std::filesystem::path& file, const Volume& ct,
+                                      const StructureRequest& request, const Progress& progress) {
+  StructureRequest alone = request;
+  alone.ask_person = false;
+  Result<StructureAnswer> answer = StructureFile(file).fit(ct, alone, progress);
+  if (!answer) return answer.error();
+  return std::get<StructureFit>(*std::move(answer));
 }
 
 }  // namespace trephine

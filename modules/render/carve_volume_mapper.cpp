@@ -96,7 +96,7 @@ struct CarveVolume::Parts {
   std::vector<std::vector<HuInterval>> visible;       // of each row
   RayShading shading;
   BrickRanges bricks;
-  LeapMap leap_map;
+  EmptySpaceDistance empty_space_distance;
   double lookup_step_HU = 0.0;
   double smallest_edge_mm = 1.0;                            // of a voxel
   double sample_distance = SceneRenderer::kSampleDistance;  // at full quality, in that edge
@@ -121,9 +121,10 @@ struct CarveVolume::Parts {
     if (leap_map_stale) {
       std::vector<std::uint32_t> rows;
       if (by_label) rows = sender.bricks().rows(label_rows);
-      leap_map = LeapMap(bricks, visible, std::move(rows), 2.0 * lookup_step_HU);
+      empty_space_distance =
+          EmptySpaceDistance(bricks, visible, std::move(rows), 2.0 * lookup_step_HU);
     }
-    const std::uint8_t* distances = leap_map.distances().data();
+    const std::uint8_t* distances = empty_space_distance.distances().data();
     if (anew) {
       leaps->SetContext(vtkOpenGLRenderWindow::SafeDownCast(renderer.GetRenderWindow()));
       leaps->ResetFormatAndType();                             // one or two bytes
@@ -178,11 +179,11 @@ struct CarveVolume::Parts {
       for (int j = of.low[1]; j < of.high[1]; ++j) {
         for (int i = of.low[0]; i < of.high[0]; ++i) {
           const std::size_t brick = bricks.indexOf(i, j, k);
-          leap_map.setRows(brick, sender.bricks().rowsOf(brick, label_rows));
+          empty_space_distance.setRows(brick, sender.bricks().rowsOf(brick, label_rows));
         }
       }
     }
-    leap_map.update(bricks, of);
+    empty_space_distance.update(bricks, of);
     leaps_stale = true;
   }
 
@@ -422,7 +423,7 @@ void CarveVolume::sendChanges(vtkRenderer& renderer) {
   vtkTextureObject* texture = p.sent ? p.mapper->texture() : nullptr;
   for (const VoxelBox& box : boxes) {
     if (const std::optional<BrickBox> bricks = p.bricks.update(*p.copy, box)) {
-      if (!p.leap_map_stale) p.leap_map.update(p.bricks, *bricks);
+      if (!p.leap_map_stale) p.empty_space_distance.update(p.bricks, *bricks);
       p.leaps_stale = true;
     }
     if (!texture) continue;
@@ -493,8 +494,8 @@ void CarveVolume::setLight(const Vec3& from) {
   parts_->shading.light = from;
 }
 
-void CarveVolume::setTruth(const RayTruth& truth) {
-  parts_->shading.truth = truth;
+void CarveVolume::setShading(const ShadingOptions& options) {
+  parts_->shading.options = options;
   parts_->buildShader();
 }
 

@@ -45,7 +45,7 @@ class CarveVolume {
   void setTissues(const TissueSet& seen, const TissueLooks& looks);
   void setClip(const std::vector<ClipPlane>& planes);
   void setLight(const Vec3& from);  // of length 1; right, up, towards the eye
-  void setTruth(const RayTruth& truth);
+  void setShading(const ShadingOptions& options);
   void setSampleDistance(double voxels);  // at full quality
 
   // Voxels in the box were changed in the copy: sent by sendChanges, or with all the others.

@@ -161,7 +161,7 @@ std::vector<std::uint32_t> BrickLabels::rows(const LabelRows& rows) const {
   return bits;
 }
 
-bool LeapMap::visible(const BrickRanges& bricks, std::size_t brick) const {
+bool EmptySpaceDistance::visible(const BrickRanges& bricks, std::size_t brick) const {
   const BrickRanges::Range range = bricks.ranges()[brick];
   const std::uint32_t rows = rows_.empty() ? 1u : rows_[brick];
   for (std::size_t row = 0; row < visible_.size(); ++row) {
@@ -175,11 +175,14 @@ bool LeapMap::visible(const BrickRanges& bricks, std::size_t brick) const {
 
 // Chessboard distance in two sweeps, each from the 13 neighbours already visited (Rosenfeld and
 // Pfaltz, Sequential operations in digital picture processing, J. ACM 13, 1966).
-LeapMap::LeapMap(const BrickRanges& bricks, std::vector<HuInterval> visible, double margin_HU)
-    : LeapMap(bricks, std::vector<std::vector<HuInterval>>{std::move(visible)}, {}, margin_HU) {}
+EmptySpaceDistance::EmptySpaceDistance(const BrickRanges& bricks, std::vector<HuInterval> visible,
+                                       double margin_HU)
+    : EmptySpaceDistance(bricks, std::vector<std::vector<HuInterval>>{std::move(visible)}, {},
+                         margin_HU) {}
 
-LeapMap::LeapMap(const BrickRanges& bricks, std::vector<std::vector<HuInterval>> visible_by_row,
-                 std::vector<std::uint32_t> rows, double margin_HU)
+EmptySpaceDistance::EmptySpaceDistance(const BrickRanges& bricks,
+                                       std::vector<std::vector<HuInterval>> visible_by_row,
+                                       std::vector<std::uint32_t> rows, double margin_HU)
     : visible_(std::move(visible_by_row)),
       rows_(std::move(rows)),
       distances_(bricks.ranges().size(), kFarthest) {
@@ -217,7 +220,7 @@ LeapMap::LeapMap(const BrickRanges& bricks, std::vector<std::vector<HuInterval>>
   sweep(-1);
 }
 
-void LeapMap::update(const BrickRanges& bricks, const BrickBox& changed) {
+void EmptySpaceDistance::update(const BrickRanges& bricks, const BrickBox& changed) {
   const Index3& n = bricks.size();
   // Neighbours never differ by more than one, here and in what follows; so where a ring around a
   // brick that became visible holds nothing too far, no ring beyond it does.

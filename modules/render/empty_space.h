@@ -70,14 +70,14 @@ class BrickLabels {
 // One byte a brick, i fastest: 0 where a visible HU can be met, else at most the number of bricks
 // (in the largest of the three axes, up to 255) to the nearest brick where one can. From a brick
 // with n a ray may leap to the faces of the cube of 2n - 1 bricks around it.
-class LeapMap {
+class EmptySpaceDistance {
  public:
-  LeapMap() = default;
+  EmptySpaceDistance() = default;
   // `margin_HU` widens the intervals, for a lookup table whose entries smear.
-  LeapMap(const BrickRanges& bricks, std::vector<HuInterval> visible, double margin_HU);
+  EmptySpaceDistance(const BrickRanges& bricks, std::vector<HuInterval> visible, double margin_HU);
   // The same where each row of labels has its own visible HU; `rows`: BrickLabels::rows().
-  LeapMap(const BrickRanges& bricks, std::vector<std::vector<HuInterval>> visible_by_row,
-          std::vector<std::uint32_t> rows, double margin_HU);
+  EmptySpaceDistance(const BrickRanges& bricks, std::vector<std::vector<HuInterval>> visible_by_row,
+                     std::vector<std::uint32_t> rows, double margin_HU);
 
   // After the ranges in `changed` did. Only the bricks around them are looked at, so that a cut
   // costs the same in any volume; distances stay true, but where matter went they may stay short.

@@ -55,7 +55,7 @@ void RayShading::build(vtkShaderProperty& shader) const {
 }
 
 bool RayShading::isTrue() const {
-  return geometry && (shows != 0 || (leaping && (truth.normals || truth.classes)));
+  return geometry && (shows != 0 || (leaping && (options.normals || options.classes)));
 }
 
 void RayShading::tellTissues(vtkShaderProperty& shader) const {
@@ -70,7 +70,7 @@ void RayShading::tellTissues(vtkShaderProperty& shader) const {
     look_of[i][1] = scaled(shades[i].high_HU);
     look_of[i][2] = float(shades[i].row);
     look_of[i][3] =
-        (truth.classes && shades[i].passed ? 1.0f : 0.0f) + (shades[i].ghosted ? 2.0f : 0.0f);
+        (options.classes && shades[i].passed ? 1.0f : 0.0f) + (shades[i].ghosted ? 2.0f : 0.0f);
     set(colour_of[i], shades[i].colour);
     set(cut_of[i], cutColour(shades[i].colour));
   }
@@ -122,8 +122,8 @@ void RayShading::tellView(vtkShaderProperty& shader) const {
   const float cut[2] = {float(cut_at), float(0.5 / (high_HU - low_HU))};
   to->SetUniform2f("in_cut", cut);
 
-  const RayBall around = truth.normals ? rayBall(g.spacing_mm, coarse ? kFewPlaces : kBallPlaces)
-                                       : centralDifferences(g.spacing_mm);
+  const RayBall around = options.normals ? rayBall(g.spacing_mm, coarse ? kFewPlaces : kBallPlaces)
+                                         : centralDifferences(g.spacing_mm);
   float ball[kBallPlaces][3]{}, weight[kBallPlaces][3]{};
   for (std::size_t i = 0; i < around.size(); ++i) {
     set(ball[i], around[i].from_mm / g.spacing_mm / Vec3(g.size[0], g.size[1], g.size[2]));

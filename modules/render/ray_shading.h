@@ -25,7 +25,7 @@ struct RayShading {
   TissueSet seen;
   TissueLooks looks;
 
-  RayTruth truth;
+  ShadingOptions options;
   bool leaping = true;
   int shows = 0;  // 0: the picture, 1: the first tissue, 2: the normal there
   std::vector<ClipPlane> clip;

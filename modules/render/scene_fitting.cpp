@@ -22,7 +22,7 @@ void SceneRenderer::Parts::show() {
   refusal = {};
   panel.pictures.startAnew();
   eye.pictures.startAnew();
-  volume.show(mirror->lent(), mirror->labels(), *mirror, reduction, *renderer);
+  volume.show(mirror->mutableVolume(), mirror->labels(), *mirror, reduction, *renderer);
 }
 
 void SceneRenderer::Parts::showReduced() {

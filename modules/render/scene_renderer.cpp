@@ -178,9 +178,9 @@ void SceneRenderer::setLight(const Vec3& from) {
   parts_->volume.setLight(glm::normalize(from));
 }
 
-void SceneRenderer::setTruth(const RayTruth& truth) {
+void SceneRenderer::setShading(const ShadingOptions& options) {
   parts_->spoil();
-  parts_->volume.setTruth(truth);
+  parts_->volume.setShading(options);
 }
 
 void SceneRenderer::setSampleDistance(double voxels) {
@@ -417,7 +417,7 @@ double UploadProbe::boxUpload_ms(SceneRenderer& renderer, const VoxelBox& box) {
 }
 
 Volume& UploadProbe::copy(SceneRenderer& renderer) {
-  return renderer.parts_->mirror->lent();
+  return renderer.parts_->mirror->mutableVolume();
 }
 
 void UploadProbe::limitEdges(SceneRenderer& renderer, int most) {

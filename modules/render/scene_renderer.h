@@ -42,10 +42,10 @@ struct ToolView {
 };
 
 // Where the ray caster departs from VTK's, beside leaping over what is empty.
-struct RayTruth {
+struct ShadingOptions {
   bool normals = true;  // shading follows the surface; off: VTK's central differences
   bool classes = true;  // a partial-volume edge shows none of the tissues it passes through
-  friend bool operator==(const RayTruth&, const RayTruth&) = default;
+  friend bool operator==(const ShadingOptions&, const ShadingOptions&) = default;
 };
 
 // How the window lends its OpenGL context to VTK.
@@ -90,9 +90,9 @@ class SceneRenderer {
   // to the left and above at first, so that a hollow has a lit wall and a dark one.
   static inline const Vec3 kLight = glm::normalize(Vec3(-0.3, 0.4, 1.0));
   void setLight(const Vec3& from);
-  void setTruth(const RayTruth& truth);
+  void setShading(const ShadingOptions& options);
   // Distance of the samples of a ray at full quality, in the smallest edge of a voxel.
-  // `measure trades` recommends the default, and RayTruth's.
+  // `measure trades` recommends the default, and ShadingOptions's.
   static constexpr double kSampleDistance = 0.5;
   void setSampleDistance(double voxels);
   // Takes what is new in the mirror; the boxes are sent at the next paint. True when there is
@@ -188,7 +188,8 @@ struct UploadProbe {
   // what the picture says is there.
   static void setFirstTissue(SceneRenderer& renderer, bool on);
   // Each ray in the normal of its first visible sample, opaque and without light: red right, green
-  // up, blue towards the eye, -1..1 as 0..255. Of VTK's own normals without RayTruth::normals.
+  // up, blue towards the eye, -1..1 as 0..255. Of VTK's own normals without
+  // ShadingOptions::normals.
   static void setNormalsAsColour(SceneRenderer& renderer, bool on);
   // Pixels between two rays of the last moving picture, each way.
   static double level(const SceneRenderer& renderer);

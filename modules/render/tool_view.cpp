@@ -15,7 +15,7 @@ ToolShape shapeOf(ToolKind kind) {
 
 }  // namespace
 
-ToolView toolView(const SceneTool& tool, const Pose& pose_mm, bool contact, const Vec3& colour) {
+ToolView toolView(const ExerciseTool& tool, const Pose& pose_mm, bool contact, const Vec3& colour) {
   const ToolDescription& d = tool.tool.made_from;
   ToolView view;
   view.pose_mm = pose_mm;

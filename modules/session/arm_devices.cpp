@@ -8,20 +8,20 @@
 #include "base/json.h"
 #include "base/range.h"
 #include "base/system.h"
-#include "scene/arms_file.h"
+#include "exercise/arms_file.h"
 
 namespace trephine {
 
 namespace {
 
-// The first whose samples come at the scene's rate is the clock: a sample of it is never old. Where
-// there is none, the host's is.
-void choosePace(const Scene& scene, std::vector<LoopDevice>& devices) {
+// The first whose samples come at the exercise's rate is the clock: a sample of it is never old.
+// Where there is none, the host's is.
+void choosePace(const Exercise& exercise, std::vector<LoopDevice>& devices) {
   constexpr double kSameRate = 1e-3;
   for (LoopDevice& of : devices) {
     if (of.arms.empty()) continue;
     const double rate_hz = of.device->capabilities(0).rate_hz;
-    if (!of.device->hasClock() || std::abs(rate_hz / scene.rate_hz - 1.0) > kSameRate) continue;
+    if (!of.device->hasClock() || std::abs(rate_hz / exercise.rate_hz - 1.0) > kSameRate) continue;
     of.paces = true;
     return;
   }
@@ -61,14 +61,14 @@ Result<std::unique_ptr<Device>> openDevice(const std::string& plugin_name,
   return error;
 }
 
-Status openDevices(Scene& scene, Rig& rig, std::vector<LoopDevice>& devices,
+Status openDevices(Exercise& exercise, Rig& rig, std::vector<LoopDevice>& devices,
                    std::vector<TrephineCapabilities>& capabilities) {
   std::map<std::pair<std::string, std::string>, std::vector<std::size_t>> arms_by_device;
-  for (std::size_t i = 0; i < scene.arms.size(); ++i) {
+  for (std::size_t i = 0; i < exercise.arms.size(); ++i) {
     const ArmDevice& device = rig.arms[i].device;
     arms_by_device[{device.plugin, device.config}].push_back(i);
   }
-  capabilities.resize(scene.arms.size());
+  capabilities.resize(exercise.arms.size());
   for (const auto& [key, arms] : arms_by_device) {
     const auto& [name, config] = key;
     std::vector<std::uint32_t> device_arms;
@@ -79,15 +79,15 @@ Status openDevices(Scene& scene, Rig& rig, std::vector<LoopDevice>& devices,
       capabilities[arms[i]] = (*device)->capabilities(i);
       if (capabilities[arms[i]].input_dof == 0) {
         return Error{"NO_DEVICE",
-                     "The " + scene.arms[arms[i]].name + " arm's device '" + name +
+                     "The " + exercise.arms[arms[i]].name + " arm's device '" + name +
                          "' is a pedal: it has no place",
                      "", "Choose an arm for it"};
       }
-      if (scene.rate_hz > capabilities[arms[i]].rate_hz) {
+      if (exercise.rate_hz > capabilities[arms[i]].rate_hz) {
         return Error{"BAD_SCENE",
-                     "The scene asks for " + plainNumber(scene.rate_hz) + " Hz, and the " +
-                         scene.arms[arms[i]].name + " arm's device '" + name + "' keeps at most " +
-                         plainNumber(capabilities[arms[i]].rate_hz) + " Hz",
+                     "The scene asks for " + plainNumber(exercise.rate_hz) + " Hz, and the " +
+                         exercise.arms[arms[i]].name + " arm's device '" + name +
+                         "' keeps at most " + plainNumber(capabilities[arms[i]].rate_hz) + " Hz",
                      "rate_hz", "Lower the scene's rate_hz, or use another device"};
       }
     }
@@ -104,19 +104,19 @@ Status openDevices(Scene& scene, Rig& rig, std::vector<LoopDevice>& devices,
     }
     devices.push_back({*std::move(pedal), {}});
   }
-  choosePace(scene, devices);
+  choosePace(exercise, devices);
   for (const LoopDevice& of : devices) {
     for (std::size_t i = 0; i < of.arms.size(); ++i) {
-      SceneArm& arm = scene.arms[of.arms[i]];
+      ExerciseArm& arm = exercise.arms[of.arms[i]];
       Rig::Arm& moved = rig.arms[of.arms[i]];
       const TrephineCapabilities& able = capabilities[of.arms[i]];
       const double delay_s = delayOf(of, able);
-      if (delay_s * scene.rate_hz > kMaxDelayTicks) {
+      if (delay_s * exercise.rate_hz > kMaxDelayTicks) {
         return Error{"BAD_SCENE",
                      "The " + arm.name + " arm's device '" + moved.device.plugin + "' answers " +
                          plainNumber(1e3 * delay_s) + " ms late, more than " +
                          std::to_string(kMaxDelayTicks) + " periods of the scene's " +
-                         plainNumber(scene.rate_hz) + " Hz",
+                         plainNumber(exercise.rate_hz) + " Hz",
                      "rate_hz", "Lower the scene's rate_hz, or use another device"};
       }
       arm.max_force_N = std::min(arm.max_force_N, able.peak_force_N);
@@ -143,11 +143,11 @@ Result<ArmDevice> deviceOf(const FoundArm& wanted, const std::string& arm, const
                "", "Plug it in, or choose another under Devices"};
 }
 
-Status readArmDynamics(const Scene& scene, Rig& rig, std::vector<Vec3>* workspaces_mm) {
+Status readArmDynamics(const Exercise& exercise, Rig& rig, std::vector<Vec3>* workspaces_mm) {
   std::vector<LoopDevice> devices;
   std::vector<TrephineCapabilities> capabilities;
-  Scene asked = scene;
-  for (SceneArm& arm : asked.arms) arm.max_force_N = kPeakForce_N.high;
+  Exercise asked = exercise;
+  for (ExerciseArm& arm : asked.arms) arm.max_force_N = kPeakForce_N.high;
   Rig answered = rig;
   if (Status opened = openDevices(asked, answered, devices, capabilities); !opened) return opened;
   rig = std::move(answered);
@@ -158,6 +158,23 @@ Status readArmDynamics(const Scene& scene, Rig& rig, std::vector<Vec3>* workspac
     workspaces_mm->push_back(1000.0 * size_m);
   }
   return {};
+}
+
+Result<Rig> rigOf(const Exercise& exercise, const ChosenArms& chosen) {
+  std::vector<NamedDevice> devices;
+  std::optional<FoundArms> here;
+  std::vector<std::string> names;
+  for (const ExerciseArm& arm : exercise.arms) names.push_back(arm.name);
+  names.push_back(kPedal);
+  for (const std::string& name : names) {
+    const auto wanted = chosen.find(name);
+    if (wanted == chosen.end()) continue;
+    if (!here) here = findArms(pluginFolder());
+    Result<ArmDevice> device = deviceOf(wanted->second, name, *here);
+    if (!device) return device.error();
+    devices.push_back({name, *std::move(device)});
+  }
+  return rigWith(exercise, devices, "Devices");
 }
 
 }  // namespace trephine

@@ -1,12 +1,14 @@
-// The devices that move a scene's arms, and what they say of those arms.
+// The devices that move an exercise's arms, and what they say of those arms.
 #pragma once
 
+#include <map>
+#include <string>
 #include <vector>
 
 #include "base/result.h"
 #include "device/find_arms.h"
 #include "haptics/haptic_loop.h"
-#include "scene/scene.h"
+#include "exercise/exercise.h"
 
 namespace trephine {
 
@@ -19,21 +21,29 @@ Result<std::unique_ptr<Device>> openDevice(const std::string& plugin,
                                            const std::vector<std::uint32_t>& places,
                                            const std::string& config);
 
-// Opens one device for each plugin and file of configuration, holding all of the scene's arms that
-// it moves by `rig`, without starting it; and the pedal, where there is one.
+// Opens one device for each plugin and file of configuration, holding all of the exercise's arms
+// that it moves by `rig`, without starting it; and the pedal, where there is one.
 // `capabilities` has one an arm afterwards; the dynamics of the rig's arms and the force limits [N]
-// of the scene's are those of the devices. Errors: those of the devices, BAD_SCENE where a device cannot do what the scene
-// asks of it. Any thread that has them alone.
-Status openDevices(Scene& scene, Rig& rig, std::vector<LoopDevice>& devices,
+// of the exercise's are those of the devices. Errors: those of the devices, BAD_SCENE where a
+// device cannot do what the exercise asks of it. Any thread that has them alone.
+Status openDevices(Exercise& exercise, Rig& rig, std::vector<LoopDevice>& devices,
                    std::vector<TrephineCapabilities>& capabilities);
 
 // Asks the plugins of a rig what its arms are, without starting them: fills in their dynamics, with
 // the most that the devices give. And how far each arm reaches: the full extents of its workspace,
-// device axes, mm. `scene` is what it is for. Errors: as above.
-Status readArmDynamics(const Scene& scene, Rig& rig, std::vector<Vec3>* workspaces_mm = nullptr);
+// device axes, mm. `exercise` is what it is for. Errors: as above.
+Status readArmDynamics(const Exercise& exercise, Rig& rig, std::vector<Vec3>* workspaces_mm = nullptr);
 
-// A device that a workstation has chosen for the scene's arm of that name, as it is plugged in now.
-// Errors: NO_DEVICE, or why its plugin cannot be asked.
+// A device that a workstation has chosen for the exercise's arm of that name, as it is plugged in
+// now. Errors: NO_DEVICE, or why its plugin cannot be asked.
 Result<ArmDevice> deviceOf(const FoundArm& wanted, const std::string& arm, const FoundArms& here);
+
+// The devices that a workstation has chosen, by the exercise's name of an arm ("left", "right"), and
+// of kPedal; an arm that is absent is simulated.
+using ChosenArms = std::map<std::string, FoundArm>;
+
+// The exercise's arms of these names moved by these devices, the others simulated. It asks what is
+// plugged in: not on a window's thread. Errors: those of deviceOf() and rigWith().
+Result<Rig> rigOf(const Exercise& exercise, const ChosenArms& chosen);
 
 }  // namespace trephine

@@ -35,7 +35,7 @@ struct ArmTrial::Engine {
   std::vector<Opened> devices;
   std::vector<TrephineCapabilities> capabilities;
   std::vector<ForceTest> tests;
-  std::vector<ArmAnswer> answers;
+  std::vector<MotorEncoderCheck> answers;
   std::array<std::uint64_t, kMostTried> sequences{};
   std::int64_t last_ns = 0;  // of the tick before
   std::array<Vec3, kMostTried> first_m{};
@@ -156,7 +156,7 @@ bool ArmTrial::Engine::tick(std::int64_t now_ns) {
                        of_arm.encoder_step_m);
       }
       if (end) tests[i].end();
-      if (end) answers[i] = ArmAnswer();
+      if (end) answers[i] = MotorEncoderCheck();
       TriedArm& arm = arms[i];
       if (silences[i].tick(states[n].sequence, kPeriod_s, now_ns)) arm.flags |= TREPHINE_ARM_LOST;
       const bool away = arm.flags & (TREPHINE_ARM_LOST | TREPHINE_ARM_ERROR);
@@ -166,7 +166,7 @@ bool ArmTrial::Engine::tick(std::int64_t now_ns) {
       arm.test = tests[i].phase();
       const bool fresh = states[n].sequence != std::exchange(sequences[i], states[n].sequence);
       const Vec3 push_N = answers[i].tick(sample, fresh, late, kPeriod_s);
-      const bool asked = ArmAnswer::runs(answers[i].phase());
+      const bool asked = MotorEncoderCheck::runs(answers[i].phase());
       arm.answer = answers[i].phase();
       arm.noise_m = answers[i].noise_m();
       arm.response = answers[i].response();
@@ -283,7 +283,7 @@ const TriedArms& ArmTrial::state() {
     arm.flags |= TREPHINE_ARM_LOST;
     arm.force_N = 0.0;
     if (ForceTest::runs(arm.test)) arm.test = ForceTest::Phase::lost;
-    if (ArmAnswer::runs(arm.answer)) arm.answer = ArmAnswer::Phase::lost;
+    if (MotorEncoderCheck::runs(arm.answer)) arm.answer = MotorEncoderCheck::Phase::lost;
   }
   return shown_;
 }

@@ -15,8 +15,8 @@
 #include "device/device.h"
 #include "device/find_arms.h"
 #include "haptics/haptic_types.h"
-#include "session/arm_answer.h"
 #include "session/force_test.h"
+#include "session/motor_encoder_check.h"
 
 namespace trephine {
 
@@ -26,9 +26,9 @@ struct TriedArm {
   double moved_m = 0.0;  // the farthest it has been from where it was first
   double force_N = 0.0;  // upward, as sent for a person to feel
   ForceTest::Phase test = ForceTest::Phase::off;
-  ArmAnswer::Phase answer = ArmAnswer::Phase::off;
-  double noise_m = 0.0;  // as ArmAnswer has them
-  ArmAnswer::Response response;
+  MotorEncoderCheck::Phase answer = MotorEncoderCheck::Phase::off;
+  double noise_m = 0.0;  // as MotorEncoderCheck has them
+  MotorEncoderCheck::Response response;
   bool pushed = false;
   std::uint64_t samples = 0;
 };

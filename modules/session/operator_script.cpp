@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "scene/names.h"
+#include "exercise/names.h"
 
 namespace trephine {
 
@@ -29,11 +29,11 @@ constexpr std::array<std::pair<std::string_view, CommandKind>, 15> kCommandNames
 constexpr std::size_t kMostWaypoints = 100'000;
 constexpr std::size_t kMostCommands = 10'000;
 
-ScriptHand readHand(JsonReader& item, const Scene& scene) {
+ScriptHand readHand(JsonReader& item, const Exercise& exercise) {
   ScriptHand hand;
   hand.arm = item.text("arm");
-  const bool known = std::any_of(scene.arms.begin(), scene.arms.end(),
-                                 [&](const SceneArm& arm) { return arm.name == hand.arm; });
+  const bool known = std::any_of(exercise.arms.begin(), exercise.arms.end(),
+                                 [&](const ExerciseArm& arm) { return arm.name == hand.arm; });
   if (!known) item.fail("arm", "The scene has no arm '" + hand.arm + "'");
   for (JsonReader& point : item.objects("waypoints", kMostWaypoints)) {
     ScriptWaypoint waypoint{point.number("t", kScriptTime_s), point.vec3("at_mm", kWaypoint_mm)};
@@ -47,7 +47,7 @@ ScriptHand readHand(JsonReader& item, const Scene& scene) {
   return hand;
 }
 
-// A tissue change starts from what the scene or the change before it says.
+// A tissue change starts from what the exercise or the change before it says.
 void readTissueChange(JsonReader changes, const Json& names, TissueSet& set) {
   for (auto it = names.begin(); it != names.end(); ++it) {
     auto tissue = std::find_if(set.tissues.begin(), set.tissues.end(),
@@ -69,10 +69,10 @@ void readTissueChange(JsonReader changes, const Json& names, TissueSet& set) {
 }
 
 // Which of the arm's tools a command names.
-void readTool(JsonReader& item, const Scene& scene, Command& command) {
+void readTool(JsonReader& item, const Exercise& exercise, Command& command) {
   const std::string id = item.text("tool");
   if (command.arm < 0) return;
-  const SceneArm& arm = scene.arms[std::size_t(command.arm)];
+  const ExerciseArm& arm = exercise.arms[std::size_t(command.arm)];
   const auto found = std::find(arm.other_tools.begin(), arm.other_tools.end(), id);
   if (found != arm.other_tools.end()) {
     command.value = std::int32_t(1 + (found - arm.other_tools.begin()));
@@ -82,13 +82,13 @@ void readTool(JsonReader& item, const Scene& scene, Command& command) {
 }
 
 // A command of one arm, and where its map turns to.
-void readArmCommand(JsonReader& item, const Scene& scene, Command& command) {
+void readArmCommand(JsonReader& item, const Exercise& exercise, Command& command) {
   const std::string name = item.text("arm");
-  for (std::size_t i = 0; i < scene.arms.size(); ++i) {
-    if (scene.arms[i].name == name) command.arm = std::int32_t(i);
+  for (std::size_t i = 0; i < exercise.arms.size(); ++i) {
+    if (exercise.arms[i].name == name) command.arm = std::int32_t(i);
   }
   if (command.arm < 0) item.fail("arm", "The scene has no arm '" + name + "'");
-  if (command.kind == CommandKind::tool) readTool(item, scene, command);
+  if (command.kind == CommandKind::tool) readTool(item, exercise, command);
   if (command.kind != CommandKind::clutch_off || !item.has("rotation_xyzw")) return;
   const auto q = item.numbers("rotation_xyzw", 4, {-1, 1});
   const Quat rotation(q[3], q[0], q[1], q[2]);
@@ -101,7 +101,7 @@ void readArmCommand(JsonReader& item, const Scene& scene, Command& command) {
   command.rotation = glm::normalize(rotation);
 }
 
-ScriptCommand readCommand(JsonReader& item, const Scene& scene, TissueSet& tissues) {
+ScriptCommand readCommand(JsonReader& item, const Exercise& exercise, TissueSet& tissues) {
   ScriptCommand out;
   out.time_s = item.number("t", kScriptTime_s);
   const std::string name = item.text("do");
@@ -119,7 +119,7 @@ ScriptCommand readCommand(JsonReader& item, const Scene& scene, TissueSet& tissu
       item.fail("controller", "Unknown controller '" + wanted + "'");
     }
   }
-  if (out.command.kind >= CommandKind::clutch_on) readArmCommand(item, scene, out.command);
+  if (out.command.kind >= CommandKind::clutch_on) readArmCommand(item, exercise, out.command);
   if (out.command.kind == CommandKind::rewind) {
     const std::int64_t second = item.integer("to_s", {0, out.time_s, "s"});
     out.command.value = std::int32_t(second);
@@ -148,7 +148,7 @@ double OperatorScript::duration_s() const {
 }
 
 Result<OperatorScript> parseOperatorScript(const Json& json, const std::string& file,
-                                           const Scene& scene) {
+                                           const Exercise& exercise) {
   JsonReader reader(json, file);
   OperatorScript script;
   reader.format("trephine.operator", 1);
@@ -157,16 +157,16 @@ Result<OperatorScript> parseOperatorScript(const Json& json, const std::string& 
   script.hand_stiffness_N_per_m = hand.number("stiffness_N_per_m", kHandStiffness_N_per_m);
   script.hand_damping_Ns_per_m = hand.number("damping_Ns_per_m", kHandDamping_Ns_per_m);
   for (JsonReader& item : reader.objects("arms", std::size_t(kMaxArms))) {
-    ScriptHand hand_track = readHand(item, scene);
+    ScriptHand hand_track = readHand(item, exercise);
     for (const ScriptHand& other : script.hands) {
       if (other.arm == hand_track.arm) item.fail("arm", "The arm '" + other.arm + "' stands twice");
     }
     script.hands.push_back(std::move(hand_track));
   }
-  TissueSet tissues = scene.tissues;
+  TissueSet tissues = exercise.tissues;
   if (reader.has("commands")) {
     for (JsonReader& item : reader.objects("commands", kMostCommands)) {
-      ScriptCommand command = readCommand(item, scene, tissues);
+      ScriptCommand command = readCommand(item, exercise, tissues);
       if (!script.commands.empty() && command.time_s < script.commands.back().time_s) {
         item.fail("t", "Commands stand in order of time");
       }
@@ -177,10 +177,10 @@ Result<OperatorScript> parseOperatorScript(const Json& json, const std::string& 
   return script;
 }
 
-Result<OperatorScript> readOperatorScript(const std::filesystem::path& file, const Scene& scene) {
+Result<OperatorScript> readOperatorScript(const std::filesystem::path& file, const Exercise& exercise) {
   Result<Json> json = readJsonFile(file);
   if (!json) return json.error();
-  return parseOperatorScript(*json, file.string(), scene);
+  return parseOperatorScript(*json, file.string(), exercise);
 }
 
 Status checkLocks(const OperatorScript& script, const Locks& locks) {
@@ -198,12 +198,12 @@ Status checkLocks(const OperatorScript& script, const Locks& locks) {
   return {};
 }
 
-ScriptOperator::ScriptOperator(const OperatorScript& script, const Scene& scene,
+ScriptOperator::ScriptOperator(const OperatorScript& script, const Exercise& exercise,
                                const std::vector<LandmarkFrame>& landmarks)
-    : period_s_(1.0 / scene.rate_hz),
+    : period_s_(1.0 / exercise.rate_hz),
       stiffness_(script.hand_stiffness_N_per_m),
       damping_(script.hand_damping_Ns_per_m),
-      tracks_(scene.arms.size()),
+      tracks_(exercise.arms.size()),
       commands_(script.commands) {
   for (ScriptCommand& timed : commands_) {
     Command& command = timed.command;
@@ -212,9 +212,9 @@ ScriptOperator::ScriptOperator(const OperatorScript& script, const Scene& scene,
     }
   }
   for (const ScriptHand& hand : script.hands) {
-    for (std::size_t i = 0; i < scene.arms.size(); ++i) {
-      if (scene.arms[i].name != hand.arm) continue;
-      const WorkspaceMap map = scene.arms[i].map.fixed.value_or(WorkspaceMap{});
+    for (std::size_t i = 0; i < exercise.arms.size(); ++i) {
+      if (exercise.arms[i].name != hand.arm) continue;
+      const WorkspaceMap map = exercise.arms[i].map.fixed.value_or(WorkspaceMap{});
       for (const ScriptWaypoint& waypoint : hand.waypoints) {
         tracks_[i].time_s.push_back(waypoint.time_s);
         tracks_[i].at_m.push_back(map.toDevice_m(landmarks[i].toPatient_mm(waypoint.at_mm)));

@@ -9,7 +9,7 @@
 
 #include "base/result.h"
 #include "haptics/haptic_loop.h"
-#include "scene/scene.h"
+#include "exercise/exercise.h"
 
 namespace trephine {
 
@@ -25,7 +25,7 @@ struct ScriptWaypoint {
 };
 
 struct ScriptHand {
-  std::string arm;  // a name of the scene
+  std::string arm;  // a name of the exercise
   std::vector<ScriptWaypoint> waypoints;  // by increasing time
 };
 
@@ -44,14 +44,14 @@ struct OperatorScript {
   double duration_s() const;
 };
 
-// Checked against the scene: arms that it has, tissues that it knows. A tissue change names the
-// numbers that change; the table is made here, once. Errors as in readScene.
-Result<OperatorScript> readOperatorScript(const std::filesystem::path& file, const Scene& scene);
+// Checked against the exercise: arms that it has, tissues that it knows. A tissue change names the
+// numbers that change; the table is made here, once. Errors as in readExercise.
+Result<OperatorScript> readOperatorScript(const std::filesystem::path& file, const Exercise& exercise);
 Result<OperatorScript> parseOperatorScript(const Json& json, const std::string& file,
-                                           const Scene& scene);
+                                           const Exercise& exercise);
 
-// LOCKED where one of its commands would change what is locked (scene/policy.h), also a script of
-// the scene's own.
+// LOCKED where one of its commands would change what is locked (exercise/policy.h), also a script
+// of the exercise's own.
 Status checkLocks(const OperatorScript& script, const Locks& locks);
 
 // Plays a script: a pure function of the tick number. Straight lines between waypoints, at rest
@@ -59,7 +59,7 @@ Status checkLocks(const OperatorScript& script, const Locks& locks);
 class ScriptOperator : public Operator {
  public:
   // `maps[i]` is arm i's map and `landmarks[i]` the frame in which its waypoints are given.
-  ScriptOperator(const OperatorScript& script, const Scene& scene,
+  ScriptOperator(const OperatorScript& script, const Exercise& exercise,
                  const std::vector<LandmarkFrame>& landmarks);
   void setPoints(std::uint64_t tick, OperatorSetPoint* hands, std::size_t arm_count) override;
   bool command(std::uint64_t tick, Command& out) override;
@@ -71,7 +71,7 @@ class ScriptOperator : public Operator {
   };
   double period_s_;
   double stiffness_, damping_;
-  std::vector<Track> tracks_;  // by arm of the scene
+  std::vector<Track> tracks_;  // by arm of the exercise
   std::vector<ScriptCommand> commands_;
   std::size_t next_command_ = 0;
 };

@@ -19,7 +19,7 @@ struct PokePoint {
 
 struct PokeCurve {
   std::size_t arm = 0;
-  std::int32_t tissue = -1;  // where it pushed back most, of the scene's
+  std::int32_t tissue = -1;  // where it pushed back most, of the exercise's
   double most_N = 0.0;       // sent
   bool ended = false;        // out of tissue again
   std::vector<PokePoint> points;

@@ -29,7 +29,7 @@ struct ArmFault {
   std::uint32_t fault = 0;  // a bit of Fault
 };
 
-// Of a scene whose tool begins in tissue.
+// Of an exercise whose tool begins in tissue.
 Warning startsInTissue(const std::string& arm, bool barrier);
 
 struct RunReport {

@@ -82,25 +82,25 @@ Status Session::set(const Placement& placed, const SessionOptions& options) {
     return Error{"TOO_LARGE", "The case has more than 2^32 voxels", "the case",
                  "Crop it or export it at a lower resolution"};
   }
-  if (Status known = checkLabels(placed.scene.tissues, placed.labels.get());
+  if (Status known = checkLabels(placed.exercise.tissues, placed.labels.get());
       !known) return known;
   for (const Warning& warning : placed.warnings) {
     warnings_.push_back(warning);
     spdlog::warn("{}", warning.text);
   }
   landmarks_ = placed.landmarks;
-  scene_ = placed.scene;
+  exercise_ = placed.exercise;
   if (options.poke) {
-    scene_.tissues = tooToughToCut(std::move(scene_.tissues));
-    scene_.removal = RemovalKind::work;
-    poke_curves_.emplace(scene_.arms.size(), scene_.rate_hz);
+    exercise_.tissues = tooToughToCut(std::move(exercise_.tissues));
+    exercise_.removal = RemovalKind::work;
+    poke_curves_.emplace(exercise_.arms.size(), exercise_.rate_hz);
   }
-  controllers_.emplace_back(controllerName(scene_.controller));
+  controllers_.emplace_back(controllerName(exercise_.controller));
 
   std::vector<LoopDevice> devices;
   rig_ = options.rig;
-  addSimulatedArms(rig_, scene_.arms.size());
-  if (Status opened = openDevices(scene_, rig_, devices, capabilities_); !opened) return opened;
+  addSimulatedArms(rig_, exercise_.arms.size());
+  if (Status opened = openDevices(exercise_, rig_, devices, capabilities_); !opened) return opened;
 
   const double needed_mb = exerciseMb(volume.geometry.voxelCount(), rt::LockedMemory::wasHeld());
   if (Status enough = enoughMemory(needed_mb, "The exercise", "the case"); !enough) return enough;
@@ -108,14 +108,14 @@ Status Session::set(const Placement& placed, const SessionOptions& options) {
   before_ = of.volume;
   structures_ = of.structures;
   grid_ = std::make_shared<Grid>(Volume(volume), placed.labels);
-  warnOfAbsentLabels(placed.scene.tissues, placed.labels.get());
-  for (const BoundedTissue& b : boundedTissues(scene_, rig_)) {
+  warnOfAbsentLabels(placed.exercise.tissues, placed.labels.get());
+  for (const BoundedTissue& b : boundedTissues(exercise_, rig_)) {
     spdlog::warn("'{}' is firmer than the {} arm shows: of {:.4g} N s/m and {:.4g} N/m, {:.4g} and "
                  "{:.4g} are felt",
                  b.tissue, b.arm, b.demanded.damping, b.demanded.stiffness, b.felt.damping,
                  b.felt.stiffness);
   }
-  core_ = std::make_unique<HapticCore>(hapticParameters(scene_, rig_), *grid_->takeWriter());
+  core_ = std::make_unique<HapticCore>(hapticParameters(exercise_, rig_), *grid_->takeWriter());
   const std::filesystem::path beside = options.recording.parent_path();
   const Result<std::filesystem::path> journal_folder = beside.empty() ? temporaryFolder() : beside;
   if (!journal_folder) return journal_folder.error();
@@ -125,7 +125,7 @@ Status Session::set(const Placement& placed, const SessionOptions& options) {
   std::unique_ptr<Operator> script;
   if (options.script) {
     script =
-        std::make_unique<ScriptOperator>(*options.script, scene_, armFrames(scene_, landmarks_));
+        std::make_unique<ScriptOperator>(*options.script, exercise_, armFrames(exercise_, landmarks_));
   }
   for (LiveHands::Hand& hand : hands_.hands) {
     hand = {};
@@ -139,19 +139,19 @@ Status Session::set(const Placement& placed, const SessionOptions& options) {
   for (const LoopDevice& d : loop_->devices()) {
     for (std::size_t i : d.arms) simulated_[i] = d.device->takesTargets();
   }
-  for (std::size_t i = 0; i < scene_.arms.size(); ++i) {
+  for (std::size_t i = 0; i < exercise_.arms.size(); ++i) {
     const double* size_m = capabilities_[i].workspace_m;
-    engine_->oper.setReach(i, {scene_.arms[i].max_force_N, {size_m[0], size_m[1], size_m[2]}});
+    engine_->oper.setReach(i, {exercise_.arms[i].max_force_N, {size_m[0], size_m[1], size_m[2]}});
   }
   if (options.hands_outside && !options.script) beginOutside();
-  statistics_.resize(scene_.arms.size());
+  statistics_.resize(exercise_.arms.size());
 
   if (!options.recording.empty()) {
     recording_file_ = options.recording;
-    const RecordingHeader header{toJson(RecordedScene{scene_, rig_}), sha256_before_, grid_->geometry(), buildName(),
+    const RecordingHeader header{toJson(RecordedExercise{exercise_, rig_}), sha256_before_, grid_->geometry(), buildName(),
                                  placed.labels ? labelsSha256(*placed.labels) : ""};
     Result<std::unique_ptr<SessionRecorder>> recorder =
-        SessionRecorder::create(options.recording, header, scene_.arms.size());
+        SessionRecorder::create(options.recording, header, exercise_.arms.size());
     if (!recorder) return recorder.error();
     recorder_ = *std::move(recorder);
   }
@@ -181,7 +181,7 @@ Status Session::start(double seconds) {
 }
 
 void Session::startThreads(double seconds) {
-  const auto last_tick = std::uint64_t(std::llround(seconds * scene_.rate_hz));
+  const auto last_tick = std::uint64_t(std::llround(seconds * exercise_.rate_hz));
   engine_->oper.useHostClock();
   recorder_thread_ = std::thread([this] { record(); });
   watchdog_thread_ = std::thread([engine = engine_] {
@@ -226,7 +226,7 @@ std::optional<bool> Session::memoryLocked() const {
 
 Status Session::startStepped(double seconds) {
   if (Status started = loop_->startDevices(); !started) return started;
-  last_tick_ = std::uint64_t(std::llround(seconds * scene_.rate_hz));
+  last_tick_ = std::uint64_t(std::llround(seconds * exercise_.rate_hz));
   engine_->finished = last_tick_ == 0;
   running_ = stepped_ = true;
   return {};
@@ -234,7 +234,7 @@ Status Session::startStepped(double seconds) {
 
 void Session::advance(double seconds) {
   if (!running_ || !stepped_ || !(seconds > 0.0)) return;
-  const double ticks = std::min(std::round(seconds * scene_.rate_hz), double(last_tick_));
+  const double ticks = std::min(std::round(seconds * exercise_.rate_hz), double(last_tick_));
   const std::uint64_t until = std::min(last_tick_, loop_->ticks() + std::uint64_t(ticks));
   while (loop_->ticks() < until) {
     loop_->step(0);
@@ -249,7 +249,7 @@ void Session::advance(double seconds) {
 // So often that no ring can fill, which hold thousands of ticks, and that a kill costs no more of a
 // slow session than of a fast one.
 std::uint64_t Session::drainTicks() const {
-  return std::clamp<std::uint64_t>(std::uint64_t(kFlushEvery_s * scene_.rate_hz), 1, 256);
+  return std::clamp<std::uint64_t>(std::uint64_t(kFlushEvery_s * exercise_.rate_hz), 1, 256);
 }
 
 // Devices are stopped on this thread, so nobody can leave it behind.
@@ -309,7 +309,7 @@ void Session::leaveBehind(std::size_t held, bool watchdog_ended) {
   if (loop_->silenceIsPending()) add({tick, EventKind::silenced, -1, 0, {}});
   for (std::size_t arm : stuck.arms) {
     add({tick, EventKind::fault, std::int32_t(arm), kFaultStuck, {}});
-    names += (names.empty() ? "'" : " and '") + scene_.arms[arm].name + "'";
+    names += (names.empty() ? "'" : " and '") + exercise_.arms[arm].name + "'";
   }
   const bool pedal = stuck.arms.empty();
   const std::string plugin =
@@ -330,7 +330,7 @@ void Session::leaveBehind(std::size_t held, bool watchdog_ended) {
 Status Session::freewheel(double seconds, const Progress& progress) {
   if (Status started = startStepped(seconds); !started) return started;
   for (std::uint64_t ticks = 1; !finished() && !progress.cancelled(); ticks = drainTicks()) {
-    advance(double(ticks) / scene_.rate_hz);
+    advance(double(ticks) / exercise_.rate_hz);
     progress.at(double(loop_->ticks()) / double(last_tick_), "Running");
   }
   const bool cancelled = !finished();
@@ -409,19 +409,19 @@ Status Session::setTissues(const TissueSet& wanted) {
   if (Status known = checkLabels(tissues, grid_->labels().get()); !known) return known;
   // Voxels are counted by a tissue's place in the set, so the places stay.
   const bool same_ids = std::equal(
-      tissues.tissues.begin(), tissues.tissues.end(), scene_.tissues.tissues.begin(),
-      scene_.tissues.tissues.end(), [](const Tissue& a, const Tissue& b) { return a.id == b.id; });
+      tissues.tissues.begin(), tissues.tissues.end(), exercise_.tissues.tissues.begin(),
+      exercise_.tissues.tissues.end(), [](const Tissue& a, const Tissue& b) { return a.id == b.id; });
   if (!same_ids) {
     return Error{"OTHER_TISSUES", "A running exercise keeps its list of tissues", "tissues",
                  "Stop it before tissues are added or removed"};
   }
   // Colours, opacities and names are the window's alone: the tick hears of what it uses.
   const TissueTable table = tissueTable(tissues);
-  if (table != tissueTable(scene_.tissues) &&
+  if (table != tissueTable(exercise_.tissues) &&
       !loop_->commands().push({CommandKind::tissues, 0, table})) {
     return Error{"BUSY", "Too many changes are waiting", "the haptic loop", "Try again"};
   }
-  scene_.tissues = tissues;
+  exercise_.tissues = tissues;
   return {};
 }
 
@@ -434,13 +434,13 @@ RunReport Session::report() const {
   RunReport report;
   report.controllers = controllers_;
   report.ticks = loop_->ticks();
-  report.rate_hz = scene_.rate_hz;
+  report.rate_hz = exercise_.rate_hz;
   const double voxel_mm3 = grid_->geometry().voxelVolume_mm3();
-  for (std::size_t t = 0; t < scene_.tissues.tissues.size(); ++t) {
-    report.removed_mm3.emplace_back(scene_.tissues.tissues[t].id, 0.0);
+  for (std::size_t t = 0; t < exercise_.tissues.tissues.size(); ++t) {
+    report.removed_mm3.emplace_back(exercise_.tissues.tissues[t].id, 0.0);
   }
-  for (std::size_t i = 0; i < scene_.arms.size(); ++i) {
-    RunReport::Arm arm{scene_.arms[i].name, statistics_[i], 0.0};
+  for (std::size_t i = 0; i < exercise_.arms.size(); ++i) {
+    RunReport::Arm arm{exercise_.arms[i].name, statistics_[i], 0.0};
     for (std::size_t t = 0; t < report.removed_mm3.size(); ++t) {
       const std::uint64_t voxels = core_->journal().removed(int(i), int(t));
       report.removed_mm3[t].second += double(voxels) * voxel_mm3;
@@ -457,7 +457,7 @@ RunReport Session::report() const {
   report.missed_deadlines = loop_->missed();
   report.nonfinite = core_->nonFinite();
   report.events_dropped = loop_->dropped();
-  report.recorder_behind_ms = 1e3 * double(most_behind_ticks_) / scene_.rate_hz;
+  report.recorder_behind_ms = 1e3 * double(most_behind_ticks_) / exercise_.rate_hz;
   report.tick_ns = loop_->tickDurations().summary();
   report.volume_sha256_before = sha256_before_;
   report.volume_sha256 = sha256_after_;

@@ -1,8 +1,8 @@
 // A running exercise: the one place where volume, arms, loop, recorder and operator meet.
 //
-// One owner thread (the window's, or a program's main). A session runs once: in real time on its own
-// threads from start() to stop(); or on the owner's thread, as fast as its ticks are computed, from
-// startStepped() over advance() to stop(). freewheel() is the latter in one call.
+// One owner thread (the window's, or a program's main). A session runs once: in real time on its
+// own threads from start() to stop(); or on the owner's thread, as fast as its ticks are computed,
+// from startStepped() over advance() to stop(). freewheel() is the latter in one call.
 //
 // Force goes first: stop() takes it away before it waits for anything, and a watchdog takes it away
 // when the ticks stand still for 20 ms. A haptic thread that a call of a device holds is left
@@ -20,7 +20,7 @@
 #include "base/progress.h"
 #include "base/result.h"
 #include "haptics/haptic_loop.h"
-#include "scene/scene.h"
+#include "exercise/exercise.h"
 #include "case/placement.h"
 #include "session/live_operator.h"
 #include "session/operator_script.h"
@@ -55,7 +55,7 @@ class Session {
   Session(const Session&) = delete;
   Session& operator=(const Session&) = delete;
 
-  const Scene& scene() const { return scene_; }  // maps fixed, forces within the arms' limits
+  const Exercise& exercise() const { return exercise_; }  // maps fixed, forces within the arms' limits
   const Rig& rig() const { return rig_; }        // with the dynamics of its devices
   const std::vector<PlacedLandmark>& landmarks() const { return landmarks_; }
   Grid& grid() { return *grid_; }
@@ -129,7 +129,7 @@ class Session {
   // its arm waits for that.
   bool releaseHand(std::size_t arm, std::int64_t time_ns = kNow);
   // Turns the tool about its tip, by a patient axis, within a tenth of a second; at most
-  // kMostTurn_rad from how the scene holds it.
+  // kMostTurn_rad from how the exercise holds it.
   void turnHand(std::size_t arm, const Vec3& axis, double by_rad);
   void straightenHand(std::size_t arm);
   static constexpr double kMostTurn_rad = 1.2;
@@ -143,12 +143,12 @@ class Session {
   bool clutch(std::size_t arm, bool on);  // keeps the rotation
   // The arm's hand is one that is told where to go; a real one is where it is.
   bool isSimulated(std::size_t arm) const { return simulated_[arm]; }
-  // Puts the tool where the scene starts it, and turns the map back: with a real arm where it is
+  // Puts the tool where the exercise starts it, and turns the map back: with a real arm where it is
   // now; a simulated arm's hand goes back to where it began, upright. Where the tool comes into
   // tissue it waits.
   bool recentre(std::size_t arm);
 
-  // Gives an arm another of its tools (Scene::toolOf), once neither that nor the one in hand
+  // Gives an arm another of its tools (Exercise::toolOf), once neither that nor the one in hand
   // touches tissue and the arm has no force; until then it waits (LoopState::wanted_tools), and the
   // number of the one in hand takes the wish back. Also in a pause. An undo or a rewind changes no
   // tool; a reset gives each arm the one that it began with. False for a tool that the arm does not
@@ -199,7 +199,7 @@ class Session {
   Status finishRecording();
   void noteFailure(const Error& error);
 
-  Scene scene_;
+  Exercise exercise_;
   Rig rig_;
   std::vector<PlacedLandmark> landmarks_;
   std::vector<TrephineCapabilities> capabilities_;
@@ -246,8 +246,8 @@ class Session {
   std::optional<Error> failure_;
 };
 
-// "session.h5" in `folder`, or "session-2.h5" and so on where that is taken. Asks the disk, but never
-// fails: a folder that cannot be looked into is for who then writes there to report.
+// "session.h5" in `folder`, or "session-2.h5" and so on where that is taken. Asks the disk, but
+// never fails: a folder that cannot be looked into is for who then writes there to report.
 std::filesystem::path freshFile(const std::filesystem::path& folder, const std::string& stem,
                                 const std::string& extension);
 

@@ -9,15 +9,15 @@ namespace trephine {
 
 void Session::beginOutside() {
   std::vector<double> reach_mm;
-  for (std::size_t i = 0; i < scene_.arms.size(); ++i) {
-    const double scale = scene_.arms[i].map.fixed.value_or(WorkspaceMap{}).motion_scale;
+  for (std::size_t i = 0; i < exercise_.arms.size(); ++i) {
+    const double scale = exercise_.arms[i].map.fixed.value_or(WorkspaceMap{}).motion_scale;
     reach_mm.push_back(1000.0 * scale * capabilities_[i].workspace_m[2] / 2.0);
   }
   const std::vector<double> back_mm = drawnBack_mm(core_->parameters(), *grid_, reach_mm);
   for (const LoopDevice& d : loop_->devices()) {
     if (!d.device->takesTargets()) continue;  // a real arm is where it is
     for (std::size_t i : d.arms) {
-      const double scale = scene_.arms[i].map.fixed.value_or(WorkspaceMap{}).motion_scale;
+      const double scale = exercise_.arms[i].map.fixed.value_or(WorkspaceMap{}).motion_scale;
       begin_m_[i] = Vec3(0.0, 0.0, back_mm[i] / (1000.0 * scale));
       hands_.hands[i].live = true;
       hands_.hands[i].position_m = *begin_m_[i];
@@ -29,7 +29,7 @@ void Session::beginOutside() {
 void Session::holdHands(bool hold) {
   const LoopState& now = state();
   if (now.ticks == 0) return;  // nobody has looked where the arms are
-  for (std::size_t i = 0; i < scene_.arms.size(); ++i) {
+  for (std::size_t i = 0; i < exercise_.arms.size(); ++i) {
     LiveHands::Hand& hand = hands_.hands[i];
     if (hold && !hand.held) hand.held_m = now.record.arms[i].device_position_m;
     hand.held = hold;
@@ -63,7 +63,7 @@ Vec3 Session::handTarget_mm(std::size_t arm) const {
 
 WorkspaceMap Session::map(std::size_t arm) const {
   const LoopState& now = loop_->state().value();
-  return now.ticks > 0 ? now.maps[arm] : scene_.arms[arm].map.fixed.value_or(WorkspaceMap{});
+  return now.ticks > 0 ? now.maps[arm] : exercise_.arms[arm].map.fixed.value_or(WorkspaceMap{});
 }
 
 bool Session::clutch(std::size_t arm, bool on, const Quat& rotation) {
@@ -96,12 +96,12 @@ bool Session::recentre(std::size_t arm) {
 }
 
 bool Session::changeTool(std::size_t arm, std::size_t tool) {
-  if (arm >= scene_.arms.size() || !scene_.toolOf(arm, tool)) return false;
+  if (arm >= exercise_.arms.size() || !exercise_.toolOf(arm, tool)) return false;
   return loop_->commands().push({CommandKind::tool, std::int32_t(tool), {}, std::int32_t(arm)});
 }
 
 double Session::mostPush_N(std::size_t arm) const {
-  return PointerHand::kMostShare * scene_.arms[arm].max_force_N;
+  return PointerHand::kMostShare * exercise_.arms[arm].max_force_N;
 }
 
 bool Session::point(std::size_t arm, const PointerSample& sample) {
@@ -124,7 +124,7 @@ bool Session::point(std::size_t arm, const PointerSample& sample) {
 
 std::int64_t Session::now_ns() const {
   if (running_ && !stepped_) return HostClock().now_ns();
-  return std::int64_t(double(loop_->ticks()) * 1e9 / scene_.rate_hz);
+  return std::int64_t(double(loop_->ticks()) * 1e9 / exercise_.rate_hz);
 }
 
 // The last sample once more, at this time.
@@ -148,7 +148,7 @@ bool Session::releaseHand(std::size_t arm, std::int64_t time_ns) {
 
 // Tissue comes back around the tools: they come out, and stay there.
 void Session::stopPushing() {
-  for (std::size_t i = 0; i < scene_.arms.size(); ++i) {
+  for (std::size_t i = 0; i < exercise_.arms.size(); ++i) {
     if (push_N_[i] > 0.0) (void)setPush(i, 0.0);
   }
 }

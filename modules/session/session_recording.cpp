@@ -35,7 +35,7 @@ void Session::record() {
 // not gather them all first. Records first: the loop pushes what belongs to a tick before the
 // tick's record, so that all of it is found after the record was.
 void Session::drain() {
-  const auto slice = std::uint64_t(kFlushEvery_s * scene_.rate_hz);
+  const auto slice = std::uint64_t(kFlushEvery_s * exercise_.rate_hz);
   for (bool more = true; more;) {
     if (Status served = journal_file_->service(core_->journal()); !served)
       noteFailure(served.error());
@@ -85,7 +85,7 @@ void Session::note(const Event& event) {
   if (event.kind == EventKind::stroke_began) {
     std::lock_guard lock(strokes_mutex_);
     if (strokes_.size() < kMostStrokes) {
-      strokes_.push_back({double(event.tick - paused_.ended()) / scene_.rate_hz, event.arm});
+      strokes_.push_back({double(event.tick - paused_.ended()) / exercise_.rate_hz, event.arm});
     }
     return;
   }
@@ -93,13 +93,14 @@ void Session::note(const Event& event) {
     if (warnings_.size() < kMostFaults) warnings_.push_back(warning);
     spdlog::warn("{}", warning.text);
   };
-  const std::string& arm = scene_.arms[std::size_t(event.arm)].name;
+  const std::string& arm = exercise_.arms[std::size_t(event.arm)].name;
   if (event.kind == EventKind::starts_in_tissue) {
-    warn(startsInTissue(arm, names(scene_.laws, LawKind::elastic)));
+    warn(startsInTissue(arm, names(exercise_.laws, LawKind::elastic)));
   } else if (event.kind == EventKind::let_go) {
-    warn({"LET_GO", "The tool of the " + arm + " arm was hooked behind solid tissue " +
-                        plainNumber(std::round(double(event.tick) / scene_.rate_hz * 10.0) / 10.0) +
-                        " s after the start, while the arm was free: it was let go"});
+    warn({"LET_GO",
+          "The tool of the " + arm + " arm was hooked behind solid tissue " +
+              plainNumber(std::round(double(event.tick) / exercise_.rate_hz * 10.0) / 10.0) +
+              " s after the start, while the arm was free: it was let go"});
   }
   if (event.kind != EventKind::fault) return;
   if (faults_.size() < kMostFaults) faults_.push_back({event.tick, event.arm, event.value});
@@ -147,7 +148,7 @@ double Session::recorderBehind_s() {
   const std::uint64_t flushed = flushed_ticks_;  // before the ticks, which go on
   // What was dropped is never written.
   const std::uint64_t settled = flushed + loop_->records().dropped();
-  return double(state().ticks - std::min(settled, state().ticks)) / scene_.rate_hz;
+  return double(state().ticks - std::min(settled, state().ticks)) / exercise_.rate_hz;
 }
 
 Status Session::finishRecording() {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "volume/forest.h"
+#include "volume/union_find.h"
 
 namespace trephine {
 
@@ -12,7 +12,7 @@ void VoxelRuns::join(Touching touching) {
   for (std::size_t k = 0; k < layers_.size(); ++k) {
     offset[k + 1] = offset[k] + std::uint32_t(layers_[k].runs.size());
   }
-  Forest sets(offset.back());
+  UnionFind sets(offset.back());
   const std::int32_t apart = touching == Touching::corners ? 1 : 0;
   const auto joinRows = [&](int j, int k, int other_j, int other_k) {
     if (other_j < 0 || other_j >= size_[1] || other_k < 0) return;

@@ -24,20 +24,20 @@ constexpr Range kLabelRange{1, 255};
 constexpr Range kShareRange{0, 1};  // opacity, colour
 constexpr Range kShellRange{0.1, 20, "mm"};
 
-// What is as stiff as this stops a tool, unless the set says otherwise: no soft tissue comes near it,
-// and no arm lets it be told from bone.
+// What is as stiff as this stops a tool, unless the set says otherwise: no soft tissue comes near
+// it, and no arm lets it be told from bone.
 constexpr double kSolidFrom_N_per_m = 600.0;
 
 // Its mechanics are the members of SetNumbers.
 struct Tissue : SetNumbers {
-  std::string id;    // stable: scenes, recordings and reports name it
+  std::string id;    // stable: exercises, recordings and reports name it
   std::string name;  // shown
   int hu_min = 0;    // [hu_min, hu_max], both included
   int hu_max = 0;
   std::string hu_source;
   std::optional<int> label;  // 1..255: only voxels with this label of a label map; absent: any voxel
-  // Only voxels of the case's structure of this name, whose `label` a scene finds when it is placed
-  // in a case (scene/scene_structures.h); empty: as `label` says.
+  // Only voxels of the case's structure of this name, whose `label` an exercise finds when it is
+  // placed in a case (exercise/exercise_structures.h); empty: as `label` says.
   std::string structure{};
   // Where a case lacks that structure, it is the outermost layer of another.
   struct Shell {

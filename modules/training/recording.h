@@ -14,7 +14,7 @@ namespace trephine {
 constexpr int kRecordingVersion = 8;  // no older one is read
 
 struct RecordingHeader {
-  Json scene;                 // toJson(RecordedScene) with fixed maps and the controller at the start
+  Json exercise;                 // toJson(RecordedExercise) with fixed maps and the controller at the start
   std::string volume_sha256;  // before the first tick
   GridGeometry geometry;
   std::string build;

@@ -187,9 +187,9 @@ void quietHdf5() {
 
 std::string armDatasetName(std::size_t arm) { return "arm" + std::to_string(arm); }
 
-std::string headSha256(const std::string& build, const std::string& scene,
+std::string headSha256(const std::string& build, const std::string& exercise,
                        const std::string& volume) {
-  const std::string head = build + '\n' + scene + '\n' + volume;
+  const std::string head = build + '\n' + exercise + '\n' + volume;
   return sha256Hex(head.data(), head.size());
 }
 

@@ -53,7 +53,7 @@ void quietHdf5();
 std::string armDatasetName(std::size_t arm);  // "arm0"
 
 // Of the texts at the head of a recording, which HDF5 itself does not guard.
-std::string headSha256(const std::string& build, const std::string& scene,
+std::string headSha256(const std::string& build, const std::string& exercise,
                        const std::string& volume);
 
 }  // namespace trephine

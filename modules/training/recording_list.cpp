@@ -32,12 +32,12 @@ ListedRecording headOf(const std::filesystem::path& file) {
     return row;
   }
   const RecordingHeader& header = (*reader)->header();
-  const Json& scene = header.scene;
-  row.exercise = cleanUtf8(scene.value("name", ""));
-  row.case_source = cleanUtf8(scene.value("case", ""));
+  const Json& exercise = header.exercise;
+  row.exercise = cleanUtf8(exercise.value("name", ""));
+  row.case_source = cleanUtf8(exercise.value("case", ""));
   row.volume_sha256 = header.volume_sha256;
-  constexpr double kSlowest_hz = 1.0;  // no scene is slower
-  const double rate_hz = std::max(kSlowest_hz, scene.value("rate_hz", 1000.0));
+  constexpr double kSlowest_hz = 1.0;  // no exercise is slower
+  const double rate_hz = std::max(kSlowest_hz, exercise.value("rate_hz", 1000.0));
   const std::uint64_t ticks = (*reader)->tickCount();
   PausedTicks paused;
   if (const Result<std::vector<Event>> events = (*reader)->events()) {
@@ -147,7 +147,7 @@ ListedRecording unread(const std::filesystem::path& file, Pass::End end) {
 ListedRecording listRecording(const std::filesystem::path& file) {
   try {
     return headOf(file);
-  } catch (const Json::exception&) {  // a head that is no scene
+  } catch (const Json::exception&) {  // a head that is no exercise
     ListedRecording row;
     row.file = file;
     row.problem = Error{"BAD_RECORDING", "The recording's head is damaged", file.string(),

@@ -17,7 +17,7 @@ namespace trephine {
 struct ListedRecording {
   std::filesystem::path file;
   std::filesystem::file_time_type written;
-  std::string exercise;       // the scene's name
+  std::string exercise;       // the exercise's name
   std::string case_source;    // of a built-in case; else empty
   std::string volume_sha256;  // of the case
   double seconds = 0.0;       // without its pauses
@@ -39,8 +39,8 @@ Json toJson(const ListedRecording& row);  // a line of `trephine-lab recordings 
 struct ReadApart {
   std::filesystem::path program = labProgram();
   double patience_s = 10.0;
-  // Told what has been read so far, on the thread of the call: after a child, and a tenth of a second
-  // after the last time. A list need not wait for its slowest file. May be empty.
+  // Told what has been read so far, on the thread of the call: after a child, and a tenth of a
+  // second after the last time. A list need not wait for its slowest file. May be empty.
   std::function<void(const std::vector<ListedRecording>& so_far)> read{};
 };
 // One row for each file, in their order. Any thread; some milliseconds for each file, and 50 ms for

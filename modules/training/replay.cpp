@@ -6,8 +6,8 @@
 #include "base/file.h"
 #include "base/memory.h"
 #include "haptics/haptic_core.h"
-#include "scene/scene.h"
-#include "scene/scene_structures.h"
+#include "exercise/exercise.h"
+#include "exercise/exercise_structures.h"
 #include "training/recording_layout.h"
 #include "volume/case_memory.h"
 #include "volume/journal_file.h"
@@ -178,15 +178,15 @@ Result<ReplayResult> replay(const SessionReader& recording, const Volume& volume
                      std::to_string(recording.end()->dropped) + " entries",
                  "the recording", "Record again on a machine with less load"};
   }
-  const Result<RecordedScene> recorded = parseRecordedScene(header.scene, "the recording");
+  const Result<RecordedExercise> recorded = parseRecordedExercise(header.exercise, "the recording");
   if (!recorded) return recorded.error();
-  const Scene& scene = recorded->scene;
+  const Exercise& exercise = recorded->exercise;
   Result<std::vector<Event>> events = recording.events();
   if (!events) return events.error();
   Result<std::vector<CarveRecord>> carves = recording.carves();
   if (!carves) return carves.error();
 
-  Result<RecordedLabels> fitted = recordedLabels(header, scene.tissues, labels);
+  Result<RecordedLabels> fitted = recordedLabels(header, exercise.tissues, labels);
   if (!fitted) return fitted.error();
 
   const double needed_mb = exerciseMb(volume.geometry.voxelCount());
@@ -195,7 +195,7 @@ Result<ReplayResult> replay(const SessionReader& recording, const Volume& volume
   }
   // The same voxels may come from a file that rounds their place.
   Grid grid(Volume{header.geometry, volume.hu}, fitted->placed);
-  HapticCore core(hapticParameters(scene, recorded->rig), *grid.takeWriter());
+  HapticCore core(hapticParameters(exercise, recorded->rig), *grid.takeWriter());
   const Result<std::filesystem::path> temporary = temporaryFolder();
   if (!temporary) return temporary.error();
   Result<std::unique_ptr<JournalFile>> journal_file = JournalFile::create(*temporary);

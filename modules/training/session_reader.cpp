@@ -23,7 +23,8 @@ namespace {
 
 // Beside a writer, what is half written has a wrong checksum for a moment. HDF5 then waits 1 ns and
 // reads again, the next time twice as long: 16 ms in all with 24 attempts. With its own 100 a byte
-// that stays wrong would be waited for without end. Where nobody writes, a wrong checksum is damage.
+// that stays wrong would be waited for without end. Where nobody writes, a wrong checksum is
+// damage.
 constexpr unsigned kReadAttempts = 24, kOneReadAttempt = 1;
 
 hsize_t rowCount(hid_t dataset) {
@@ -118,7 +119,7 @@ Result<GridGeometry> readGeometry(JsonReader reader) {
   return g;
 }
 
-// A recording's scene may be older than the rule that texts are single lines.
+// A recording's exercise may be older than the rule that texts are single lines.
 void makePlainLines(Json& json) {
   if (json.is_string()) json = cleanUtf8(json.get_ref<const std::string&>());
   if (!json.is_structured()) return;
@@ -207,7 +208,8 @@ Result<std::unique_ptr<SessionReader>> SessionReader::open(const std::filesystem
   std::unique_ptr<SessionReader> reader(new SessionReader);
   File& f = *reader->file_;
   f.path = path;
-  // A recording that was killed still carries its writer's mark; reading beside a writer ignores it.
+  // A recording that was killed still carries its writer's mark; reading beside a writer ignores
+  // it.
   const hid_t access = H5Pcreate(H5P_FILE_ACCESS);
   H5Pset_libver_bounds(access, H5F_LIBVER_LATEST, H5F_LIBVER_LATEST);
   const bool written = isBeingWritten(path);
@@ -239,20 +241,20 @@ Result<std::unique_ptr<SessionReader>> SessionReader::open(const std::filesystem
                      std::to_string(kRecordingVersion) + " on",
                  path.string(), "Open it with the Trephine that made it"};
   }
-  const auto scene = readText(f.file, "scene");
+  const auto exercise = readText(f.file, "scene");
   const auto volume = readText(f.file, "volume");
   const auto build = readText(f.file, "build");
   const auto head_sha256 = readText(f.file, "head_sha256");
-  if (!scene || !volume || !build || head_sha256 != headSha256(*build, *scene, *volume)) {
+  if (!exercise || !volume || !build || head_sha256 != headSha256(*build, *exercise, *volume)) {
     return f.bad("The recording is incomplete: its head is damaged");
   }
-  Result<Json> scene_json = parseJson(*scene, path.string());
-  if (!scene_json) return f.bad("The recording is damaged: its scene cannot be read");
+  Result<Json> exercise_json = parseJson(*exercise, path.string());
+  if (!exercise_json) return f.bad("The recording is damaged: its scene cannot be read");
   Result<Json> volume_json = parseJson(*volume, path.string());
   if (!volume_json) return f.bad("The recording is damaged: its volume cannot be read");
   JsonReader volume_reader(*volume_json, path.string(), "volume");
-  f.header.scene = *std::move(scene_json);
-  makePlainLines(f.header.scene);
+  f.header.exercise = *std::move(exercise_json);
+  makePlainLines(f.header.exercise);
   f.header.volume_sha256 = volume_reader.text("sha256");
   f.header.labels_sha256 = volume_reader.text("labels_sha256", "");
   Result<GridGeometry> geometry = readGeometry(volume_reader.object("geometry"));

@@ -215,11 +215,11 @@ Result<std::unique_ptr<SessionRecorder>> SessionRecorder::create(const std::file
   writeText(f.file, "purpose", kPurpose);
   Json volume = {{"sha256", header.volume_sha256}, {"geometry", geometryJson(header.geometry)}};
   if (!header.labels_sha256.empty()) volume["labels_sha256"] = header.labels_sha256;
-  const std::string scene_text = header.scene.dump(1), volume_text = volume.dump(1);
+  const std::string exercise_text = header.exercise.dump(1), volume_text = volume.dump(1);
   writeText(f.file, "build", header.build);
-  writeText(f.file, "scene", scene_text);
+  writeText(f.file, "scene", exercise_text);
   writeText(f.file, "volume", volume_text);
-  writeText(f.file, "head_sha256", headSha256(header.build, scene_text, volume_text));
+  writeText(f.file, "head_sha256", headSha256(header.build, exercise_text, volume_text));
 
   bool ok = f.ticks.create(f.file, "ticks", compoundType(tickFields(), sizeof(TickRow)), 4096);
   f.arms.resize(arm_count);

@@ -17,7 +17,7 @@ namespace {
 
 constexpr std::uint64_t kSlice = 4096;  // ticks
 
-// As a field of its own, whatever a scene calls an arm.
+// As a field of its own, whatever an exercise calls an arm.
 std::string quoted(std::string text) {
   // A spreadsheet would take it for a formula.
   if (!text.empty() && std::string_view("=+-@\t\r").find(text.front()) != std::string_view::npos) {
@@ -30,8 +30,8 @@ std::string quoted(std::string text) {
 }
 
 Status writeTo(const SessionReader& recording, std::ofstream& out, const Progress& progress) {
-  const Json& scene = recording.header().scene;
-  const double rate_hz = scene.at("rate_hz").get<double>();
+  const Json& exercise = recording.header().exercise;
+  const double rate_hz = exercise.at("rate_hz").get<double>();
   out.imbue(std::locale::classic());
   out << std::setprecision(std::numeric_limits<double>::max_digits10);
   out << "tick,t_s,arm,x_m,y_m,z_m,v_x_m_s,v_y_m_s,v_z_m_s,f_e_x_N,f_e_y_N,f_e_z_N,E_obs_J,"
@@ -39,7 +39,7 @@ Status writeTo(const SessionReader& recording, std::ofstream& out, const Progres
          "proxy_z_mm,tool_state,controller_parts\n";
   std::array<std::string, kMaxArms> names;
   for (std::size_t i = 0; i < recording.armCount(); ++i) {
-    names[i] = quoted(scene.at("arms").at(i).at("name").get<std::string>());
+    names[i] = quoted(exercise.at("arms").at(i).at("name").get<std::string>());
   }
   const auto add = [&](const Vec3& v) { out << ',' << v.x << ',' << v.y << ',' << v.z; };
   const std::uint64_t count = recording.tickCount();

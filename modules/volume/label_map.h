@@ -1,6 +1,6 @@
 // A label map: which structure of a patient each voxel belongs to. A plain value.
 //
-// Tissues, landmarks and scenes name a structure; the number that stands for it is of this map
+// Tissues, landmarks and exercises name a structure; the number that stands for it is of this map
 // alone. A voxel is of one structure or of none.
 #pragma once
 

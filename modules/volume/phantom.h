@@ -56,8 +56,8 @@ constexpr double kPhantomNoiseHu = 8.0;
 constexpr double kPhantomSpread_mm = 0.6;
 constexpr double kPhantomSpread_voxels = 0.4;
 
-// "cranium" of "phantom:cranium", as scenes, commands and recordings name a built-in case; nothing
-// of what is none.
+// "cranium" of "phantom:cranium", as exercises, commands and recordings name a built-in case;
+// nothing of what is none.
 std::optional<std::string> phantomNamed(const std::string& case_source);
 std::string phantomSource(const std::string& name);
 // "cranium", "abdomen".

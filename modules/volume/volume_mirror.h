@@ -38,7 +38,7 @@ class VolumeMirror {
   bool empty() const { return volume_.hu.empty(); }
   const Volume& volume() const { return volume_; }
   // For who draws in place with a library that asks for more than it needs, and for measurements.
-  Volume& lent() { return volume_; }
+  Volume& mutableVolume() { return volume_; }
   const std::shared_ptr<const LabelMap>& labels() const { return labels_; }
 
   // With touched(): what was cut, for views that show it. Null where it is not known.

@@ -109,21 +109,21 @@ Lateness recorded(const std::string& file, std::int64_t period_ns) {
   return lateness;
 }
 
-// The scene with its script over and over, each time a little beside, so that the arms cut all the
-// while.
+// The exercise with its script over and over, each time a little beside, so that the arms cut all
+// the while.
 std::filesystem::path repeated(const std::filesystem::path& file, double seconds,
                                const std::filesystem::path& folder) {
   constexpr double kAside_mm = 1.5;
-  Json scene = *readJsonFile(file);
+  Json exercise = *readJsonFile(file);
   const auto absolute = [&](Json& path) {
     path = std::filesystem::absolute(file.parent_path() / path.get<std::string>())
                .lexically_normal()
                .string();
   };
-  absolute(scene["tissues"]);
-  absolute(scene["operator"]);
-  for (Json& tool : scene["tools"]) absolute(tool["file"]);
-  Json script = *readJsonFile(scene["operator"].get<std::string>());
+  absolute(exercise["tissues"]);
+  absolute(exercise["operator"]);
+  for (Json& tool : exercise["tools"]) absolute(tool["file"]);
+  Json script = *readJsonFile(exercise["operator"].get<std::string>());
   double once_s = 0.0;
   for (const Json& arm : script["arms"]) {
     once_s = std::max(once_s, arm["waypoints"].back()["t"].get<double>());
@@ -139,9 +139,9 @@ std::filesystem::path repeated(const std::filesystem::path& file, double seconds
       }
     }
   }
-  scene["operator"] = (folder / "script.json").string();
+  exercise["operator"] = (folder / "script.json").string();
   if (!writeTextFile(folder / "script.json", script.dump()) ||
-      !writeTextFile(folder / "scene.json", scene.dump())) {
+      !writeTextFile(folder / "scene.json", exercise.dump())) {
     std::fprintf(stderr, "%s cannot be written\n", folder.c_str());
     std::exit(1);
   }
@@ -153,7 +153,7 @@ int run(const std::string& file, double seconds, int runs) {
       std::filesystem::temp_directory_path() / ("bench-exercise-" + std::to_string(::getpid()));
   std::error_code ec;
   std::filesystem::create_directories(folder, ec);
-  const std::string scene = repeated(file, seconds, folder).string();
+  const std::string exercise = repeated(file, seconds, folder).string();
   std::printf("%-4s %-9s %8s %9s %8s %6s %10s %8s %9s %7s\n", "run", "thread", "ticks", "on time",
               "reduced", "away", "longest ms", "frames/s", "frame p99", "stall");
   bool within = true;
@@ -161,7 +161,7 @@ int run(const std::string& file, double seconds, int runs) {
     const std::filesystem::path out = folder / std::to_string(i);
     BareTimer bare(1'000'000, seconds + kAllowed_s);
     const std::string text =
-        answerOf(TREPHINE_PROGRAM " --exercise '" + scene + "' --seconds " +
+        answerOf(TREPHINE_PROGRAM " --exercise '" + exercise + "' --seconds " +
                  std::to_string(seconds) + " --out '" + out.string() + "' --json");
     bare.stop();
     const Json answer = Json::parse(text, nullptr, false);

@@ -1,5 +1,6 @@
-// The time of a tick of a scene with two laws, viscous and elastic: median ns over many ticks of a
-// burr that slides in bone. `without_law.sh` compares it with a build from which a law was removed.
+// The time of a tick of an exercise with two laws, viscous and elastic: median ns over many ticks
+// of a burr that slides in bone. `without_law.sh` compares it with a build from which a law was
+// removed.
 #include <algorithm>
 #include <chrono>
 #include <cmath>

@@ -1,6 +1,6 @@
 // A threshold that is dragged over a CT of 512 x 512 x 300 in the window's Prepare: what a step
-// takes until histogram, shares and slices show it, and until the 3-D view does, beside what a frame
-// of that view takes when the camera turns. Needs a display (xvfb-run).
+// takes until histogram, shares and slices show it, and until the 3-D view does, beside what a
+// frame of that view takes when the camera turns. Needs a display (xvfb-run).
 //
 //   bench_thresholds [COLUMNS ROWS SLICES]
 #include <QElapsedTimer>
@@ -86,7 +86,7 @@ int main(int argc, char** argv) {
   print("a frame of the 3-D view while it is turned", turns);
   settle(2000);
 
-  const TissueSet& set = window.workstation().scene()->tissues;
+  const TissueSet& set = window.workstation().exercise()->tissues;
   std::size_t bone = 0;
   for (std::size_t i = 0; i < set.tissues.size(); ++i) {
     if (set.tissues[i].id == "bone") bone = i;
@@ -109,7 +109,7 @@ int main(int argc, char** argv) {
   }
   QTest::mouseRelease(&histogram, Qt::LeftButton, {}, at(from) + QPoint(60, 0));
   std::printf("bone from %d to %d HU\n", int(from + 0.5),
-              window.workstation().scene()->tissues.tissues[bone].hu_min);
+              window.workstation().exercise()->tissues.tissues[bone].hu_min);
   print("a step of a threshold: histogram and slices", steps);
   print("a step of a threshold: the 3-D view too", threeD);
   return 0;

@@ -4,7 +4,7 @@
 
 #include <cstdint>
 
-#include "scene/scene.h"
+#include "exercise/exercise.h"
 #include "session/operator_script.h"
 #include "shells.h"
 #include "volume/volume.h"
@@ -12,7 +12,7 @@
 namespace trephine::fuzz {
 
 enum Kind : std::uint8_t {
-  kScene,
+  kExercise,
   kTool,
   kTissues,
   kDevice,
@@ -29,15 +29,15 @@ constexpr const char* kFolders[kRecording] = {"scenes", "tools", "tissues", "dev
 constexpr std::uint64_t kTicks = 200;
 
 // Shells of what the shipped tissue sets call scalp, bone and brain or fat, bone and liver, 48^3
-// voxels: every shipped scene finds its landmarks there.
+// voxels: every shipped exercise finds its landmarks there.
 inline Volume smallHead() {
   return test::shells(48, 2.0, {{46, -80}, {44, 1200}, {40, 45}});
 }
 
-// Every arm of the scene begins in tissue and moves on through it.
-inline Result<OperatorScript> dive(const Scene& scene) {
+// Every arm of the exercise begins in tissue and moves on through it.
+inline Result<OperatorScript> dive(const Exercise& exercise) {
   Json arms = Json::array();
-  for (const SceneArm& arm : scene.arms) {
+  for (const ExerciseArm& arm : exercise.arms) {
     arms.push_back(
         {{"arm", arm.name},
          {"waypoints", {{{"t", 0}, {"at_mm", {0, 0, -1}}}, {{"t", 0.1}, {"at_mm", {2, 1, -6}}}}}});
@@ -47,7 +47,7 @@ inline Result<OperatorScript> dive(const Scene& scene) {
                        {"name", "dive"},
                        {"hand", {{"stiffness_N_per_m", 1000}, {"damping_Ns_per_m", 10}}},
                        {"arms", arms}};
-  return parseOperatorScript(script, "dive", scene);
+  return parseOperatorScript(script, "dive", exercise);
 }
 
 }  // namespace trephine::fuzz

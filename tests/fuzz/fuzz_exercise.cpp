@@ -1,6 +1,6 @@
-// Any bytes as a scene, tool, tissue, device or operator file, as a recording, as the list of an
-// exported exercise or as a case's files: read, and where they are accepted used for a few hundred
-// ticks. See README.md.
+// Any bytes as an exercise, tool, tissue, device or operator file, as a recording, as the list of
+// an exported exercise or as a case's files: read, and where they are accepted used for a few
+// hundred ticks. See README.md.
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -14,7 +14,7 @@
 #include "base/system.h"
 #include "cases.h"
 #include "device/device.h"
-#include "exercise/exercise_folder.h"
+#include "exchange/exercise_folder.h"
 #include "exercise_files.h"
 #include "imaging/report/provenance.h"
 #include "json_mutator.h"
@@ -77,7 +77,7 @@ class Files {
     return file;
   }
   const fs::path& root() const { return root_; }
-  fs::path scene(const char* name) const { return root_ / "scenes" / name; }
+  fs::path exercise(const char* name) const { return root_ / "scenes" / name; }
 
  private:
   fs::path root_;
@@ -88,13 +88,13 @@ void expectSaid(const Error& error) {
 }
 
 // What was accepted must be fit to be felt.
-void run(const Scene& scene, const OperatorScript& script, const Rig& rig = {}) {
+void run(const Exercise& exercise, const OperatorScript& script, const Rig& rig = {}) {
   SessionOptions options{{}, script};
   options.rig = rig;
   Result<std::unique_ptr<Session>> session =
-      Session::create(test::placed(scene, smallHead()), options);
+      Session::create(test::placed(exercise, smallHead()), options);
   if (!session) return expectSaid(session.error());
-  const Status done = (*session)->freewheel(double(kTicks) / scene.rate_hz);
+  const Status done = (*session)->freewheel(double(kTicks) / exercise.rate_hz);
   if (!done) return expectSaid(done.error());
   const RunReport report = (*session)->report();
   require(report.nonfinite == 0, "what was accepted ends in a force that is not finite");
@@ -106,33 +106,33 @@ void run(const Scene& scene, const OperatorScript& script, const Rig& rig = {}) 
   toText(report);
 }
 
-void runScene(const Result<Scene>& scene, const Rig& rig = {}) {
-  if (!scene) return expectSaid(scene.error());
-  const Result<OperatorScript> script = dive(*scene);
+void runExercise(const Result<Exercise>& exercise, const Rig& rig = {}) {
+  if (!exercise) return expectSaid(exercise.error());
+  const Result<OperatorScript> script = dive(*exercise);
   if (!script) return expectSaid(script.error());
-  run(*scene, *script, rig);
+  run(*exercise, *script, rig);
 }
 
-// The shipped scene of the burr, with one of its files replaced by the input.
+// The shipped exercise of the burr, with one of its files replaced by the input.
 void runWith(const Files& files, Kind kind) {
-  Json scene = *readJsonFile(files.scene("burr-hole.json"));
-  if (kind == kTool) scene["tools"][0]["file"] = "../tools/input.json";
-  if (kind == kTissues) scene["tissues"] = "../tissues/input.json";
+  Json exercise = *readJsonFile(files.exercise("burr-hole.json"));
+  if (kind == kTool) exercise["tools"][0]["file"] = "../tools/input.json";
+  if (kind == kTissues) exercise["tissues"] = "../tissues/input.json";
   Rig rig;
   if (kind == kDevice) {
     const fs::path config = files.root() / "devices" / "input.json";
     rig.arms.push_back({{kSimulated, 0, config.string()}, {}});
   }
-  runScene(parseScene(scene, files.scene("burr-hole.json")), rig);
+  runExercise(parseExercise(exercise, files.exercise("burr-hole.json")), rig);
 }
 
 void runScript(const Files& files, const fs::path& file) {
-  Result<Scene> scene = readScene(files.scene("cranium.json"));
-  require(scene.ok(), "the shipped scene cannot be read");
-  scene->rate_hz = 100.0;  // two seconds of the script
-  const Result<OperatorScript> script = readOperatorScript(file, *scene);
+  Result<Exercise> exercise = readExercise(files.exercise("cranium.json"));
+  require(exercise.ok(), "the shipped scene cannot be read");
+  exercise->rate_hz = 100.0;  // two seconds of the script
+  const Result<OperatorScript> script = readOperatorScript(file, *exercise);
   if (!script) return expectSaid(script.error());
-  run(*scene, *script);
+  run(*exercise, *script);
 }
 
 void importFolder(const fs::path& list, const fs::path& storage) {
@@ -176,8 +176,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const std::filesystem::path file =
       files.put(kind, {reinterpret_cast<const char*>(data) + 1, size - 1});
   switch (kind) {
-    case kScene:
-      runScene(readScene(file));
+    case kExercise:
+      runExercise(readExercise(file));
       break;
     case kOperator:
       runScript(files, file);

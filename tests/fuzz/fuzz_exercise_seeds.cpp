@@ -1,5 +1,5 @@
 // The inputs that fuzz_exercise starts from: every shipped file, and a short recording of every
-// shipped scene. Each must be accepted, or the program fails.
+// shipped exercise. Each must be accepted, or the program fails.
 //
 // usage: fuzz_exercise_seeds FOLDER
 #include <hdf5.h>
@@ -13,7 +13,7 @@
 #include "base/file.h"
 #include "base/system.h"
 #include "cases.h"
-#include "exercise/exercise_folder.h"
+#include "exchange/exercise_folder.h"
 #include "exercise_files.h"
 #include "imaging/report/provenance.h"
 #include "library/case_record.h"
@@ -35,21 +35,21 @@ Status writeSeed(const fs::path& folder, Kind kind, const std::string& name, con
   return writeTextFile(folder / name, char(kind) + contentOf(file));
 }
 
-Status record(const fs::path& scene_file, const fs::path& file) {
-  const Result<Scene> scene = readScene(scene_file);
-  if (!scene) return scene.error();
-  const Result<OperatorScript> script = dive(*scene);
+Status record(const fs::path& exercise_file, const fs::path& file) {
+  const Result<Exercise> exercise = readExercise(exercise_file);
+  if (!exercise) return exercise.error();
+  const Result<OperatorScript> script = dive(*exercise);
   if (!script) return script.error();
   Result<std::unique_ptr<Session>> session =
-      Session::create(test::placed(*scene, smallHead()), {file, *script});
+      Session::create(test::placed(*exercise, smallHead()), {file, *script});
   if (!session) return session.error();
-  if (Status run = (*session)->freewheel(double(kTicks) / scene->rate_hz); !run) return run;
+  if (Status run = (*session)->freewheel(double(kTicks) / exercise->rate_hz); !run) return run;
   const auto recording = SessionReader::open(file);
   if (!recording) return recording.error();
   const Result<ReplayResult> result = replay(**recording, smallHead());
   if (!result) return result.error();
   if (result->identical) return {};
-  return Error{"DIFFERS", "A recording does not replay", scene_file.string(), ""};
+  return Error{"DIFFERS", "A recording does not replay", exercise_file.string(), ""};
 }
 
 // A recording whose ticks are a link to a pipe, and one whose events lie in another file: refused,
@@ -118,7 +118,7 @@ Status writeSeeds(const fs::path& folder) {
       if (entry.path().extension() != ".json") continue;
       const std::string name = std::string(kFolders[kind]) + "-" + entry.path().stem().string();
       if (Status s = writeSeed(folder, Kind(kind), name, entry.path()); !s) return s;
-      if (kind != kScene) continue;
+      if (kind != kExercise) continue;
       const fs::path recording = folder / "recording.h5";
       if (Status s = record(entry.path(), recording); !s) return s;
       if (Status s = writeSeed(folder, kRecording, "recording-" + name, recording); !s) return s;

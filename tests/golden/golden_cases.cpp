@@ -87,24 +87,24 @@ Result<Volume> tilted(const std::string& phantom) {
 }
 
 Result<GoldenCase> made(const GoldenLine& line) {
-  Result<Scene> scene = readScene(resourceFolder() / "scenes" / (line.scene + ".json"));
-  if (!scene) return scene.error();
-  if (line.grid == CaseGrid::scene) {
-    Result<Placement> opened = openCase(*scene);
+  Result<Exercise> exercise = readExercise(resourceFolder() / "scenes" / (line.exercise + ".json"));
+  if (!exercise) return exercise.error();
+  if (line.grid == CaseGrid::exercise) {
+    Result<Placement> opened = openCase(*exercise);
     if (!opened) return opened.error();
     if (opened->error) return *opened->error;
-    scene->tissues = opened->scene.tissues;  // with their labels
-    return GoldenCase{std::move(*scene), std::move(*opened)};
+    exercise->tissues = opened->exercise.tissues;  // with their labels
+    return GoldenCase{std::move(*exercise), std::move(*opened)};
   }
-  const std::string phantom = phantomNamed(scene->case_source).value_or("");
+  const std::string phantom = phantomNamed(exercise->case_source).value_or("");
   Result<Volume> volume = line.grid == CaseGrid::oblique ? oblique(phantom) : tilted(phantom);
   if (!volume) return volume.error();
-  *scene = onCase(*scene, "");
+  *exercise = onCase(*exercise, "");
   Result<Placement> placed =
-      place(*scene, caseOf(std::make_shared<const Volume>(std::move(*volume))));
+      place(*exercise, caseOf(std::make_shared<const Volume>(std::move(*volume))));
   if (!placed) return placed.error();
-  scene->tissues = placed->scene.tissues;
-  return GoldenCase{std::move(*scene), std::move(*placed)};
+  exercise->tissues = placed->exercise.tissues;
+  return GoldenCase{std::move(*exercise), std::move(*placed)};
 }
 
 }  // namespace
@@ -112,7 +112,7 @@ Result<GoldenCase> made(const GoldenLine& line) {
 Result<GoldenCase> goldenCase(const GoldenLine& line) {
   static std::string name;
   static std::optional<GoldenCase> kept;
-  const std::string wanted = line.scene + "/" + std::to_string(int(line.grid));
+  const std::string wanted = line.exercise + "/" + std::to_string(int(line.grid));
   if (name != wanted) {
     kept.reset();
     name.clear();

@@ -7,7 +7,7 @@
 namespace trephine::test {
 
 struct GoldenCase {
-  Scene scene;
+  Exercise exercise;
   Placement of;
 };
 

@@ -14,21 +14,21 @@
 
 namespace trephine::test {
 
-enum class CaseGrid { scene, oblique, tilted };
+enum class CaseGrid { exercise, oblique, tilted };
 
 struct GoldenLine {
-  std::string name;   // of the PNG
-  std::string scene;  // of resources/scenes
-  CaseGrid grid = CaseGrid::scene;
+  std::string name;      // of the PNG
+  std::string exercise;  // of resources/exercises
+  CaseGrid grid = CaseGrid::exercise;
   std::string shows;  // the tissue without which it is another picture
   double ssim = 0.0;  // at least, between a picture and its golden one
   double zoom = 1.0;
 
   // In 3-D.
-  std::optional<ViewPreset> preset;  // none: the looks of the scene
-  std::optional<StandardView> side;  // none: the scene's own view
+  std::optional<ViewPreset> preset;  // none: the looks of the exercise
+  std::optional<StandardView> side;  // none: the exercise's own view
   std::vector<double> orbit_deg;     // from there to the right and up
-  bool outline = false;              // the scene's
+  bool outline = false;              // the exercise's
   std::vector<double> carved_mm;  // radius and depth of a hole at the view's landmark; none: {0, 0}
 
   // A slice.
@@ -62,10 +62,10 @@ std::optional<Value> chosen(JsonReader& reader, const char* key,
 inline GoldenLine lineOf(JsonReader reader) {
   GoldenLine line;
   line.name = reader.text("name");
-  line.scene = reader.text("scene");
+  line.exercise = reader.text("scene");
   line.grid = chosen<CaseGrid>(reader, "grid",
                                {{"oblique", CaseGrid::oblique}, {"tilted", CaseGrid::tilted}})
-                  .value_or(CaseGrid::scene);
+                  .value_or(CaseGrid::exercise);
   line.shows = reader.text("shows");
   line.ssim = reader.number("ssim", {0.5, 1.0});
   line.zoom = reader.number("zoom", {0.1, 10.0}, 1.0);

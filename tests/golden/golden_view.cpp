@@ -13,20 +13,20 @@ namespace {
 
 constexpr int kWidth = 320, kHeight = 240;
 
-Volume without(const std::string& tissue, const Scene& scene, const Placement& of) {
+Volume without(const std::string& tissue, const Exercise& exercise, const Placement& of) {
   Volume volume = *of.patient.volume;
   TissueLookup lookup;
-  lookup.set(tissueTable(scene.tissues));
+  lookup.set(tissueTable(exercise.tissues));
   for (std::size_t i = 0; i < volume.hu.size(); ++i) {
     const int c = lookup.classOf(volume.hu[i], of.labels ? of.labels->labels[i] : 0);
-    if (c >= 0 && scene.tissues.tissues[std::size_t(c)].id == tissue) volume.hu[i] = kAirHu;
+    if (c >= 0 && exercise.tissues.tissues[std::size_t(c)].id == tissue) volume.hu[i] = kAirHu;
   }
   return volume;
 }
 
 const LandmarkFrame* landmarkOf(const GoldenCase& shown) {
   for (const PlacedLandmark& landmark : shown.of.landmarks) {
-    if (landmark.id == shown.scene.view.landmark) return &landmark.frame;
+    if (landmark.id == shown.exercise.view.landmark) return &landmark.frame;
   }
   return nullptr;
 }
@@ -49,13 +49,13 @@ Result<Picture> drawnVolume(const GoldenLine& line, const GoldenCase& shown, Vol
   Result<std::unique_ptr<SceneRenderer>> made = SceneRenderer::offscreen(kWidth, kHeight);
   if (!made) return made.error();
   SceneRenderer& renderer = **made;
-  TissueLooks looks = shown.scene.view.looks;
+  TissueLooks looks = shown.exercise.view.looks;
   if (line.preset) {
-    const auto preset = presetLooks(shown.scene.tissues, *line.preset);
+    const auto preset = presetLooks(shown.exercise.tissues, *line.preset);
     if (!preset) return Error{"NO_PRESET", "The scene has no such preset", line.name, ""};
     looks = *preset;
   }
-  renderer.setTissues(shown.scene.tissues, looks);
+  renderer.setTissues(shown.exercise.tissues, looks);
   Grid grid(std::move(volume), shown.of.labels);
   renderer.setVolume(grid);
   const LandmarkFrame* landmark = landmarkOf(shown);
@@ -64,13 +64,13 @@ Result<Picture> drawnVolume(const GoldenLine& line, const GoldenCase& shown, Vol
     if (line.side) renderer.lookFrom(*line.side);
   } else {
     renderer.lookAt(landmark->position_mm, landmark->viewDirection(), landmark->viewUp(),
-                    shown.scene.view.distance_mm);
+                    shown.exercise.view.distance_mm);
   }
   renderer.orbit(line.orbit_deg[0] + (change == Change::view ? 12.0 : 0.0), line.orbit_deg[1]);
   renderer.zoom(line.zoom);
   if (line.outline && change != Change::colours) {
-    const SceneOutline& outline = *shown.scene.outline;
-    renderer.setOutline(outlineOn(shown.scene, shown.of.landmarks, *shown.of.patient.volume),
+    const ExerciseOutline& outline = *shown.exercise.outline;
+    renderer.setOutline(outlineOn(shown.exercise, shown.of.landmarks, *shown.of.patient.volume),
                         outline.closed, outline.width_mm);
   }
   if (change == Change::driver) renderer.setSampleDistance(0.9 * SceneRenderer::kSampleDistance);
@@ -87,7 +87,7 @@ Picture drawnSlice(const GoldenLine& line, const GoldenCase& shown, Volume volum
   SliceColours colours;
   const std::size_t next = (line.window + 1) % kWindowPresets.size();
   colours.setWindow(kWindowPresets[change == Change::window ? next : line.window].window);
-  colours.setTissues(shown.scene.tissues);
+  colours.setTissues(shown.exercise.tissues);
   colours.setOverlay(change == Change::colours ? Overlay::none : line.overlay, 0.5);
   const auto mirror = std::make_shared<VolumeMirror>();
   mirror->show(std::move(volume), shown.of.labels);
@@ -106,7 +106,7 @@ Picture drawnSlice(const GoldenLine& line, const GoldenCase& shown, Volume volum
 Result<Picture> drawn(const GoldenLine& line, Change change) {
   const Result<GoldenCase> shown = goldenCase(line);
   if (!shown) return shown.error();
-  Volume volume = change == Change::tissue ? without(line.shows, shown->scene, shown->of)
+  Volume volume = change == Change::tissue ? without(line.shows, shown->exercise, shown->of)
                                            : Volume(*shown->of.patient.volume);
   if (line.slice) return drawnSlice(line, *shown, std::move(volume), change);
   return drawnVolume(line, *shown, std::move(volume), change);

@@ -6,7 +6,7 @@
 #include <QVBoxLayout>
 
 #include "base/file.h"
-#include "scene/scene.h"
+#include "exercise/exercise.h"
 #include "ui/cases/report_file.h"
 #include "ui/common/actions.h"
 #include "ui/common/error_dialog.h"
@@ -14,7 +14,7 @@
 #include "ui/common/question.h"
 #include "ui/common/settings.h"
 #include "ui/common/words.h"
-#include "ui/work/stored_case.h"
+#include "library/stored_case.h"
 #include "volume/phantom.h"
 
 namespace trephine {
@@ -39,14 +39,14 @@ Error stillChanging() {
 
 }  // namespace
 
-CasesWorkspace::CasesWorkspace(Bench& bench)
-    : Workspace(&bench), bench_(bench), workstation_(bench.workstation()) {
+CasesWorkspace::CasesWorkspace(AppContext& bench)
+    : Workspace(&bench), app_(bench), workstation_(bench.workstation()) {
   QWidget& window = *bench.window();
   open_ = makeAction(window, Symbol::open, "open", tr("Open folder\u2026"), QKeySequence::Open,
                      tr("Open a folder of CT"));
   open_file_ = makeAction(window, Symbol::open, "openFile", tr("Open file\u2026"), {},
                           tr("Open a DICOMDIR or a volume file (NIfTI, NRRD, MetaImage, raw)"));
-  open_scene_ =
+  open_exercise_ =
       makeAction(window, Symbol::open, "openScene", tr("Open exercise\u2026"),
                  QKeySequence(Qt::CTRL | Qt::SHIFT | Qt::Key_O), tr("Open an exercise's file"));
   page_ = new CasesPage;
@@ -67,7 +67,7 @@ Workspace::Parts CasesWorkspace::parts() {
 void CasesWorkspace::connectParts() {
   connect(open_, &QAction::triggered, this, &CasesWorkspace::askForFolder);
   connect(open_file_, &QAction::triggered, this, &CasesWorkspace::askForFile);
-  connect(open_scene_, &QAction::triggered, this, &CasesWorkspace::askForScene);
+  connect(open_exercise_, &QAction::triggered, this, &CasesWorkspace::askForExercise);
   connect(page_, &CasesPage::folderWanted, this, &CasesWorkspace::askForFolder);
   connect(page_, &CasesPage::seriesWanted, import_, &ImportPage::open);
   connect(page_, &CasesPage::trainWanted, this,
@@ -75,9 +75,9 @@ void CasesWorkspace::connectParts() {
   connect(page_, &CasesPage::prepareWanted, this,
           [this](const CaseEntry& entry) { openEntry(entry, Place::prepare); });
   connect(page_, &CasesPage::goOnWanted, this,
-          [this](bool train) { bench_.go(train ? Place::train : Place::prepare); });
+          [this](bool train) { app_.go(train ? Place::train : Place::prepare); });
   connect(page_, &CasesPage::exercisesWanted, this,
-          [this](const CaseEntry& entry) { bench_.review(entry.caseKey()); });
+          [this](const CaseEntry& entry) { app_.review(entry.caseKey()); });
   connect(page_, &CasesPage::saveWanted, this, &CasesWorkspace::saveCase);
   connect(page_, &CasesPage::renameWanted, this, &CasesWorkspace::rename);
   connect(page_, &CasesPage::deleteWanted, this, &CasesWorkspace::askToDelete);
@@ -93,7 +93,7 @@ void CasesWorkspace::connectParts() {
 
   connect(import_, &ImportPage::opened, this, [this] {
     pages_->setCurrentWidget(import_);
-    bench_.go(Place::cases);
+    app_.go(Place::cases);
   });
   connect(import_, &ImportPage::closed, this, [this] { pages_->setCurrentWidget(page_); });
   connect(import_, &ImportPage::folderWanted, this, &CasesWorkspace::askForFolder);
@@ -101,15 +101,15 @@ void CasesWorkspace::connectParts() {
   connect(import_, &ImportPage::pathDropped, this,
           [this](const QString& path) { open(toPath(path)); });
   connect(import_, &ImportPage::reportWanted, this, [this] {
-    QFileDialog* dialog = bench_.saveDialog(tr("Save report"), "import-report.pdf",
-                                            tr("PDF (*.pdf);;Web page (*.html *.htm)"));
+    QFileDialog* dialog = app_.saveDialog(tr("Save report"), "import-report.pdf",
+                                          tr("PDF (*.pdf);;Web page (*.html *.htm)"));
     connect(dialog, &QFileDialog::fileSelected, this, &CasesWorkspace::saveReport);
     dialog->open();
   });
   connect(import_, &ImportPage::caseRead, this, &CasesWorkspace::caseRead);
   connect(&workstation_.import(), &ImportTask::scanned, this,
           [this] { page_->setSeriesAtHand(true); });
-  connect(&bench_, &Bench::said, import_, &ImportPage::say);
+  connect(&app_, &AppContext::said, import_, &ImportPage::say);
 
   connect(&workstation_, &Workstation::caseOpened, this, [this] {
     open_deleted_ = false;
@@ -124,7 +124,7 @@ void CasesWorkspace::connectParts() {
     write(settings::kRecentCases, recent.mid(0, kMostRecent));
   });
   // Another program, or a person at the folders, has changed what is there.
-  connect(&bench_, &Bench::failed, this, [this](const Error& error) {
+  connect(&app_, &AppContext::failed, this, [this](const Error& error) {
     if (error.code == "NO_SUCH_CASE") list();
   });
   connect(&workstation_, &Workstation::structuresChanged, this, &CasesWorkspace::showCase);
@@ -132,7 +132,7 @@ void CasesWorkspace::connectParts() {
 }
 
 void CasesWorkspace::askForFolder() {
-  QFileDialog* dialog = bench_.fileDialog("folderDialog", tr("Open a folder of CT"));
+  QFileDialog* dialog = app_.fileDialog("folderDialog", tr("Open a folder of CT"));
   dialog->setFileMode(QFileDialog::Directory);
   dialog->setOption(QFileDialog::ShowDirsOnly);
   connect(dialog, &QFileDialog::fileSelected, this,
@@ -141,17 +141,17 @@ void CasesWorkspace::askForFolder() {
 }
 
 void CasesWorkspace::askForFile() {
-  QFileDialog* dialog = bench_.fileDialog(
-      "fileDialog", tr("Open a file of CT"),
-      tr("Any file (*);;Volumes (*.nii *.nii.gz *.nrrd *.nhdr *.mha *.mhd *.raw)"));
+  QFileDialog* dialog =
+      app_.fileDialog("fileDialog", tr("Open a file of CT"),
+                      tr("Any file (*);;Volumes (*.nii *.nii.gz *.nrrd *.nhdr *.mha *.mhd *.raw)"));
   connect(dialog, &QFileDialog::fileSelected, this,
           [this](const QString& file) { open(toPath(file)); });
   dialog->open();
 }
 
-void CasesWorkspace::askForScene() {
+void CasesWorkspace::askForExercise() {
   QFileDialog* dialog =
-      bench_.fileDialog("sceneDialog", tr("Open an exercise"), tr("Exercise (*.json)"));
+      app_.fileDialog("sceneDialog", tr("Open an exercise"), tr("Exercise (*.json)"));
   connect(dialog, &QFileDialog::fileSelected, this,
           [this](const QString& file) { open(toPath(file)); });
   dialog->open();
@@ -159,18 +159,20 @@ void CasesWorkspace::askForScene() {
 
 void CasesWorkspace::open(const std::filesystem::path& path) {
   const auto go_on = [this, path] {
-    bench_.goOnceOpen(Workstation::isScene(path) ? Place::train : Place::prepare);
+    app_.goOnceOpen(Workstation::isExercise(path) ? Place::train : Place::prepare);
     workstation_.openPath(path);
   };
-  if (!Workstation::isScene(path)) return go_on();
-  bench_.unlessLost({Bench::Loss::structures, Bench::Loss::cuts, Bench::Loss::tissues}, go_on);
+  if (!Workstation::isExercise(path)) return go_on();
+  app_.unlessLost({AppContext::UnsavedWork::structures, AppContext::UnsavedWork::cuts,
+                   AppContext::UnsavedWork::tissues},
+                  go_on);
 }
 
 // --- The library ---
 
 void CasesWorkspace::list() {
   const bool begun = listing_.run(
-      [library = bench_.library()](const Progress& progress) -> Result<std::vector<CaseEntry>> {
+      [library = app_.library()](const Progress& progress) -> Result<std::vector<CaseEntry>> {
         return listCases(*library, progress);
       },
       [this](Result<std::vector<CaseEntry>> entries) {
@@ -186,7 +188,7 @@ void CasesWorkspace::list() {
 // Beside the list of cases, which does not wait for them.
 void CasesWorkspace::listRecordings() {
   const bool begun = reading_.run(
-      [this, folder = bench_.recordings()](const Progress& progress) {
+      [this, folder = app_.recordings()](const Progress& progress) {
         ReadApart how;
         how.read = [this](const std::vector<ListedRecording>& so_far) {
           QMetaObject::invokeMethod(
@@ -203,27 +205,29 @@ void CasesWorkspace::listRecordings() {
 
 void CasesWorkspace::openEntry(const CaseEntry& entry, Place then) {
   const Case* open = workstation_.currentCase();
-  if (open && !entry.built_in && open->stored == entry.id) return bench_.go(then);
+  if (open && !entry.built_in && open->stored == entry.id) return app_.go(then);
   const auto begin = [this, then](auto go_on) {
     return [this, then, go_on] {
-      bench_.goOnceOpen(then);
+      app_.goOnceOpen(then);
       import_to_save_.reset();
       go_on();
     };
   };
-  std::vector<Bench::Loss> losses{Bench::Loss::structures, Bench::Loss::cuts};
+  std::vector<AppContext::UnsavedWork> losses{AppContext::UnsavedWork::structures,
+                                              AppContext::UnsavedWork::cuts};
   const std::string anatomy = entry.built_in ? entry.id : exerciseAnatomy(entry.record.region);
-  if (anatomy.empty() || !workstation_.sceneFits(anatomy)) losses.push_back(Bench::Loss::tissues);
+  if (anatomy.empty() || !workstation_.exerciseFits(anatomy))
+    losses.push_back(AppContext::UnsavedWork::tissues);
   if (entry.built_in) {
-    return bench_.unlessLost(losses, begin([this, name = entry.id] {
-                               bench_.setCaseSource({});
-                               workstation_.openPhantom(name);
-                             }));
+    return app_.unlessLost(losses, begin([this, name = entry.id] {
+                             app_.setCaseSource({});
+                             workstation_.openPhantom(name);
+                           }));
   }
-  bench_.unlessLost(
+  app_.unlessLost(
       losses, begin([this, id = entry.id, folder = entry.record.folder] {
-        bench_.setCaseSource(folder);
-        workstation_.openStored([library = bench_.library(), id](const Progress& progress) {
+        app_.setCaseSource(folder);
+        workstation_.openStored([library = app_.library(), id](const Progress& progress) {
           return storedCase(*library, id, progress);
         });
       }));
@@ -243,7 +247,7 @@ void CasesWorkspace::saveCase() {
   const auto done = std::make_shared<SavedCase>();
   workstation_.save(
       tr("The case is saved. You may remove the stick."),
-      [library = bench_.library(), made, done](const Progress& progress) -> Status {
+      [library = app_.library(), made, done](const Progress& progress) -> Status {
         Result<SavedCase> written = library->save(made, progress);
         if (!written) return written.error();
         *done = *std::move(written);
@@ -268,17 +272,17 @@ void CasesWorkspace::saved(const SavedCase& saved) {
           .arg(name);
   page_->sayInStrip(words);
   page_->selectOnceThere(saved.record.id);
-  bench_.say(words);
+  app_.say(words);
   emit caseSaved(name);
 }
 
 void CasesWorkspace::rename(const CaseEntry& entry, const QString& name) {
   const bool begun =
-      changing_.run([library = bench_.library(), id = entry.id,
+      changing_.run([library = app_.library(), id = entry.id,
                      to = name.toStdString()](const Progress&) { return library->rename(id, to); },
                     [this, entry, name](Result<CaseRecord> renamed) {
                       if (!renamed) {
-                        QMessageBox* why = showError(bench_.window(), renamed.error());
+                        QMessageBox* why = showError(app_.window(), renamed.error());
                         connect(why, &QMessageBox::finished, page_,
                                 [this, entry, name] { page_->askForName(entry, name); });
                         return;
@@ -290,24 +294,24 @@ void CasesWorkspace::rename(const CaseEntry& entry, const QString& name) {
                         showCase();
                       }
                       list();
-                      bench_.say(tr("It is called \"%1\" now.").arg(toQt(renamed->name)));
+                      app_.say(tr("It is called \"%1\" now.").arg(toQt(renamed->name)));
                     });
-  if (!begun) bench_.report(stillChanging());
+  if (!begun) app_.report(stillChanging());
 }
 
 void CasesWorkspace::askToDelete(const CaseEntry& entry) {
   int made_on_it = 0;
-  for (const auto& file : bench_.exercises()) {
-    const Result<Scene> scene = readScene(file);
-    const std::filesystem::path of = scene ? scene->case_source : "";
-    made_on_it += of.parent_path() == bench_.storage() / "cases" / entry.id;
+  for (const auto& file : app_.exercises()) {
+    const Result<Exercise> exercise = readExercise(file);
+    const std::filesystem::path of = exercise ? exercise->case_source : "";
+    made_on_it += of.parent_path() == app_.storage() / "cases" / entry.id;
   }
   const std::size_t exercises = page_->exercisesOn(entry).size();
   const QString made = made_on_it == 0 ? QString()
                                        : ' ' + tr("Exercises that were made on it: %1; they have "
                                                   "no case then.")
                                                    .arg(made_on_it);
-  ask(bench_.window(), "deleteQuestion",
+  ask(app_.window(), "deleteQuestion",
       tr("Delete \"%1\"?").arg(toQt(entry.record.name.empty() ? entry.id : entry.record.name)),
       (!page_->allRecordingsRead()
            ? tr("Its volume, structures and report are removed from this workstation for good. "
@@ -321,10 +325,10 @@ void CasesWorkspace::askToDelete(const CaseEntry& entry) {
           made,
       tr("&Delete it"), [this, entry] {
         const bool begun =
-            changing_.run([library = bench_.library(),
+            changing_.run([library = app_.library(),
                            id = entry.id](const Progress&) { return library->remove(id); },
                           [this, entry](Status removed) {
-                            if (!removed) bench_.report(removed.error());
+                            if (!removed) app_.report(removed.error());
                             const Case* open = workstation_.currentCase();
                             if (removed && open && open->stored == entry.id) {
                               workstation_.setStored({});
@@ -336,7 +340,7 @@ void CasesWorkspace::askToDelete(const CaseEntry& entry) {
                             list();
                             showCase();
                           });
-        if (!begun) bench_.report(stillChanging());
+        if (!begun) app_.report(stillChanging());
       });
 }
 
@@ -345,11 +349,11 @@ void CasesWorkspace::showReport(const CaseEntry& entry) {
   const Result<std::string> page =
       readWholeFile(entry.record.folder / case_folders::kReportPage, kMostBytes);
   if (!page) {
-    return bench_.report({page.error().code, "The case's report cannot be read",
-                          (entry.record.folder / case_folders::kReportPage).string(),
-                          "The case can be used without it"});
+    return app_.report({page.error().code, "The case's report cannot be read",
+                        (entry.record.folder / case_folders::kReportPage).string(),
+                        "The case can be used without it"});
   }
-  auto* dialog = new QDialog(bench_.window());
+  auto* dialog = new QDialog(app_.window());
   dialog->setObjectName("reportDialog");
   dialog->setAttribute(Qt::WA_DeleteOnClose);
   dialog->setWindowTitle(tr("Import report of \"%1\"").arg(toQt(entry.record.name)));
@@ -371,12 +375,13 @@ void CasesWorkspace::caseRead(Case read, const std::filesystem::path& labels) {
   to_save.report = workstation_.import().report();
   to_save.source = workstation_.import().identity();
   read.identity = std::make_shared<const SourceIdentity>(to_save.source);
-  bench_.unlessLost({Bench::Loss::structures, Bench::Loss::cuts}, [this, read, labels, to_save] {
-    bench_.setCaseSource(workstation_.import().source());
-    bench_.goOnceOpen(Place::prepare);
-    import_to_save_ = to_save;
-    workstation_.openImported(read, labels);
-  });
+  app_.unlessLost({AppContext::UnsavedWork::structures, AppContext::UnsavedWork::cuts},
+                  [this, read, labels, to_save] {
+                    app_.setCaseSource(workstation_.import().source());
+                    app_.goOnceOpen(Place::prepare);
+                    import_to_save_ = to_save;
+                    workstation_.openImported(read, labels);
+                  });
 }
 
 void CasesWorkspace::saveReport(const QString& file) {
@@ -389,7 +394,7 @@ void CasesWorkspace::showCase() {
   const Case* of = workstation_.currentCase();
   if (!of) return;
   const bool phantom = of->built_in;
-  const std::string id = phantom ? workstation_.scene()->anatomy : of->stored;
+  const std::string id = phantom ? workstation_.exercise()->anatomy : of->stored;
   page_->showOpen(id, caseWords(*of), phantom || open_deleted_ || !of->stored.empty());
 }
 

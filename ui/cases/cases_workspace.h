@@ -8,14 +8,14 @@
 #include "library/case_library.h"
 #include "ui/cases/cases_page.h"
 #include "ui/cases/import_page.h"
-#include "ui/work/bench.h"
+#include "ui/work/app_context.h"
 
 namespace trephine {
 
 class CasesWorkspace : public Workspace {
   Q_OBJECT
  public:
-  explicit CasesWorkspace(Bench& bench);
+  explicit CasesWorkspace(AppContext& bench);
 
   QString title() const override { return tr("Cases"); }
   Symbol symbol() const override { return Symbol::cases; }
@@ -25,10 +25,10 @@ class CasesWorkspace : public Workspace {
     listRecordings();
   }
 
-  // A folder or file of CT, or a scene, which asks first where it takes what is not saved.
+  // A folder or file of CT, or an exercise, which asks first where it takes what is not saved.
   void open(const std::filesystem::path& path);
   bool mayOpen() const { return open_->isEnabled(); }
-  QList<QAction*> openActions() const { return {open_, open_file_, open_scene_}; }
+  QList<QAction*> openActions() const { return {open_, open_file_, open_exercise_}; }
   // Of the folder that was scanned last: PDF or HTML.
   void saveReport(const QString& file);
 
@@ -40,7 +40,7 @@ class CasesWorkspace : public Workspace {
   void connectParts();
   void askForFolder();
   void askForFile();
-  void askForScene();
+  void askForExercise();
   void list();
   void listRecordings();
   void openEntry(const CaseEntry& entry, Place then);
@@ -54,9 +54,9 @@ class CasesWorkspace : public Workspace {
   void showCase();
   void showPhase();
 
-  Bench& bench_;
+  AppContext& app_;
   Workstation& workstation_;
-  QAction *open_, *open_file_, *open_scene_;
+  QAction *open_, *open_file_, *open_exercise_;
   QStackedWidget* pages_;
   CasesPage* page_;
   ImportPage* import_;

@@ -15,7 +15,7 @@ CommissionFolders commissionFolders(const Policy& policy) {
   return {stateFolder().value_or(std::filesystem::path()), policy.folder};
 }
 
-FitnessLine::FitnessLine(Bench& bench) : bench_(bench) {
+FitnessLine::FitnessLine(AppContext& bench) : app_(bench) {
   setObjectName("fitness");
   setContentsMargins(6, 0, 0, 0);
   setTextFormat(Qt::PlainText);
@@ -31,7 +31,7 @@ FitnessLine::FitnessLine(Bench& bench) : bench_(bench) {
 
 bool FitnessLine::mayLook() const {
   using Phase = Workstation::Phase;
-  const Phase phase = bench_.workstation().phase();
+  const Phase phase = app_.workstation().phase();
   return phase == Phase::empty || phase == Phase::ready;
 }
 
@@ -44,17 +44,17 @@ void FitnessLine::look() {
   again_ = !mayLook();
   if (again_) return;
   StartSurroundings here;
-  here.storage = bench_.storage();
-  here.storage_is_set = bench_.storage() == bench_.workstation().policy().storage;
-  here.driver = bench_.view().openGlDescription();
+  here.storage = app_.storage();
+  here.storage_is_set = app_.storage() == app_.workstation().policy().storage;
+  here.driver = app_.view().openGlDescription();
   // All screens together, as a program without a window sees them.
   const QScreen* screen = QGuiApplication::primaryScreen();
   const QSizeF pixels = QSizeF(screen->virtualSize()) * screen->devicePixelRatio();
   // Qt counts whole points, which are fewer pixels where one has a fraction of them.
   here.screen = {qCeil(pixels.width()), qCeil(pixels.height())};
   looking_.run(
-      [here, folders = commissionFolders(bench_.workstation().policy()),
-       arms = bench_.workstation().opensArms()](const Progress& progress) -> Result<StartWords> {
+      [here, folders = commissionFolders(app_.workstation().policy()),
+       arms = app_.workstation().opensArms()](const Progress& progress) -> Result<StartWords> {
         if (const auto away = storageWords(here)) return *away;
         const auto last = lastCommissioning(folders.own, folders.hospital);
         if (!last) return startWords({}, {});

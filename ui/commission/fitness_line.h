@@ -5,14 +5,14 @@
 #include "lab/commission/start_check.h"
 #include "ui/common/background_task.h"
 #include "ui/common/placing.h"
-#include "ui/work/bench.h"
+#include "ui/work/app_context.h"
 
 namespace trephine {
 
 class FitnessLine : public ElidedLabel {
   Q_OBJECT
  public:
-  explicit FitnessLine(Bench& bench);
+  explicit FitnessLine(AppContext& bench);
 
   // Some seconds, in the background. An exercise that begins meanwhile ends it, and it looks after
   // that. Asked again meanwhile, it looks anew: there may be another commissioning.
@@ -25,7 +25,7 @@ class FitnessLine : public ElidedLabel {
  private:
   bool mayLook() const;  // no exercise runs
 
-  Bench& bench_;
+  AppContext& app_;
   BackgroundTask looking_;
   bool again_ = false;  // once it can
 };

@@ -4,7 +4,7 @@
 #include <QPalette>
 #include <QStyleFactory>
 
-#include "scene/scene.h"
+#include "exercise/exercise.h"
 #include "ui/common/plain_text.h"
 
 namespace trephine::colours {
@@ -123,7 +123,7 @@ void applyTheme(QApplication& application, Theme theme, int text_percent) {
           .arg(2.3 * font.pointSizeF()));
 }
 
-QColor ofArm(const SceneArm& arm, std::size_t index) {
+QColor ofArm(const ExerciseArm& arm, std::size_t index) {
   const bool left = arm.name == "left" || (arm.name != "right" && index == 0);
   return left ? kLeftArm : kRightArm;
 }

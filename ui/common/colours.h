@@ -9,7 +9,7 @@
 #include "base/math.h"
 
 namespace trephine {
-struct SceneArm;
+struct ExerciseArm;
 }
 
 namespace trephine::colours {
@@ -41,8 +41,8 @@ enum class Theme { dark, light };
 // (PlainText). Before the first widget.
 void applyTheme(QApplication& application, Theme theme = Theme::dark, int text_percent = 100);
 
-// In which an arm's tool, box and card are drawn; `index`: among the scene's.
-QColor ofArm(const SceneArm& arm, std::size_t index);
+// In which an arm's tool, box and card are drawn; `index`: among the exercise's.
+QColor ofArm(const ExerciseArm& arm, std::size_t index);
 
 // A tissue's or structure's colour, each part from 0 to 1, and back.
 QColor of(const Vec3& rgb);

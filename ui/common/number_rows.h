@@ -1,5 +1,5 @@
-// Fields for the numbers of an element of a scene, made of their rows (base/number_row.h): each with
-// its name, unit and range, and a line that says what it does.
+// Fields for the numbers of an element of an exercise, made of their rows (base/number_row.h): each
+// with its name, unit and range, and a line that says what it does.
 #pragma once
 
 #include <QFormLayout>

@@ -123,11 +123,11 @@ double sizeOf_mm(const ToolDescription& made) {
 
 }  // namespace
 
-QString toolWord(const SceneTool& tool) {
+QString toolWord(const ExerciseTool& tool) {
   return tr("%1, %2 mm").arg(toQt(tool.id)).arg(sizeOf_mm(tool.tool.made_from));
 }
 
-QString toolKindWord(const SceneTool& tool) {
+QString toolKindWord(const ExerciseTool& tool) {
   const ToolDescription& made = tool.tool.made_from;
   const QString kind = made.kind == ToolKind::needle       ? tr("needle")
                        : made.kind == ToolKind::blade      ? tr("blade")

@@ -6,10 +6,10 @@
 #include <filesystem>
 
 #include "base/result.h"
+#include "exercise/exercise_tool.h"
+#include "exercise/policy.h"
 #include "haptics/haptic_types.h"
 #include "imaging/importer.h"
-#include "scene/policy.h"
-#include "scene/scene_tool.h"
 
 namespace trephine {
 
@@ -32,9 +32,9 @@ QString touchedName(const ArmRecord& arm, const TissueSet& tissues);
 QString verdictWord(Verdict verdict);
 QString controllerWord(ControllerKind kind);
 // "craniotome, 2.4 mm": as the exercise calls it; of a burr how thick it is, else how long.
-QString toolWord(const SceneTool& tool);
+QString toolWord(const ExerciseTool& tool);
 // "rod burr, 2.4 mm": what it is, whatever it is called.
-QString toolKindWord(const SceneTool& tool);
+QString toolKindWord(const ExerciseTool& tool);
 // What a controller does, in a sentence.
 QString controllerMeaning(ControllerKind kind);
 // What makes the sent force another than the demanded one: the parts of the controller that acted

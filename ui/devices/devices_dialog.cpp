@@ -7,7 +7,7 @@
 #include <QVBoxLayout>
 
 #include "base/system.h"
-#include "scene/arms_file.h"
+#include "exercise/arms_file.h"
 #include "ui/common/words.h"
 #include "ui/work/arms_of_place.h"
 
@@ -211,7 +211,8 @@ void DevicesDialog::found(const FoundArms& here) {
 }
 
 QString DevicesDialog::sideOf(const FoundArm& arm) const {
-  for (const auto& [side, of] : armsOfThisPlace()) {
+  const ChosenArms chosen = armSettings().chosen;
+  for (const auto& [side, of] : chosen) {
     if (!of.isSame(arm)) continue;
     return side == kPedal ? tr("pedal") : side == "left" ? tr("left hand") : tr("right hand");
   }
@@ -237,7 +238,7 @@ void DevicesDialog::showList() {
 
 // What is chosen and not there stays, and says so.
 void DevicesDialog::showSides() {
-  const ArmsOfPlace chosen = armsOfThisPlace();
+  const ChosenArms chosen = armSettings().chosen;
   for (const auto& [side, box] :
        {std::pair("left", left_), std::pair("right", right_), std::pair(kPedal, pedal_)}) {
     const QSignalBlocker blocked(box);
@@ -295,7 +296,7 @@ void DevicesDialog::choose(const std::string& side, int index) {
     chooseArm(side, {});
   } else {
     const FoundArm& device = arms_[std::size_t(arm)];
-    const ArmsOfPlace before = armsOfThisPlace();
+    const ChosenArms before = armSettings().chosen;
     const auto had = before.find(side);
     for (const auto& [other, has] : before) {
       if (other == side || !has.isSame(device)) continue;

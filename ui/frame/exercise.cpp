@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "base/file.h"
-#include "scene/arms_file.h"
+#include "exercise/arms_file.h"
 #include "ui/common/stall_meter.h"
 #include "ui/frame/main_window.h"
 #include "ui/frame/start_up.h"
@@ -28,21 +28,23 @@ double percentile(std::vector<double> values, double share) {
 }
 
 Result<ExerciseOutcome> runExercise(const ExerciseOptions& options, const Progress& progress) {
-  Result<Scene> scene = readScene(options.scene);
-  if (!scene) return scene.error();
-  if (Status may = checkScene(options.policy, *scene, options.scene); !may) return may.error();
-  if (scene->operator_file.empty()) {
-    return Error{"NO_OPERATOR", "The scene has no script to play", options.scene.string(),
+  Result<Exercise> exercise = readExercise(options.exercise);
+  if (!exercise) return exercise.error();
+  if (Status may = checkExercise(options.policy, *exercise, options.exercise); !may)
+    return may.error();
+  if (exercise->operator_file.empty()) {
+    return Error{"NO_OPERATOR", "The scene has no script to play", options.exercise.string(),
                  "Name one under 'operator' in the scene"};
   }
-  Result<OperatorScript> script = readOperatorScript(scene->operator_file, *scene);
+  Result<OperatorScript> script = readOperatorScript(exercise->operator_file, *exercise);
   if (!script) return script.error();
-  if (Status may = checkLocks(*script, locksOf(options.policy, *scene)); !may) return may.error();
+  if (Status may = checkLocks(*script, locksOf(options.policy, *exercise)); !may)
+    return may.error();
   std::vector<NamedDevice> arms;
   if (!options.arms.empty()) {
     Result<std::vector<NamedDevice>> read = readArmsFile(options.arms);
     if (!read) return read.error();
-    if (Result<Rig> rig = rigWith(*scene, *read, options.arms); !rig) return rig.error();
+    if (Result<Rig> rig = rigWith(*exercise, *read, options.arms); !rig) return rig.error();
     arms = *std::move(read);
   }
   if (Status made = makeFolder(options.out); !made) return made.error();
@@ -104,7 +106,7 @@ Result<ExerciseOutcome> runExercise(const ExerciseOptions& options, const Progre
   });
   cancelling.start(kCancelPoll_ms);
   window.show();
-  window.open(options.scene);
+  window.open(options.exercise);
   if (!failure) loop.exec();
   if (timed) timed->setWatcher({});
   const Error cancelled{"CANCELLED", "The exercise was cancelled", "", ""};

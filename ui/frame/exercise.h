@@ -6,16 +6,16 @@
 
 #include "base/json.h"
 #include "base/progress.h"
-#include "scene/policy.h"
+#include "exercise/policy.h"
 #include "session/run_statistics.h"
 #include "ui/common/stall_meter.h"
 
 namespace trephine {
 
 struct ExerciseOptions {
-  std::filesystem::path scene;
-  std::filesystem::path arms{};   // a file (scene/arms_file.h); empty: the scene's own devices
-  std::optional<double> seconds;  // absent: as long as the scene's script
+  std::filesystem::path exercise;
+  std::filesystem::path arms{};   // a file (exercise/arms_file.h); empty: the exercise's own devices
+  std::optional<double> seconds;  // absent: as long as the exercise's script
   std::filesystem::path out;      // recording and picture go there
   Policy policy{};                // what the workstation locks
 };
@@ -31,7 +31,7 @@ struct ExerciseOutcome {
 };
 
 // Needs a TimedApplication (of another QApplication the stalls are not known); runs its event
-// loop. Opens the scene's case in a window, plays its default
+// loop. Opens the exercise's case in a window, plays its default
 // script in real time, and takes a picture at the end. A recording that fails ends nothing: nobody
 // is there to be asked. The Error is what the window would have said of an exercise that did not
 // run.

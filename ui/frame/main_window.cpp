@@ -32,7 +32,7 @@
 
 namespace trephine {
 
-// They know the bench, and go before it.
+// They know the shared context, and go before it.
 MainWindow::~MainWindow() {
   delete stereo_;
   delete headset_;
@@ -93,7 +93,7 @@ void MainWindow::showPanels() {
 }
 
 void MainWindow::openOnceShown(const std::filesystem::path& path) {
-  if (Workstation::isScene(path)) train_->chooseNothing();
+  if (Workstation::isExercise(path)) train_->chooseNothing();
   // The window manager finds it its place first.
   constexpr int kPlaced_ms = 200;
   QTimer::singleShot(kPlaced_ms, this, [this, path] {
@@ -228,24 +228,25 @@ void MainWindow::closeEvent(QCloseEvent* event) {
   if (workstation().isWriting()) {
     event->ignore();
     close_when_saved_ = true;
-    return bench_.say(tr("A file is being saved; the window closes when it is written."));
+    return app_.say(tr("A file is being saved; the window closes when it is written."));
   }
-  bench_.takeTyped();
+  app_.takeTyped();
   const bool running = phase != Phase::empty && phase != Phase::ready;
-  const bool unsaved = bench_.cutsUnsaved() || workstation().tissuesEdited() ||
-                       workstation().sceneEdited() || prepare_->structuresEdited();
+  const bool unsaved = app_.cutsUnsaved() || workstation().tissuesEdited() ||
+                       workstation().exerciseEdited() || prepare_->structuresEdited();
   if (may_close_ || !(running || unsaved)) {
     keep();
     return QMainWindow::closeEvent(event);
   }
   event->ignore();
   const auto for_good = [this] {
-    bench_.unlessLost({Bench::Loss::structures, Bench::Loss::tissues}, [this] {
-      may_close_ = true;
-      close();
-    });
+    app_.unlessLost({AppContext::UnsavedWork::structures, AppContext::UnsavedWork::tissues},
+                    [this] {
+                      may_close_ = true;
+                      close();
+                    });
   };
-  if (!running) return bench_.unlessLost({Bench::Loss::cuts}, for_good);
+  if (!running) return app_.unlessLost({AppContext::UnsavedWork::cuts}, for_good);
   ask(this, "closeQuestion", tr("An exercise is running."),
       tr("Closing ends it. Its recording is kept; what was cut is not saved as a volume."),
       tr("&End it and close"), for_good);
@@ -257,7 +258,7 @@ void MainWindow::closeEvent(QCloseEvent* event) {
 void MainWindow::showTitle() {
   const Case* of = workstation().currentCase();
   QStringList words;
-  if (workstation().scene()) words << toQt(workstation().scene()->name);
+  if (workstation().exercise()) words << toQt(workstation().exercise()->name);
   if (of && !of->stored.empty()) words << toQt(of->name);
   words << tr("Trephine");
   setWindowTitle(words.join(QStringLiteral(" \u2013 ")));
@@ -313,7 +314,7 @@ void MainWindow::showShortcuts() {
 
 void MainWindow::showSettings() {
   auto* dialog =
-      new SettingsDialog(toQt(bench_.storage()), !workstation().policy().storage.empty(), this);
+      new SettingsDialog(toQt(app_.storage()), !workstation().policy().storage.empty(), this);
   helpByF1(dialog, "settings");
   dialog->open();
 }
@@ -321,7 +322,7 @@ void MainWindow::showSettings() {
 void MainWindow::showDevices() {
   if (workstation().phase() != Workstation::Phase::ready &&
       workstation().phase() != Workstation::Phase::empty) {
-    return bench_.say(tr("An exercise has the arms: stop it first."));
+    return app_.say(tr("An exercise has the arms: stop it first."));
   }
   workstation().lendArms(true);
   auto* dialog = new DevicesDialog(workstation().opensArms(), this);
@@ -358,12 +359,12 @@ void MainWindow::showHeadset() {
   connect(dialog, &HeadsetDialog::headsetChanged, headset_, &HeadsetView::settingsChanged);
   connect(dialog, &HeadsetDialog::screenChanged, stereo_, &StereoView::settingsChanged);
   connect(dialog, &HeadsetDialog::lensWanted, dialog, [this, dialog] {
-    bench_.askForFile("lensDialog", tr("A lens's file"), tr("Lenses (*.json)"),
-                      [this, of = QPointer(dialog)](const std::filesystem::path& file) {
-                        const Result<LensProfile> lens = readLensProfile(file);
-                        if (!lens) return bench_.report(lens.error());
-                        if (of) of->setLens(toQt(file.string()));
-                      });
+    app_.askForFile("lensDialog", tr("A lens's file"), tr("Lenses (*.json)"),
+                    [this, of = QPointer(dialog)](const std::filesystem::path& file) {
+                      const Result<LensProfile> lens = readLensProfile(file);
+                      if (!lens) return app_.report(lens.error());
+                      if (of) of->setLens(toQt(file.string()));
+                    });
   });
   // A window over its screen must not keep the keys from coming back here.
   connect(dialog, &QDialog::finished, this, [this] { activateWindow(); });
@@ -378,16 +379,16 @@ void MainWindow::checkAtStart() {
 
 void MainWindow::showCommission() {
   const CommissionFolders folders = commissionFolders(workstation().policy());
-  auto* page = new CommissionPage(bench_.storage(), folders.own, folders.hospital, this);
+  auto* page = new CommissionPage(app_.storage(), folders.own, folders.hospital, this);
   connect(page, &CommissionPage::begun, this, [this] { workstation().lendArms(true); });
   connect(page, &CommissionPage::ended, this, [this] { workstation().lendArms(false); });
   connect(page, &CommissionPage::commissioned, fitness_, &FitnessLine::look);
   connect(page, &CommissionPage::saveWanted, page, [this, page] {
-    QFileDialog* dialog = bench_.saveDialog(tr("Save the commissioning"), "commissioning.pdf",
-                                            tr("PDF (*.pdf);;A page for a browser (*.html)"));
+    QFileDialog* dialog = app_.saveDialog(tr("Save the commissioning"), "commissioning.pdf",
+                                          tr("PDF (*.pdf);;A page for a browser (*.html)"));
     connect(dialog, &QFileDialog::fileSelected, page, [this, page](const QString& file) {
       const Status saved = page->save(toPath(file));
-      saved ? bench_.say(tr("The commissioning is saved.")) : bench_.report(saved.error());
+      saved ? app_.say(tr("The commissioning is saved.")) : app_.report(saved.error());
     });
     dialog->open();
   });
@@ -414,16 +415,17 @@ void MainWindow::askForPin() {
   if (workstation().isUnlocked()) {
     const auto lock = [this] {
       workstation().setUnlocked(false);
-      bench_.say(tr("Locked again."));
+      app_.say(tr("Locked again."));
     };
-    return workstation().tissuesWouldGo() ? bench_.unlessLost({Bench::Loss::tissues}, lock)
-                                          : lock();
+    return workstation().tissuesWouldGo()
+               ? app_.unlessLost({AppContext::UnsavedWork::tissues}, lock)
+               : lock();
   }
   if (!workstation().policy().pin) return;
   auto* dialog = new UnlockDialog(*workstation().policy().pin, this);
   connect(dialog, &UnlockDialog::unlocked, this, [this] {
     workstation().setUnlocked(true);
-    bench_.say(tr("Unlocked for teaching, until you lock it again (menu File)."));
+    app_.say(tr("Unlocked for teaching, until you lock it again (menu File)."));
   });
   dialog->open();
 }

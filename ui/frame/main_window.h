@@ -1,5 +1,6 @@
 // The workstation's window: the rail of workspaces, one of which is shown, and what is around them:
-// menus, bar, status. It knows the workspaces, not their panels; what they share is the bench.
+// menus, bar, status. It knows the workspaces, not their panels; what they share is the shared
+// context.
 #pragma once
 
 #include <QLabel>
@@ -35,14 +36,14 @@ class MainWindow : public QMainWindow {
 
   ~MainWindow() override;
 
-  Workstation& workstation() { return bench_.workstation(); }
-  FourUp& views() { return bench_.views(); }
-  ViewWidget& view() { return bench_.view(); }  // 3-D
+  Workstation& workstation() { return app_.workstation(); }
+  FourUp& views() { return app_.views(); }
+  ViewWidget& view() { return app_.view(); }  // 3-D
 
   void show(Place place);
   Place place() const { return place_; }
-  // A folder, file or scene, once the window has its place on the screen: what opens over it then
-  // knows where that is.
+  // A folder, file or exercise, once the window has its place on the screen: what opens over it
+  // then knows where that is.
   void openOnceShown(const std::filesystem::path& path);
   void open(const std::filesystem::path& path);
   // What a program that crashed has left: said, with its report, and its recording offered.
@@ -57,8 +58,8 @@ class MainWindow : public QMainWindow {
   // Shows the exercise that runs as it is now, all of it, without waiting for the next frame:
   // whoever moves the session's time (Workstation::setStepped) shows it so.
   void showExercise() { train_->showAll(); }
-  void savePicture(const QString& file) { bench_.savePicture(file); }
-  void saveVolume(const QString& file) { bench_.saveVolume(file); }
+  void savePicture(const QString& file) { app_.savePicture(file); }
+  void saveVolume(const QString& file) { app_.saveVolume(file); }
   void saveReport(const QString& file) { cases_->saveReport(file); }
   using QMainWindow::show;
 
@@ -109,7 +110,7 @@ class MainWindow : public QMainWindow {
   void askForPin();
 
   SlipGuard slip_guard_;
-  Bench bench_;
+  AppContext app_;
   CasesWorkspace* cases_;
   PrepareWorkspace* prepare_;
   TrainWorkspace* train_;

@@ -22,7 +22,7 @@ constexpr int kProgressSteps = 1000, kProgressWidth = 140;
 }  // namespace
 
 MainWindow::MainWindow(std::filesystem::path recordings, const Policy& policy, QWidget* parent)
-    : QMainWindow(parent), bench_(*this, std::move(recordings), policy) {
+    : QMainWindow(parent), app_(*this, std::move(recordings), policy) {
   setWindowTitle(tr("Trephine"));
   setAcceptDrops(true);
   buildWorkspaces();
@@ -35,12 +35,12 @@ MainWindow::MainWindow(std::filesystem::path recordings, const Policy& policy, Q
 }
 
 void MainWindow::buildWorkspaces() {
-  cases_ = new CasesWorkspace(bench_);
-  prepare_ = new PrepareWorkspace(bench_);
-  train_ = new TrainWorkspace(bench_);
-  review_ = new ReviewWorkspace(bench_);
-  headset_ = new HeadsetView(bench_, *this);
-  stereo_ = new StereoView(bench_, *this);
+  cases_ = new CasesWorkspace(app_);
+  prepare_ = new PrepareWorkspace(app_);
+  train_ = new TrainWorkspace(app_);
+  review_ = new ReviewWorkspace(app_);
+  headset_ = new HeadsetView(app_, *this);
+  stereo_ = new StereoView(app_, *this);
   rooms_ = {Room{Place::cases, "cases", cases_, {}, {}},
             Room{Place::prepare, "prepare", prepare_, {ViewLayout::Kind::four, 0}, {}},
             Room{Place::train, "train", train_, {ViewLayout::Kind::one_large, 0}, {}},
@@ -128,7 +128,7 @@ void MainWindow::buildBars() {
   bar_->addSeparator();
   bar_->addActions({train_->startAction(), train_->stopAction(), train_->pauseAction()});
   bar_->addSeparator();
-  bar_->addActions({bench_.undoAction(), bench_.redoAction(), train_->resetAction()});
+  bar_->addActions({app_.undoAction(), app_.redoAction(), train_->resetAction()});
   bar_->addSeparator();
   bar_->addActions({look_, picture_, volume_});
   // Where a bar is short this opens the rest of it. Qt's own arrow is black on black.
@@ -177,7 +177,7 @@ void MainWindow::buildBars() {
   auto* purpose = new QLabel(purposeText());
   purpose->setObjectName("purpose");
   purpose->setContentsMargins(12, 0, 6, 0);
-  fitness_ = new FitnessLine(bench_);
+  fitness_ = new FitnessLine(app_);
   statusBar()->addWidget(hint_, 1);
   statusBar()->addWidget(fitness_, 1);
   statusBar()->addPermanentWidget(opening_box_);
@@ -199,7 +199,7 @@ void MainWindow::buildMenus() {
   quit->setObjectName("quit");
   QMenu* exercise = menuBar()->addMenu(tr("&Exercise"));
   exercise->addActions({train_->startAction(), train_->stopAction(), train_->pauseAction(),
-                        train_->forceOnAction(), bench_.undoAction(), bench_.redoAction(),
+                        train_->forceOnAction(), app_.undoAction(), app_.redoAction(),
                         train_->backAction(), train_->resetAction()});
   exercise->addSeparator();
   exercise->addActions(train_->handActions());
@@ -243,13 +243,13 @@ void MainWindow::connectParts() {
   connect(train_, &TrainWorkspace::cardsChanged, headset_, &HeadsetView::setCards);
   connect(train_, &TrainWorkspace::recentreWanted, headset_, &HeadsetView::recentre);
   connect(rail_, &Rail::chosen, this, qOverload<Place>(&MainWindow::show));
-  connect(&bench_, &Bench::placeWanted, this, qOverload<Place>(&MainWindow::show));
-  connect(&bench_, &Bench::failed, this, &MainWindow::failed);
-  connect(&bench_, &Bench::said, this, [this](const QString& text) {
+  connect(&app_, &AppContext::placeWanted, this, qOverload<Place>(&MainWindow::show));
+  connect(&app_, &AppContext::failed, this, &MainWindow::failed);
+  connect(&app_, &AppContext::said, this, [this](const QString& text) {
     constexpr int kMessage_ms = 15000;
     text.isEmpty() ? statusBar()->clearMessage() : statusBar()->showMessage(text, kMessage_ms);
   });
-  connect(&bench_, &Bench::hinted, this, [this](const QString& words) {
+  connect(&app_, &AppContext::hinted, this, [this](const QString& words) {
     hint_words_ = words;
     showHint();
   });
@@ -263,9 +263,9 @@ void MainWindow::connectParts() {
     show(Place::review);
     review_->replayNewest();
   });
-  connect(look_, &QAction::triggered, &bench_, &Bench::lookAtCase);
-  connect(picture_, &QAction::triggered, &bench_, &Bench::askToSavePicture);
-  connect(volume_, &QAction::triggered, this, [this] { bench_.askToSaveVolume({}); });
+  connect(look_, &QAction::triggered, &app_, &AppContext::lookAtCase);
+  connect(picture_, &QAction::triggered, &app_, &AppContext::askToSavePicture);
+  connect(volume_, &QAction::triggered, this, [this] { app_.askToSaveVolume({}); });
   for (QAction* panel : {left_panel_, right_panel_}) {
     connect(panel, &QAction::toggled, this, &MainWindow::showPanels);
   }
@@ -276,10 +276,10 @@ void MainWindow::connectParts() {
   connect(headset_settings_, &QAction::triggered, this, &MainWindow::showHeadset);
   connect(commission_, &QAction::triggered, this, &MainWindow::showCommission);
   connect(unlock_, &QAction::triggered, this, &MainWindow::askForPin);
-  connect(&bench_.workstation(), &Workstation::locksChanged, this, &MainWindow::showLocks);
+  connect(&app_.workstation(), &Workstation::locksChanged, this, &MainWindow::showLocks);
   showLocks();
 
-  Workstation& workstation = bench_.workstation();
+  Workstation& workstation = app_.workstation();
   const auto showPhase = [this] {
     const bool any = this->workstation().phase() != Workstation::Phase::empty;
     for (QAction* action : {picture_, volume_, look_}) action->setEnabled(any);
@@ -289,7 +289,7 @@ void MainWindow::connectParts() {
   };
   connect(&workstation, &Workstation::phaseChanged, this, showPhase);
   showPhase();
-  for (auto changed : {&Workstation::sceneChanged, &Workstation::caseNamed}) {
+  for (auto changed : {&Workstation::exerciseChanged, &Workstation::caseNamed}) {
     connect(&workstation, changed, this, &MainWindow::showTitle);
   }
   connect(&workstation, &Workstation::openingProgressed, this,
@@ -308,7 +308,7 @@ void MainWindow::connectParts() {
   connect(&workstation, &Workstation::openingEnded, opening_box_, &QWidget::hide);
   connect(&workstation, &Workstation::savingProgressed, this,
           [this](double fraction, const QString& step) {
-            bench_.say(tr("%1\u2026 %2 %").arg(step).arg(int(100.0 * fraction)));
+            app_.say(tr("%1\u2026 %2 %").arg(step).arg(int(100.0 * fraction)));
             opening_box_->show();
             opening_words_->clear();  // in the line beside it
             opening_->setValue(int(fraction * kProgressSteps));

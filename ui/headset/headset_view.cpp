@@ -34,7 +34,7 @@ bool isOne(double scale) {
 
 }  // namespace
 
-HeadsetView::HeadsetView(Bench& bench, QWidget& window) : QObject(&window), bench_(bench) {
+HeadsetView::HeadsetView(AppContext& bench, QWidget& window) : QObject(&window), app_(bench) {
   on_ = makeAction(window, Symbol::view, "headset", tr("&Headset"), QKeySequence(Qt::Key_F9),
                    tr("The 3-D view through a head-mounted display; the exercise goes on"));
   on_->setCheckable(true);
@@ -46,17 +46,17 @@ HeadsetView::HeadsetView(Bench& bench, QWidget& window) : QObject(&window), benc
   connect(on_, &QAction::toggled, this, &HeadsetView::toggle);
   connect(recentre_, &QAction::triggered, this, &HeadsetView::recentre);
   // Another exercise has its arms elsewhere.
-  connect(&bench_.workstation(), &Workstation::sessionStarted, this, &HeadsetView::placeByArms);
-  connect(&bench_, &Bench::caseShown, this, [this] {
+  connect(&app_.workstation(), &Workstation::sessionStarted, this, &HeadsetView::placeByArms);
+  connect(&app_, &AppContext::caseShown, this, [this] {
     if (headset_ && placed_) place();
   });
   words_timer_.setInterval(kWordsEvery_ms);
   connect(&words_timer_, &QTimer::timeout, this, [this] {
     const bool stuck = headset_->stuck_s() > kStuck_s;
     if (stuck && !std::exchange(stuck_, stuck)) {
-      bench_.say(bench_.workstation().session()
-                     ? tr("The headset's software does not answer: the exercise goes on here.")
-                     : tr("The headset's software does not answer."));
+      app_.say(app_.workstation().session()
+                   ? tr("The headset's software does not answer: the exercise goes on here.")
+                   : tr("The headset's software does not answer."));
     }
     stuck_ = stuck;
     emit changed();
@@ -76,13 +76,12 @@ void HeadsetView::toggle(bool on) {
   if (!headset_) return start();
   again_ = true;
   if (headset_->stuck_s() > kStuck_s) {
-    bench_.say(
-        tr("The headset's software has not come back yet: the headset follows once it has."));
+    app_.say(tr("The headset's software has not come back yet: the headset follows once it has."));
   }
 }
 
 void HeadsetView::start() {
-  ViewWidget& view = bench_.view();
+  ViewWidget& view = app_.view();
   placed_ = seen_ = flat_ = stuck_ = by_arms_ = false;
   room_changes_ = 0;
   const auto wake = [this, woken = std::weak_ptr(woken_)] {
@@ -99,7 +98,7 @@ void HeadsetView::start() {
   if (!started) {
     const QSignalBlocker quiet(on_);
     on_->setChecked(false);
-    return bench_.report(started.error());
+    return app_.report(started.error());
   }
   headset_ = *std::move(started);
   recentre_->setEnabled(true);
@@ -110,7 +109,7 @@ void HeadsetView::start() {
 // Before the head; where registered arms are, if the exercise has some.
 void HeadsetView::place() {
   const HeadsetState state = headset_->state();
-  const ViewCamera& camera = bench_.view().camera();
+  const ViewCamera& camera = app_.view().camera();
   const double ahead_m =
       readWithin(settings::kHeadsetAhead_m, settings::kAheadLeast_m, settings::kAheadMost_m);
   const double below_m = readWithin(settings::kHeadsetBelow_m, 0.0, settings::kBelowMost_m);
@@ -127,16 +126,17 @@ void HeadsetView::place() {
 // Of the running exercise's arms, those that are registered in the room.
 std::vector<HeadsetView::Standing> HeadsetView::standing() const {
   std::vector<Standing> arms;
-  Session* session = bench_.workstation().session();
+  Session* session = app_.workstation().session();
   if (!session) return arms;
-  const ArmsOfPlace here = armsOfThisPlace();
-  for (std::size_t i = 0; i < session->scene().arms.size(); ++i) {
-    const auto device = here.find(session->scene().arms[i].name);
+  const ChosenArms here = armSettings().chosen;
+  for (std::size_t i = 0; i < session->exercise().arms.size(); ++i) {
+    const auto device = here.find(session->exercise().arms[i].name);
     if (device == here.end() || session->isSimulated(i)) continue;
     const std::optional<ArmInRoom> in_room = armInRoom(device->second);
     if (!in_room) continue;
     const LoopState& state = session->state();  // as clutching left them, once there is a tick
-    const WorkspaceMap map = state.ticks > 0 ? state.maps[i] : *session->scene().arms[i].map.fixed;
+    const WorkspaceMap map =
+        state.ticks > 0 ? state.maps[i] : *session->exercise().arms[i].map.fixed;
     arms.push_back({in_room->room_from_device_m,
                     in_room->error_mm.value_or(0.0),
                     {map.centre_mm, map.rotation, map.motion_scale}});
@@ -153,9 +153,9 @@ void HeadsetView::placeByArms() {
   }
   place_ = where(arms.front().room_from_device_m, arms.front().in_patient);
   by_arms_ = true;
-  bench_.say(tr("The patient lies where the arms are: the tools are seen within %1 mm of where "
-                "they are felt.")
-                 .arg(toolsApart_mm(), 0, 'f', 1));
+  app_.say(tr("The patient lies where the arms are: the tools are seen within %1 mm of where "
+              "they are felt.")
+               .arg(toolsApart_mm(), 0, 'f', 1));
   showCards();
 }
 
@@ -191,7 +191,7 @@ void HeadsetView::serve() {
   if (!placed_ && state.located) place();
   if (!placed_) return;
   bool warmed = false;
-  bench_.view().withGraphics([&](SceneRenderer& renderer, unsigned int shown, int wide, int high) {
+  app_.view().withGraphics([&](SceneRenderer& renderer, unsigned int shown, int wide, int high) {
     // What is drawn for the first time takes as long as several pictures: one thing an event.
     warmed = renderer.warmUp();
     if (warmed) return;
@@ -212,7 +212,7 @@ void HeadsetView::serve() {
 void HeadsetView::showMirror() {
   const PicturePainter::Left& left = painter_.left();
   const bool mirrors = mirrors_ && seen_ && !flat_ && left.texture != 0;
-  bench_.view().showInstead(mirrors ? left.texture : 0, left.width, left.height);
+  app_.view().showInstead(mirrors ? left.texture : 0, left.width, left.height);
 }
 
 void HeadsetView::sayState(const HeadsetState& state) {
@@ -220,36 +220,36 @@ void HeadsetView::sayState(const HeadsetState& state) {
   keeps_room_ = state.keeps_room;
   if (std::exchange(room_changes_, state.room_changes) != state.room_changes) {
     if (forgetArmsInRoom(true)) {
-      bench_.say(tr("The headset has set its room up anew: register the arms again (Devices)."));
+      app_.say(tr("The headset has set its room up anew: register the arms again (Devices)."));
     }
     placed_ = false;
   }
   if (state.seen == seen_ && state.flat == flat_) return;
   if (seen_ && !state.seen) {
-    bench_.say(bench_.workstation().session()
-                   ? tr("The headset was taken off: the exercise goes on here.")
-                   : tr("The headset was taken off."));
+    app_.say(app_.workstation().session()
+                 ? tr("The headset was taken off: the exercise goes on here.")
+                 : tr("The headset was taken off."));
   }
   if (!flat_ && state.flat) {
-    bench_.say(tr("A flat screen in the headset: %1 pairs of pictures a second, and 45 are needed.")
-                   .arg(std::floor(state.pairs_hz)));
+    app_.say(tr("A flat screen in the headset: %1 pairs of pictures a second, and 45 are needed.")
+                 .arg(std::floor(state.pairs_hz)));
   }
-  if (flat_ && !state.flat) bench_.say(tr("Pictures come fast enough: look around."));
+  if (flat_ && !state.flat) app_.say(tr("Pictures come fast enough: look around."));
   seen_ = state.seen;
   flat_ = state.flat;
   emit changed();
 }
 
 void HeadsetView::ended(const HeadsetEnd& how) {
-  bench_.view().showInstead(0, 0, 0);
-  bench_.view().withGraphics([&](SceneRenderer& renderer, unsigned int, int, int) {
+  app_.view().showInstead(0, 0, 0);
+  app_.view().withGraphics([&](SceneRenderer& renderer, unsigned int, int, int) {
     painter_.release(headset_->pictures());
     renderer.releaseEyes();
   });
   headset_.reset();
   words_timer_.stop();
   marks_m_.clear();
-  bench_.view().setCards({});
+  app_.view().setCards({});
   forgetArmsInRoom(false);
   seen_ = flat_ = stuck_ = placed_ = by_arms_ = false;
   recentre_->setEnabled(false);
@@ -263,8 +263,8 @@ void HeadsetView::ended(const HeadsetEnd& how) {
   if (wanted && !how.why.ok()) {
     // What went away in an exercise is said beside it, and no dialog holds up the hands.
     const Error& why = how.why.error();
-    bench_.workstation().session() ? bench_.say(toQt(why.what + ". " + why.next + "."))
-                                   : bench_.report(why);
+    app_.workstation().session() ? app_.say(toQt(why.what + ". " + why.next + "."))
+                                 : app_.report(why);
   }
   emit changed();
 }
@@ -272,8 +272,8 @@ void HeadsetView::ended(const HeadsetEnd& how) {
 void HeadsetView::stop() {
   if (!headset_) return;
   headset_->stop();
-  bench_.view().showInstead(0, 0, 0);
-  if (std::exchange(flat_, false)) bench_.say({});  // that it shows a flat screen
+  app_.view().showInstead(0, 0, 0);
+  if (std::exchange(flat_, false)) app_.say({});  // that it shows a flat screen
   seen_ = false;
   emit changed();
 }
@@ -291,7 +291,7 @@ void HeadsetView::setCards(std::vector<EyeCard> cards) {
 void HeadsetView::showCards() {
   std::vector<EyeCard> all = cards_;
   const double scale = place_.scale;
-  if (!isOne(scale) && bench_.workstation().currentCase()) {
+  if (!isOne(scale) && app_.workstation().currentCase()) {
     all.push_back(noteCard(
         scale > 1.0 ? tr("The patient is shown %1 times as large as in life.").arg(scale, 0, 'f', 2)
                     : tr("The patient is shown at %1 % of the size in life.")
@@ -325,7 +325,7 @@ void HeadsetView::showCards() {
     stand(markCard(int(i) + 1), marks_m_[i]);
     shown.back().before_all = true;  // they may lie in the patient
   }
-  bench_.view().setCards(std::move(shown));
+  app_.view().setCards(std::move(shown));
 }
 
 std::vector<Vec3> HeadsetView::showMarks() {
@@ -361,7 +361,7 @@ QString HeadsetView::words() const {
           : tr("Headset")};
   words << tr("both eyes %1 ms").arg(painter_.pair_ms(), 0, 'f', 1);
   if (by_arms_) words << tr("tools within %1 mm of the arms").arg(toolsApart_mm(), 0, 'f', 1);
-  if (!isOne(place_.scale) && !state.flat && bench_.workstation().currentCase())
+  if (!isOne(place_.scale) && !state.flat && app_.workstation().currentCase())
     words << tr("patient at %1 %").arg(100.0 * place_.scale, 0, 'f', 0);
   return words.join(QStringLiteral(" \u00b7 "));
 }

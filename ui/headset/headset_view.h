@@ -1,6 +1,6 @@
 // The 3-D view through a headset: on and off, where the patient stands before the trainee, and that
-// the exercise goes on whatever becomes of it. Between the bench's view and the room `headset`; the
-// window's thread.
+// the exercise goes on whatever becomes of it. Between the shared context's view and the room
+// `headset`; the window's thread.
 #pragma once
 
 #include <QAction>
@@ -15,14 +15,14 @@
 #include "headset/room_place.h"
 #include "ui/common/settings.h"
 #include "ui/headset/eye_cards.h"
-#include "ui/work/bench.h"
+#include "ui/work/app_context.h"
 
 namespace trephine {
 
 class HeadsetView : public QObject {
   Q_OBJECT
  public:
-  HeadsetView(Bench& bench, QWidget& window);
+  HeadsetView(AppContext& bench, QWidget& window);
   ~HeadsetView() override;
 
   QAction* onAction() const { return on_; }
@@ -69,7 +69,7 @@ class HeadsetView : public QObject {
   void showMirror();
   void sayState(const HeadsetState& state);
 
-  Bench& bench_;
+  AppContext& app_;
   QAction *on_, *recentre_;
   std::unique_ptr<Headset> headset_;
   PicturePainter painter_;

@@ -45,8 +45,8 @@ QScreen* chosenScreen(const QWidget& window) {
 
 }  // namespace
 
-StereoView::StereoView(Bench& bench, QWidget& window)
-    : QObject(&window), bench_(bench), window_(window) {
+StereoView::StereoView(AppContext& bench, QWidget& window)
+    : QObject(&window), app_(bench), window_(window) {
   on_ = makeAction(window, Symbol::view, "stereo", tr("&Two pictures on another screen"),
                    QKeySequence(Qt::SHIFT | Qt::Key_F9),
                    tr("Side by side or above each other, for a 3-D monitor or a projector; a "
@@ -54,7 +54,7 @@ StereoView::StereoView(Bench& bench, QWidget& window)
   on_->setCheckable(true);
   connect(on_, &QAction::toggled, this, &StereoView::toggle);
   // What the window has drawn anew is drawn there, once an event's turn.
-  connect(&bench_.view(), &ViewWidget::framePainted, this, [this] {
+  connect(&app_.view(), &ViewWidget::framePainted, this, [this] {
     if (!screen_window_ || std::exchange(due_, true)) return;
     QTimer::singleShot(0, this, &StereoView::draw);
   });
@@ -74,12 +74,12 @@ void StereoView::toggle(bool on) {
   if (const Status started = start(); !started) {
     const QSignalBlocker quiet(on_);
     on_->setChecked(false);
-    bench_.report(started.error());
+    app_.report(started.error());
   }
 }
 
 Status StereoView::start() {
-  if (!bench_.view().context() || !bench_.view().canDraw()) {
+  if (!app_.view().context() || !app_.view().canDraw()) {
     return Error{"NO_OPENGL", "The 3-D view has not drawn anything yet", "",
                  "Open a case, and wait until it is shown"};
   }
@@ -138,7 +138,7 @@ void StereoView::settingsChanged() {
     on_->setChecked(true);
   } else if (const Status read = readSettings(); !read) {
     stop();
-    bench_.report(read.error());
+    app_.report(read.error());
   } else {
     draw();
   }
@@ -155,7 +155,7 @@ void StereoView::stop() {
 void StereoView::release() {
   words_timer_.stop();
   screen_window_.reset();
-  bench_.view().withGraphics([this](SceneRenderer& renderer, unsigned int, int, int) {
+  app_.view().withGraphics([this](SceneRenderer& renderer, unsigned int, int, int) {
     pictures_.release();
     renderer.releaseEyes();
   });
@@ -165,14 +165,14 @@ void StereoView::draw() {
   due_ = false;
   if (!screen_window_) return;
   const int wide = screen_window_->pixelWidth(), high = screen_window_->pixelHeight();
-  const ViewCamera& camera = bench_.view().camera();
+  const ViewCamera& camera = app_.view().camera();
   const StereoScreen screen = screenThrough(camera.distance_mm(), camera.halfHeight_mm(),
                                             aspectOf(packing_, wide, high), eyes_mm_, away_mm_);
   const Eyes eyes_mm = eyesBefore(screen, camera.pose_mm());
   bool warmed = false;
   QElapsedTimer timer;
   timer.start();
-  bench_.view().withGraphics([&](SceneRenderer& renderer, unsigned int, int, int) {
+  app_.view().withGraphics([&](SceneRenderer& renderer, unsigned int, int, int) {
     // What is drawn for the first time takes as long as several pictures: one thing an event.
     warmed = renderer.warmUp();
     if (warmed) return;
@@ -194,7 +194,7 @@ void StereoView::draw() {
 void StereoView::screenGone(QScreen* screen) {
   if (!screen_window_ || screen != screen_) return;
   stop();
-  bench_.say(tr("The screen for both eyes is gone: the exercise goes on here."));
+  app_.say(tr("The screen for both eyes is gone: the exercise goes on here."));
 }
 
 QString StereoView::words() const {

@@ -1,6 +1,6 @@
 // The 3-D view as two pictures on another screen: a 3-D monitor, a projector, a headset that is a
-// second screen. What is looked at lies in the screen's plane. Between the bench's view and the
-// room `headset`; the window's thread.
+// second screen. What is looked at lies in the screen's plane. Between the shared context's view
+// and the room `headset`; the window's thread.
 #pragma once
 
 #include <QAction>
@@ -14,7 +14,7 @@
 #include "headset/lens_profile.h"
 #include "headset/packed_drawing.h"
 #include "headset/stereo_screen.h"
-#include "ui/work/bench.h"
+#include "ui/work/app_context.h"
 
 namespace trephine {
 
@@ -25,7 +25,7 @@ Packing packingOf(const QString& word);  // of the settings; a word that is none
 class StereoView : public QObject {
   Q_OBJECT
  public:
-  StereoView(Bench& bench, QWidget& window);
+  StereoView(AppContext& bench, QWidget& window);
   ~StereoView() override;
 
   QAction* onAction() const { return on_; }
@@ -47,7 +47,7 @@ class StereoView : public QObject {
   void screenGone(QScreen* screen);
   void release();
 
-  Bench& bench_;
+  AppContext& app_;
   QWidget& window_;
   QAction* on_;
   std::unique_ptr<StereoWindow> screen_window_;

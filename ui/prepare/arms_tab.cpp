@@ -19,28 +19,28 @@
 
 namespace trephine {
 
-ArmsTab::ArmsTab(Bench& bench, ToolsPanel& tools)
+ArmsTab::ArmsTab(AppContext& bench, ToolsPanel& tools)
     : QObject(&bench),
-      bench_(bench),
+      app_(bench),
       workstation_(bench.workstation()),
       views_(&bench.views()),
       tools_(&tools) {
   tools_->wanted = [this](const std::string& what, const auto& change) {
     return workstation_.edit(what, change);
   };
-  tools_->mapAt = [this](const Scene& scene, std::size_t arm, const std::string& landmark) {
+  tools_->mapAt = [this](const Exercise& exercise, std::size_t arm, const std::string& landmark) {
     const std::optional<Placement>& placed = workstation_.placed();
-    return placed ? movedTo(scene, arm, landmark, placed->landmarks) : scene.arms[arm].map;
+    return placed ? movedTo(exercise, arm, landmark, placed->landmarks) : exercise.arms[arm].map;
   };
   connect(tools_, &ToolsPanel::armChosen, this, &ArmsTab::showBoxes);
   connect(tools_, &ToolsPanel::toolFileWanted, this, [this] {
-    bench_.askForFile("toolFileDialog", tr("A tool file"), tr("Tools (*.json)"),
-                      [this](const auto& file) { tools_->addTool(file); });
+    app_.askForFile("toolFileDialog", tr("A tool file"), tr("Tools (*.json)"),
+                    [this](const auto& file) { tools_->addTool(file); });
   });
   connect(tools_, &ToolsPanel::meshWanted, this, [this] {
-    bench_.askForFile("meshDialog", tr("A mesh"), tr("Surface (*.stl)"), [this](const auto& file) {
+    app_.askForFile("meshDialog", tr("A mesh"), tr("Surface (*.stl)"), [this](const auto& file) {
       const Status mesh = checkToolMesh(file);
-      mesh ? tools_->setMesh(file) : bench_.report(mesh.error());
+      mesh ? tools_->setMesh(file) : app_.report(mesh.error());
     });
   });
   connect(tools_, &ToolsPanel::tradesWanted, this, &ArmsTab::measureTrades);
@@ -60,19 +60,19 @@ ArmsTab::ArmsTab(Bench& bench, ToolsPanel& tools)
 // A second or two in the background; once more, and it is given up.
 void ArmsTab::measureCosts() {
   if (costing_.busy()) return costing_.cancel();
-  if (!workstation_.scene()) return;
+  if (!workstation_.exercise()) return;
   if (workstation_.session()) {
-    return bench_.say(tr("An exercise is running: it would be measured with it. Stop it first."));
+    return app_.say(tr("An exercise is running: it would be measured with it. Stop it first."));
   }
   tools_->showMeasuring(0.0);
   costing_.run(
-      [scene = *workstation_.scene()](const Progress& progress) {
-        return measureLawCosts(scene, progress);
+      [exercise = *workstation_.exercise()](const Progress& progress) {
+        return measureLawCosts(exercise, progress);
       },
       [this](Result<LawCosts> costs) {
         tools_->showMeasuring({});
         if (!costs) {
-          if (costs.error().code != "CANCELLED") bench_.report(costs.error());
+          if (costs.error().code != "CANCELLED") app_.report(costs.error());
           return;
         }
         ToolsPanel::Costs words;
@@ -166,22 +166,22 @@ void ArmsTab::show(bool in_front) {
 }
 
 void ArmsTab::refresh() {
-  if (in_front_ && workstation_.scene()) {
+  if (in_front_ && workstation_.exercise()) {
     tools_->setLocked(
         workstation_.anyLocked()
             ? tr("The exercise is locked. %1.").arg(unlockWords(workstation_.policy()))
             : QString());
-    tools_->setScene(*workstation_.scene());
+    tools_->setExercise(*workstation_.exercise());
   }
   showBoxes();
 }
 
 // While their tab is in front and no exercise runs: the boxes, and the tools where it begins.
 void ArmsTab::showBoxes() {
-  const std::optional<Scene>& scene = workstation_.scene();
+  const std::optional<Exercise>& exercise = workstation_.exercise();
   const Case* of = workstation_.currentCase();
   const bool idle = workstation_.phase() == Workstation::Phase::ready;
-  const bool shown = in_front_ && scene && of && idle;
+  const bool shown = in_front_ && exercise && of && idle;
   if (!shown) {
     views_->setWorkspaces({});
     if (idle) {
@@ -191,18 +191,18 @@ void ArmsTab::showBoxes() {
     return;
   }
   std::vector<Vec3> workspaces_mm = workstation_.workspaces_mm();
-  workspaces_mm.resize(scene->arms.size(), Vec3(100.0));  // of an arm that is not there
-  const Scene placed = withFixedMaps(*scene, workstation_.placed()->landmarks);
+  workspaces_mm.resize(exercise->arms.size(), Vec3(100.0));  // of an arm that is not there
+  const Exercise placed = withFixedMaps(*exercise, workstation_.placed()->landmarks);
   std::vector<WorkspaceBox> boxes;
   std::vector<ToolView> tools;
   for (std::size_t i = 0; i < placed.arms.size(); ++i) {
-    const SceneArm& arm = placed.arms[i];
+    const ExerciseArm& arm = placed.arms[i];
     if (!arm.map.fixed) continue;
     const WorkspaceMap& map = *arm.map.fixed;
     const QColor colour = colours::ofArm(arm, i);
     boxes.push_back({map.centre_mm, map.rotation, map.motion_scale * workspaces_mm[i], colour,
                      i == tools_->chosenArm()});
-    if (const SceneTool* tool = placed.findTool(arm.tool)) {
+    if (const ExerciseTool* tool = placed.findTool(arm.tool)) {
       tools.push_back(
           toolView(*tool, {map.centre_mm, map.rotation}, false, colours::rgbOf(colour)));
     }
@@ -215,11 +215,11 @@ void ArmsTab::showBoxes() {
 // One drag is one edit.
 void ArmsTab::workspaceMoved(const Vec3& centre_mm, bool done) {
   const Case* of = workstation_.currentCase();
-  if (!workstation_.scene() || !of || !isFinite(centre_mm)) return;
-  Scene scene = *workstation_.scene();
+  if (!workstation_.exercise() || !of || !isFinite(centre_mm)) return;
+  Exercise exercise = *workstation_.exercise();
   const std::size_t index = tools_->chosenArm();
-  if (index >= scene.arms.size()) return;
-  SceneMap& map = scene.arms[index].map;
+  if (index >= exercise.arms.size()) return;
+  ExerciseMap& map = exercise.arms[index].map;
   if (map.fixed) {
     map.fixed->centre_mm = centre_mm;
   } else {
@@ -232,9 +232,9 @@ void ArmsTab::workspaceMoved(const Vec3& centre_mm, bool done) {
       }
     }
   }
-  const Status moved = workstation_.edit(scene, "workspace:" + scene.arms[index].name);
+  const Status moved = workstation_.edit(exercise, "workspace:" + exercise.arms[index].name);
   if (done) workstation_.closeEdit();
-  if (!moved && done) bench_.report(moved.error());
+  if (!moved && done) app_.report(moved.error());
   showBoxes();
 }
 

@@ -9,14 +9,14 @@
 
 #include "ui/common/background_task.h"
 #include "ui/prepare/tools_panel.h"
-#include "ui/work/bench.h"
+#include "ui/work/app_context.h"
 
 namespace trephine {
 
 class ArmsTab : public QObject {
   Q_OBJECT
  public:
-  ArmsTab(Bench& bench, ToolsPanel& tools);
+  ArmsTab(AppContext& bench, ToolsPanel& tools);
 
   // Whether it is seen; the panel is filled, and boxes and tools are drawn, while it is.
   void show(bool in_front);
@@ -29,7 +29,7 @@ class ArmsTab : public QObject {
   void measureTrades();
   void workspaceMoved(const Vec3& centre_mm, bool done);
 
-  Bench& bench_;
+  AppContext& app_;
   Workstation& workstation_;
   FourUp* views_;
   ToolsPanel* tools_;

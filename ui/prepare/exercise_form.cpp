@@ -7,7 +7,7 @@
 #include <algorithm>
 
 #include "base/utf8.h"
-#include "scene/scene_edits.h"
+#include "exercise/exercise_edits.h"
 #include "ui/common/colours.h"
 #include "ui/common/words.h"
 
@@ -63,7 +63,7 @@ ExerciseForm::ExerciseForm(QWidget* parent) : QWidget(parent) {
   groups->addWidget(buildPlaces());
   groups->addWidget(buildCard());
   outline_ = new OutlineForm(body_);
-  outline_->wanted = [this](const std::string& what, const std::function<void(Scene&)>& change) {
+  outline_->wanted = [this](const std::string& what, const std::function<void(Exercise&)>& change) {
     return wanted ? wanted(what, change) : Status();
   };
   connect(outline_, &OutlineForm::drawingWanted, this, &ExerciseForm::drawingWanted);
@@ -105,7 +105,7 @@ QWidget* ExerciseForm::buildWays() {
 }
 
 void ExerciseForm::edit(QLabel* problem, const std::string& what,
-                        const std::function<void(Scene&)>& change) {
+                        const std::function<void(Exercise&)>& change) {
   if (showing_) return;
   const Status done = wanted ? wanted(what, change) : Status();
   done ? problem->hide() : sayNotApplied(*problem, done.error());
@@ -123,9 +123,9 @@ QWidget* ExerciseForm::buildWhat() {
   connect(name_, &QLineEdit::editingFinished, this, [this] {
     const std::string typed = cleanUtf8(name_->text().toStdString());
     name_->setModified(false);
-    if (typed.empty()) return name_->setText(toQt(scene_.name));
-    if (typed == scene_.name) return;
-    edit(what_problem_, "exercise name", [&](Scene& scene) { scene.name = typed; });
+    if (typed.empty()) return name_->setText(toQt(exercise_.name));
+    if (typed == exercise_.name) return;
+    edit(what_problem_, "exercise name", [&](Exercise& exercise) { exercise.name = typed; });
   });
   rows->addRow(tr("Name"), withHint(name_, tr("As it stands in the list of exercises."), fields));
   anatomy_ = settingChoice("anatomy", tr("Part of the body"), fields);
@@ -133,7 +133,7 @@ QWidget* ExerciseForm::buildWhat() {
   anatomy_->addItem(tr("Abdomen"), QStringLiteral("abdomen"));
   connect(anatomy_, &QComboBox::activated, this, [this](int) {
     const std::string of = anatomy_->currentData().toString().toStdString();
-    edit(what_problem_, "anatomy", [&](Scene& scene) { scene.anatomy = of; });
+    edit(what_problem_, "anatomy", [&](Exercise& exercise) { exercise.anatomy = of; });
   });
   rows->addRow(
       tr("For"),
@@ -149,7 +149,7 @@ QWidget* ExerciseForm::buildWhat() {
       const QListWidgetItem& item = *structures_->item(i);
       if (item.checkState() == Qt::Checked) names.push_back(item.text().toStdString());
     }
-    edit(what_problem_, "structures", [&](Scene& scene) { scene.structures = names; });
+    edit(what_problem_, "structures", [&](Exercise& exercise) { exercise.structures = names; });
   });
   rows->addRow(tr("Needs"),
                withHint(structures_, tr("A case that lacks one is helped to it first."), fields));
@@ -213,11 +213,11 @@ QWidget* ExerciseForm::buildWhat() {
 }
 
 void ExerciseForm::setOperator(const std::string& file) {
-  edit(what_problem_, "operator", [&](Scene& scene) { scene.operator_file = file; });
+  edit(what_problem_, "operator", [&](Exercise& exercise) { exercise.operator_file = file; });
 }
 
 void ExerciseForm::setElsewhere(const std::optional<TissueSet>& set) {
-  edit(what_problem_, "elsewhere", [&](Scene& scene) { scene.tissues_elsewhere = set; });
+  edit(what_problem_, "elsewhere", [&](Exercise& exercise) { exercise.tissues_elsewhere = set; });
 }
 
 void ExerciseForm::showCase(const QString& words) {
@@ -230,8 +230,8 @@ void ExerciseForm::setElsewherePossible(bool possible) {
 
 void ExerciseForm::setStructures(const std::vector<std::string>& names) {
   of_case_ = names;
-  const Scene same = scene_;
-  setScene(same, landmarks_);
+  const Exercise same = exercise_;
+  setExercise(same, landmarks_);
 }
 
 // --- Where ---
@@ -330,14 +330,14 @@ QWidget* ExerciseForm::buildPlaces() {
   view_landmark_ = settingChoice("viewLandmark", tr("Looked at"), fields);
   connect(view_landmark_, &QComboBox::activated, this, [this](int) {
     const std::string id = view_landmark_->currentData().toString().toStdString();
-    edit(place_problem_, "view landmark", [&](Scene& scene) { scene.view.landmark = id; });
+    edit(place_problem_, "view landmark", [&](Exercise& exercise) { exercise.view.landmark = id; });
   });
   place_form_->addRow(tr("Look at"),
                       withHint(view_landmark_, tr("Where the camera begins."), fields));
-  view_numbers_ = std::make_unique<NumberRows<SceneView>>(
-      std::span<const NumberOf<SceneView>>(kViewNumbers), *place_form_, fields, "view:");
-  view_numbers_->entered = [this](const SceneView& view, const char* key) {
-    edit(place_problem_, key, [&](Scene& scene) { scene.view = view; });
+  view_numbers_ = std::make_unique<NumberRows<ExerciseView>>(
+      std::span<const NumberOf<ExerciseView>>(kViewNumbers), *place_form_, fields, "view:");
+  view_numbers_->entered = [this](const ExerciseView& view, const char* key) {
+    edit(place_problem_, key, [&](Exercise& exercise) { exercise.view = view; });
   };
   auto* looks = settingButton("keepLooks", tr("Keep the looks as they are"),
                               tr("Shown, ghosted, hidden: as the tissues look now"), fields);
@@ -350,9 +350,9 @@ QWidget* ExerciseForm::buildPlaces() {
 void ExerciseForm::editLandmark(const std::string& what,
                                 const std::function<void(Landmark&)>& change) {
   const int row = landmark_->currentIndex();
-  if (row < 0 || std::size_t(row) >= scene_.landmarks.size()) return;
+  if (row < 0 || std::size_t(row) >= exercise_.landmarks.size()) return;
   edit(place_problem_, "landmark:" + what,
-       [&](Scene& scene) { change(scene.landmarks[std::size_t(row)]); });
+       [&](Exercise& exercise) { change(exercise.landmarks[std::size_t(row)]); });
 }
 
 // Whatever names it goes along.
@@ -360,18 +360,18 @@ void ExerciseForm::nameLandmark() {
   const int row = landmark_->currentIndex();
   const std::string typed = cleanUtf8(landmark_name_->text().toStdString());
   landmark_name_->setModified(false);
-  if (row < 0 || std::size_t(row) >= scene_.landmarks.size()) return;
-  const std::string before = scene_.landmarks[std::size_t(row)].id;
+  if (row < 0 || std::size_t(row) >= exercise_.landmarks.size()) return;
+  const std::string before = exercise_.landmarks[std::size_t(row)].id;
   if (typed.empty()) return landmark_name_->setText(toQt(before));
   if (typed == before) return;
-  edit(place_problem_, "landmark name", [&](Scene& scene) {
-    scene.landmarks[std::size_t(row)].id = typed;
-    for (SceneArm& arm : scene.arms) {
+  edit(place_problem_, "landmark name", [&](Exercise& exercise) {
+    exercise.landmarks[std::size_t(row)].id = typed;
+    for (ExerciseArm& arm : exercise.arms) {
       if (arm.map.landmark == before) arm.map.landmark = typed;
     }
-    if (scene.view.landmark == before) scene.view.landmark = typed;
-    if (scene.outline && scene.outline->frame && scene.outline->frame->landmark == before) {
-      scene.outline->frame->landmark = typed;
+    if (exercise.view.landmark == before) exercise.view.landmark = typed;
+    if (exercise.outline && exercise.outline->frame && exercise.outline->frame->landmark == before) {
+      exercise.outline->frame->landmark = typed;
     }
   });
 }
@@ -395,27 +395,27 @@ void ExerciseForm::findLandmarkBy(const QString& kind) {
 
 void ExerciseForm::addLandmark() {
   const int row = landmark_->currentIndex();
-  if (row < 0 || std::size_t(row) >= scene_.landmarks.size()) return;
-  Landmark more = scene_.landmarks[std::size_t(row)];
+  if (row < 0 || std::size_t(row) >= exercise_.landmarks.size()) return;
+  Landmark more = exercise_.landmarks[std::size_t(row)];
   int number = 2;
-  while (scene_.findLandmarkById("place-" + std::to_string(number))) ++number;
+  while (exercise_.findLandmarkById("place-" + std::to_string(number))) ++number;
   more.id = "place-" + std::to_string(number);
-  edit(place_problem_, "add landmark", [&](Scene& scene) { scene.landmarks.push_back(more); });
+  edit(place_problem_, "add landmark", [&](Exercise& exercise) { exercise.landmarks.push_back(more); });
   landmark_->setCurrentIndex(landmark_->count() - 1);
   showLandmark();
 }
 
 void ExerciseForm::removeLandmark() {
   const int row = landmark_->currentIndex();
-  if (row < 0 || std::size_t(row) >= scene_.landmarks.size()) return;
+  if (row < 0 || std::size_t(row) >= exercise_.landmarks.size()) return;
   edit(place_problem_, "remove landmark",
-       [&](Scene& scene) { scene.landmarks.erase(scene.landmarks.begin() + row); });
+       [&](Exercise& exercise) { exercise.landmarks.erase(exercise.landmarks.begin() + row); });
 }
 
 void ExerciseForm::showLandmark() {
   const int row = landmark_->currentIndex();
-  if (row < 0 || std::size_t(row) >= scene_.landmarks.size()) return;
-  const Landmark& of = scene_.landmarks[std::size_t(row)];
+  if (row < 0 || std::size_t(row) >= exercise_.landmarks.size()) return;
+  const Landmark& of = exercise_.landmarks[std::size_t(row)];
   landmark_tissue_->setCurrentIndex(landmark_tissue_->findData(toQt(of.tissue)));
   const bool bulk = !of.is_place && of.bulk_radius_mm > 0.0;
   landmark_found_->setCurrentIndex(landmark_found_->findData(QString(of.is_place ? kByPlace
@@ -476,21 +476,21 @@ QWidget* ExerciseForm::buildCard() {
   column->addWidget(chinese_on_);
   column->addWidget(zh_page_);
   connect(card_on_, &QCheckBox::toggled, this, [this](bool on) {
-    edit(card_problem_, "card on", [&](Scene& scene) {
-      scene.card.reset();
+    edit(card_problem_, "card on", [&](Exercise& exercise) {
+      exercise.card.reset();
       if (on) {
-        scene.card = SceneCard{{scene.name, {tr("Say the first step").toStdString()},
+        exercise.card = ExerciseCard{{exercise.name, {tr("Say the first step").toStdString()},
                                 tr("Say what each hand does").toStdString()},
                                {}};
       }
     });
   });
   connect(chinese_on_, &QCheckBox::toggled, this, [this](bool on) {
-    edit(card_problem_, "card on", [&](Scene& scene) {
-      if (!scene.card) return;
-      if (scene.card->zh_TW) kept_chinese_ = scene.card->zh_TW;  // for who ticks it again
-      scene.card->zh_TW.reset();
-      if (on) scene.card->zh_TW = kept_chinese_ ? *kept_chinese_ : scene.card->en;
+    edit(card_problem_, "card on", [&](Exercise& exercise) {
+      if (!exercise.card) return;
+      if (exercise.card->zh_TW) kept_chinese_ = exercise.card->zh_TW;  // for who ticks it again
+      exercise.card->zh_TW.reset();
+      if (on) exercise.card->zh_TW = kept_chinese_ ? *kept_chinese_ : exercise.card->en;
     });
   });
   return group(tr("Card"), card_problem_, fields, body_);
@@ -507,10 +507,10 @@ CardText ExerciseForm::textOf(const CardFields& fields) {
 }
 
 void ExerciseForm::cardEntered() {
-  if (showing_ || !scene_.card) return;
-  edit(card_problem_, "card", [this](Scene& scene) {
-    scene.card->en = textOf(en_);
-    if (scene.card->zh_TW) scene.card->zh_TW = textOf(zh_);
+  if (showing_ || !exercise_.card) return;
+  edit(card_problem_, "card", [this](Exercise& exercise) {
+    exercise.card->en = textOf(en_);
+    if (exercise.card->zh_TW) exercise.card->zh_TW = textOf(zh_);
   });
 }
 
@@ -538,14 +538,14 @@ void ExerciseForm::showText(CardFields& fields, const CardText* text) {
 }
 
 void ExerciseForm::showCard() {
-  card_on_->setChecked(scene_.card.has_value());
-  en_page_->setVisible(scene_.card.has_value());
-  chinese_on_->setVisible(scene_.card.has_value());
-  const bool chinese = scene_.card && scene_.card->zh_TW;
+  card_on_->setChecked(exercise_.card.has_value());
+  en_page_->setVisible(exercise_.card.has_value());
+  chinese_on_->setVisible(exercise_.card.has_value());
+  const bool chinese = exercise_.card && exercise_.card->zh_TW;
   chinese_on_->setChecked(chinese);
   zh_page_->setVisible(chinese);
-  showText(en_, scene_.card ? &scene_.card->en : nullptr);
-  showText(zh_, chinese ? &*scene_.card->zh_TW : nullptr);
+  showText(en_, exercise_.card ? &exercise_.card->en : nullptr);
+  showText(zh_, chinese ? &*exercise_.card->zh_TW : nullptr);
 }
 
 // --- Locks ---
@@ -561,8 +561,8 @@ QWidget* ExerciseForm::buildLocks() {
     check->setObjectName("lock:" + QString::fromUtf8(kLockNames[i].first.data(),
                                                      qsizetype(kLockNames[i].first.size())));
     connect(check, &QCheckBox::toggled, this, [this, lock](bool on) {
-      edit(lock_problem_, "locks", [&](Scene& scene) {
-        on ? void(scene.locks.insert(lock)) : void(scene.locks.erase(lock));
+      edit(lock_problem_, "locks", [&](Exercise& exercise) {
+        on ? void(exercise.locks.insert(lock)) : void(exercise.locks.erase(lock));
       });
     });
     column->addWidget(check);
@@ -573,23 +573,23 @@ QWidget* ExerciseForm::buildLocks() {
   return group(tr("What stays"), lock_problem_, fields, body_);
 }
 
-void ExerciseForm::setScene(const Scene& scene, const std::vector<PlacedLandmark>& landmarks) {
-  if (scene != scene_) {  // what was refused was of another
+void ExerciseForm::setExercise(const Exercise& exercise, const std::vector<PlacedLandmark>& landmarks) {
+  if (exercise != exercise_) {  // what was refused was of another
     for (QLabel* problem : {what_problem_, place_problem_, card_problem_, lock_problem_}) {
       problem->hide();
     }
     outline_->forgetRefusal();
   }
-  scene_ = scene;
+  exercise_ = exercise;
   landmarks_ = landmarks;
   showing_ = true;
-  body_->setEnabled(locked_->text().isEmpty() && !scene_.arms.empty());
-  if (!name_->hasFocus() || !name_->isModified()) name_->setText(toQt(scene_.name));
-  const QString anatomy = toQt(scene_.anatomy);
+  body_->setEnabled(locked_->text().isEmpty() && !exercise_.arms.empty());
+  if (!name_->hasFocus() || !name_->isModified()) name_->setText(toQt(exercise_.name));
+  const QString anatomy = toQt(exercise_.anatomy);
   if (anatomy_->findData(anatomy) < 0) anatomy_->addItem(anatomy, anatomy);
   anatomy_->setCurrentIndex(anatomy_->findData(anatomy));
   structures_->clear();
-  std::vector<std::string> names = scene_.structures;
+  std::vector<std::string> names = exercise_.structures;
   for (const std::string& name : of_case_) {
     const auto same = [&](const std::string& other) { return sameName(name, other); };
     if (std::ranges::none_of(names, same)) names.push_back(name);
@@ -597,35 +597,35 @@ void ExerciseForm::setScene(const Scene& scene, const std::vector<PlacedLandmark
   for (std::size_t i = 0; i < names.size(); ++i) {
     auto* item = new QListWidgetItem(toQt(names[i]), structures_);
     item->setFlags(item->flags() | Qt::ItemIsUserCheckable);
-    item->setCheckState(i < scene_.structures.size() ? Qt::Checked : Qt::Unchecked);
+    item->setCheckState(i < exercise_.structures.size() ? Qt::Checked : Qt::Unchecked);
   }
   what_form_->setRowVisible(structures_->parentWidget(), !names.empty());
-  operator_->setText(scene_.operator_file.empty()
+  operator_->setText(exercise_.operator_file.empty()
                          ? tr("none")
-                         : toQt(std::filesystem::path(scene_.operator_file).filename()));
+                         : toQt(std::filesystem::path(exercise_.operator_file).filename()));
   elsewhere_->setText(!choose_elsewhere_->isEnabled() ? tr("in use: this case lacks a structure")
-                      : scene_.tissues_elsewhere      ? shownName(scene_.tissues_elsewhere->name)
+                      : exercise_.tissues_elsewhere      ? shownName(exercise_.tissues_elsewhere->name)
                                                       : tr("none: these tissues everywhere"));
   const int row = std::max(0, landmark_->currentIndex());
   landmark_->clear();
   view_landmark_->clear();
   view_landmark_->addItem(tr("The whole case"), QString());
-  for (const Landmark& of : scene_.landmarks) {
+  for (const Landmark& of : exercise_.landmarks) {
     landmark_->addItem(toQt(of.id));
     view_landmark_->addItem(toQt(of.id), toQt(of.id));
   }
   landmark_->setCurrentIndex(std::min(row, landmark_->count() - 1));
-  view_landmark_->setCurrentIndex(view_landmark_->findData(toQt(scene_.view.landmark)));
+  view_landmark_->setCurrentIndex(view_landmark_->findData(toQt(exercise_.view.landmark)));
   landmark_tissue_->clear();
-  for (const Tissue& of : scene_.tissues.tissues) {
+  for (const Tissue& of : exercise_.tissues.tissues) {
     landmark_tissue_->addItem(shownName(of.name), toQt(of.id));
   }
-  view_numbers_->show(scene_.view);
+  view_numbers_->show(exercise_.view);
   showLandmark();
   showCard();
-  outline_->show(scene_, landmarks_);
+  outline_->show(exercise_, landmarks_);
   for (std::size_t i = 0; i < locks_.size(); ++i) {
-    locks_[i]->setChecked(scene_.locks.contains(kLockNames[i].second));
+    locks_[i]->setChecked(exercise_.locks.contains(kLockNames[i].second));
   }
   showing_ = false;
 }
@@ -633,7 +633,7 @@ void ExerciseForm::setScene(const Scene& scene, const std::vector<PlacedLandmark
 void ExerciseForm::setLocked(const QString& why) {
   locked_->setText(why);
   locked_->setVisible(!why.isEmpty());
-  body_->setEnabled(why.isEmpty() && !scene_.arms.empty());
+  body_->setEnabled(why.isEmpty() && !exercise_.arms.empty());
   for (QPushButton* of : {save_, copy_, import_}) of->setEnabled(why.isEmpty());
 }
 

@@ -1,7 +1,7 @@
 // The exercise itself: its name, what it is for, where it enters, what its card says in both
 // languages, the outline that shows where to work, what a trainee may not change; and saving it,
-// trying it and taking it elsewhere. It shows a scene and tells what a person wants of it; what is
-// refused is said below the group and the scene stays.
+// trying it and taking it elsewhere. It shows an exercise and tells what a person wants of it; what
+// is refused is said below the group and the exercise stays.
 #pragma once
 
 #include <QCheckBox>
@@ -17,8 +17,8 @@
 #include <functional>
 #include <memory>
 
-#include "scene/scene.h"
-#include "scene/scene_numbers.h"
+#include "exercise/exercise.h"
+#include "exercise/exercise_numbers.h"
 #include "ui/common/number_rows.h"
 #include "ui/prepare/outline_form.h"
 
@@ -30,7 +30,7 @@ class ExerciseForm : public QWidget {
   explicit ExerciseForm(QWidget* parent = nullptr);
 
   // `landmarks`: as they are placed in the open case.
-  void setScene(const Scene& scene, const std::vector<PlacedLandmark>& landmarks);
+  void setExercise(const Exercise& exercise, const std::vector<PlacedLandmark>& landmarks);
   // Names of the case's structures, to be asked for.
   void setStructures(const std::vector<std::string>& names);
   void setLocked(const QString& why);
@@ -46,8 +46,9 @@ class ExerciseForm : public QWidget {
   // Clicks on the surface add points.
   void showDrawing(bool drawing) { outline_->showDrawing(drawing); }
 
-  // A person wants this change of the scene as it is then; `what` of it.
-  std::function<Status(const std::string& what, const std::function<void(Scene&)>& change)> wanted;
+  // A person wants this change of the exercise as it is then; `what` of it.
+  std::function<Status(const std::string& what, const std::function<void(Exercise&)>& change)>
+      wanted;
 
  signals:
   void drawingWanted(bool on);
@@ -85,14 +86,14 @@ class ExerciseForm : public QWidget {
   void addLandmark();
   void removeLandmark();
   void showCard();
-  void edit(QLabel* problem, const std::string& what, const std::function<void(Scene&)>& change);
+  void edit(QLabel* problem, const std::string& what, const std::function<void(Exercise&)>& change);
   void editLandmark(const std::string& what, const std::function<void(Landmark&)>& change);
   void cardEntered();
   bool eventFilter(QObject* watched, QEvent* event) override;
   static void showText(CardFields& fields, const CardText* text);
   static CardText textOf(const CardFields& fields);
 
-  Scene scene_;
+  Exercise exercise_;
   std::vector<PlacedLandmark> landmarks_;
   bool showing_ = false;
   QWidget* body_;
@@ -109,7 +110,7 @@ class ExerciseForm : public QWidget {
   QFormLayout* place_form_;
   QLabel* landmark_kind_;
   std::unique_ptr<NumberRows<Landmark>> ray_, bulk_, place_, outward_, run_;
-  std::unique_ptr<NumberRows<SceneView>> view_numbers_;
+  std::unique_ptr<NumberRows<ExerciseView>> view_numbers_;
   QLabel *operator_, *case_, *elsewhere_;
   QToolButton *choose_elsewhere_, *no_elsewhere_;
   QCheckBox *card_on_, *chinese_on_;

@@ -6,7 +6,7 @@
 
 #include "base/file.h"
 #include "base/json.h"
-#include "exercise/exercise_folder.h"
+#include "exchange/exercise_folder.h"
 #include "library/case_folders.h"
 #include "library/name_words.h"
 #include "session/operator_script.h"
@@ -34,9 +34,9 @@ Error notVerified(const ExerciseCheck& check) {
 
 }  // namespace
 
-ExerciseTab::ExerciseTab(Bench& bench, ExerciseForm& form)
+ExerciseTab::ExerciseTab(AppContext& bench, ExerciseForm& form)
     : QObject(&bench),
-      bench_(bench),
+      app_(bench),
       workstation_(bench.workstation()),
       views_(&bench.views()),
       form_(&form) {
@@ -49,29 +49,29 @@ ExerciseTab::ExerciseTab(Bench& bench, ExerciseForm& form)
     entry_once_ = true;
   });
   connect(form_, &ExerciseForm::looksWanted, this, [this] {
-    if (!workstation_.scene()) return;
-    const Status done = workstation_.edit("looks", [this](Scene& scene) {
-      scene.view.looks.clear();
+    if (!workstation_.exercise()) return;
+    const Status done = workstation_.edit("looks", [this](Exercise& exercise) {
+      exercise.view.looks.clear();
       for (const auto& [id, look] : workstation_.looks()) {
-        if (scene.tissues.find(id)) scene.view.looks[id] = look;
+        if (exercise.tissues.find(id)) exercise.view.looks[id] = look;
       }
     });
-    done ? bench_.say(tr("The exercise begins with these looks.")) : bench_.report(done.error());
+    done ? app_.say(tr("The exercise begins with these looks.")) : app_.report(done.error());
   });
   connect(form_, &ExerciseForm::operatorWanted, this, [this] {
-    bench_.askForFile("operatorDialog", tr("An operator script"), tr("Scripts (*.json)"),
-                      [this](const auto& file) {
-                        if (!workstation_.scene()) return;
-                        const auto script = readOperatorScript(file, *workstation_.scene());
-                        if (!script) return bench_.report(script.error());
-                        form_->setOperator(file.string());
-                      });
+    app_.askForFile("operatorDialog", tr("An operator script"), tr("Scripts (*.json)"),
+                    [this](const auto& file) {
+                      if (!workstation_.exercise()) return;
+                      const auto script = readOperatorScript(file, *workstation_.exercise());
+                      if (!script) return app_.report(script.error());
+                      form_->setOperator(file.string());
+                    });
   });
   connect(form_, &ExerciseForm::labelsWanted, this, &ExerciseTab::labelsWanted);
   connect(form_, &ExerciseForm::elsewhereChosen, this, &ExerciseTab::takeElsewhere);
   connect(form_, &ExerciseForm::elsewhereWanted, this, [this] {
-    bench_.askForFile("elsewhereDialog", tr("Tissues for other cases"), tr("Tissues (*.json)"),
-                      [this](const auto& file) { takeElsewhere(file); });
+    app_.askForFile("elsewhereDialog", tr("Tissues for other cases"), tr("Tissues (*.json)"),
+                    [this](const auto& file) { takeElsewhere(file); });
   });
   connect(form_, &ExerciseForm::saveWanted, this, [this] { save(false, {}); });
   connect(form_, &ExerciseForm::saveCopyWanted, this, [this] { save(true, {}); });
@@ -85,8 +85,8 @@ ExerciseTab::ExerciseTab(Bench& bench, ExerciseForm& form)
     form_->showDrawing(tool == SliceTool::outline);
     entry_once_ = false;
   });
-  connect(&workstation_, &Workstation::sceneOpening, this,
-          [this](const Scene&, const std::filesystem::path& file) { opened_ = onDisk(file); });
+  connect(&workstation_, &Workstation::exerciseOpening, this,
+          [this](const Exercise&, const std::filesystem::path& file) { opened_ = onDisk(file); });
   connect(&workstation_, &Workstation::caseOpened, this, &ExerciseTab::refresh);
   connect(&workstation_, &Workstation::caseNamed, this, &ExerciseTab::refresh);
   connect(&workstation_, &Workstation::structuresChanged, this, &ExerciseTab::refresh);
@@ -96,7 +96,7 @@ ExerciseTab::ExerciseTab(Bench& bench, ExerciseForm& form)
 
 void ExerciseTab::takeElsewhere(const std::filesystem::path& file) {
   const Result<TissueSet> set = readTissueSet(file);
-  set ? form_->setElsewhere(*set) : bench_.report(set.error());
+  set ? form_->setElsewhere(*set) : app_.report(set.error());
 }
 
 void ExerciseTab::show(bool in_front) {
@@ -107,16 +107,16 @@ void ExerciseTab::show(bool in_front) {
 
 // A threshold that is dragged pays for no form that nobody sees.
 void ExerciseTab::refresh() {
-  if (!in_front_ || !workstation_.scene()) return;
+  if (!in_front_ || !workstation_.exercise()) return;
   form_->setLocked(workstation_.anyLocked()
                        ? tr("The exercise is locked. %1.").arg(unlockWords(workstation_.policy()))
                        : QString());
   form_->setElsewherePossible(!workstation_.isElsewhere());
   const std::optional<Placement>& placed = workstation_.placed();
-  form_->setScene(*workstation_.scene(),
-                  placed ? placed->landmarks : std::vector<PlacedLandmark>());
+  form_->setExercise(*workstation_.exercise(),
+                     placed ? placed->landmarks : std::vector<PlacedLandmark>());
   form_->showCase(caseWords());
-  const bool edited = workstation_.sceneEdited() || workstation_.tissuesEdited();
+  const bool edited = workstation_.exerciseEdited() || workstation_.tissuesEdited();
   form_->showSaved(isOwn() ? edited ? tr("Changed since it was saved.")
                                     : tr("Saved on this workstation.")
                            : tr("It came from elsewhere: saving makes one of your own of it."));
@@ -140,67 +140,67 @@ void ExerciseTab::draw(bool on) {
   outline_first_.reset();
   if (on == (views_->tool() == SliceTool::outline)) return;
   views_->setTool(on ? SliceTool::outline : SliceTool::window);
-  if (on) bench_.say(tr("Each click on the surface adds a point to the outline. Esc: done."));
+  if (on) app_.say(tr("Each click on the surface adds a point to the outline. Esc: done."));
 }
 
 void ExerciseTab::outlineClicked(const Vec3& at_mm) {
   const std::optional<Placement>& placed = workstation_.placed();
   if (!placed || placed->landmarks.empty()) return;
   const std::vector<PlacedLandmark>& landmarks = placed->landmarks;
-  const Scene& scene = *workstation_.scene();
+  const Exercise& exercise = *workstation_.exercise();
   // It goes with the landmark that is looked at, or the first.
   const PlacedLandmark* with = &landmarks.front();
   for (const PlacedLandmark& landmark : landmarks) {
-    if (landmark.id == scene.view.landmark) with = &landmark;
+    if (landmark.id == exercise.view.landmark) with = &landmark;
   }
-  if (!scene.outline && !outline_first_) {
+  if (!exercise.outline && !outline_first_) {
     outline_first_ = at_mm;
-    return bench_.say(tr("The first point is set: click the next."));
+    return app_.say(tr("The first point is set: click the next."));
   }
-  SceneOutline outline;
-  if (scene.outline) {
-    const auto here = placedOutline(*scene.outline, landmarks);
-    outline = here ? *here : *scene.outline;
+  ExerciseOutline outline;
+  if (exercise.outline) {
+    const auto here = placedOutline(*exercise.outline, landmarks);
+    outline = here ? *here : *exercise.outline;
   } else {
     outline.points_mm = {*outline_first_};
-    outline.frame = SceneOutline::Frame{with->id, with->frame};
+    outline.frame = ExerciseOutline::Frame{with->id, with->frame};
   }
   outline.points_mm.push_back(at_mm);
-  const Status done = workstation_.edit("outline", [&](Scene& now) { now.outline = outline; });
-  if (!done) return bench_.report(done.error());
+  const Status done = workstation_.edit("outline", [&](Exercise& now) { now.outline = outline; });
+  if (!done) return app_.report(done.error());
   outline_first_.reset();
-  bench_.say(tr("The outline has %1 points. Esc: done.").arg(outline.points_mm.size()));
+  app_.say(tr("The outline has %1 points. Esc: done.").arg(outline.points_mm.size()));
 }
 
 // --- Saving, trying ---
 
 bool ExerciseTab::isOwn() const {
-  const std::filesystem::path& file = workstation_.sceneFile();
-  return file.parent_path().parent_path() == bench_.storage() / "exercises";
+  const std::filesystem::path& file = workstation_.exerciseFile();
+  return file.parent_path().parent_path() == app_.storage() / "exercises";
 }
 
 // With the case that is open, as it lies in the library.
-std::optional<Scene> ExerciseTab::sceneToSave() {
-  if (!workstation_.scene() || !workstation_.currentCase()) return {};
+std::optional<Exercise> ExerciseTab::exerciseToSave() {
+  if (!workstation_.exercise() || !workstation_.currentCase()) return {};
   const Case& of = *workstation_.currentCase();
   // What holds of another case alone stays behind, but for the tissues, which have a set for each.
-  const Scene& made = *workstation_.scene();
-  Scene scene = onCase(made, of.source);
-  scene.tissues = made.tissues;
-  scene.tissues_elsewhere = made.tissues_elsewhere;
-  if (of.built_in) return scene;
+  const Exercise& made = *workstation_.exercise();
+  Exercise exercise = onCase(made, of.source);
+  exercise.tissues = made.tissues;
+  exercise.tissues_elsewhere = made.tissues_elsewhere;
+  if (of.built_in) return exercise;
   if (of.stored.empty()) {
-    bench_.report({"CASE_NOT_SAVED", "The case of the exercise is not in the library", "",
-                   "Save the case first (Cases), or import it again where it was deleted"});
+    app_.report({"CASE_NOT_SAVED", "The case of the exercise is not in the library", "",
+                 "Save the case first (Cases), or import it again where it was deleted"});
     return {};
   }
-  const std::filesystem::path folder = bench_.storage() / "cases" / of.stored;
-  scene.case_source = (folder / case_folders::kVolumeFile).string();
+  const std::filesystem::path folder = app_.storage() / "cases" / of.stored;
+  exercise.case_source = (folder / case_folders::kVolumeFile).string();
   const std::filesystem::path structures = folder / case_folders::kStructuresFile;
   std::error_code ec;
-  scene.labels_file =
+  exercise.labels_file =
       std::filesystem::is_regular_file(structures, ec) ? structures.string() : std::string();
-  return scene;
+  return exercise;
 }
 
 ExerciseTab::OnDisk ExerciseTab::onDisk(const std::filesystem::path& file) {
@@ -210,18 +210,18 @@ ExerciseTab::OnDisk ExerciseTab::onDisk(const std::filesystem::path& file) {
 
 // Something of a person's would go: it is replaced, or stays and this one is saved beside it.
 void ExerciseTab::askToReplace(const char* name, const QString& why, const QString& what,
-                               const Bench::Next& replace, const Bench::Next& then) {
-  QMessageBox* question = ask(bench_.window(), name, why, what, tr("&Replace it"), replace);
+                               const AppContext::Next& replace, const AppContext::Next& then) {
+  QMessageBox* question = ask(app_.window(), name, why, what, tr("&Replace it"), replace);
   orElse(*question, "saveBeside", tr("Save a &copy"), [this, then] { save(true, then); });
 }
 
-void ExerciseTab::save(bool copy, Bench::Next then, bool on_another_case) {
-  if (!then && workstation_.isWriting()) return bench_.say(tr("It is being saved."));
-  bench_.takeTyped();
-  std::optional<Scene> scene = sceneToSave();
-  if (!scene) return;
+void ExerciseTab::save(bool copy, AppContext::Next then, bool on_another_case) {
+  if (!then && workstation_.isWriting()) return app_.say(tr("It is being saved."));
+  app_.takeTyped();
+  std::optional<Exercise> exercise = exerciseToSave();
+  if (!exercise) return;
   const bool in_place = isOwn() && !copy;
-  const OnDisk now = onDisk(workstation_.sceneFile());
+  const OnDisk now = onDisk(workstation_.exerciseFile());
   if (in_place && opened_.file == now.file && !now.text.empty() && opened_.text != now.text) {
     const auto replace = [this, now, then] {
       opened_ = now;
@@ -232,27 +232,27 @@ void ExerciseTab::save(bool copy, Bench::Next then, bool on_another_case) {
         tr("The exercise has been changed by another program since it was opened here."),
         tr("Save yours as another one, or in the place of what is there now."), replace, then);
   }
-  if (copy && isOwn()) scene->name = tr("Copy of %1").arg(toQt(scene->name)).toStdString();
+  if (copy && isOwn()) exercise->name = tr("Copy of %1").arg(toQt(exercise->name)).toStdString();
   if (in_place && !on_another_case) {
-    const Result<Scene> there = readScene(now.file);
+    const Result<Exercise> there = readExercise(now.file);
     const auto place = [](const std::string& source) {
       return std::filesystem::path(source).lexically_normal();
     };
-    if (there && place(there->case_source) != place(scene->case_source)) {
+    if (there && place(there->case_source) != place(exercise->case_source)) {
       return askToReplace(
           "madeOnAnotherCase", tr("This exercise was made on another case."),
           tr("Save it on the open case as another one, or in the place of the one that is there."),
           [this, then] { save(false, then, true); }, then);
     }
   }
-  if (!in_place) scene->name = freeName(scene->name);
-  const std::filesystem::path folder = in_place ? workstation_.sceneFile().parent_path()
-                                                : freshExercise(bench_.storage(), scene->name);
+  if (!in_place) exercise->name = freeName(exercise->name);
+  const std::filesystem::path folder = in_place ? workstation_.exerciseFile().parent_path()
+                                                : freshExercise(app_.storage(), exercise->name);
   auto file = std::make_shared<std::filesystem::path>();
   workstation_.save(
-      tr("The exercise \"%1\" is saved.").arg(toQt(scene->name)),
-      [scene = *scene, folder, storage = bench_.storage(), file](const Progress& progress) {
-        const auto saved = trephine::saveExercise(scene, folder, storage, progress);
+      tr("The exercise \"%1\" is saved.").arg(toQt(exercise->name)),
+      [exercise = *exercise, folder, storage = app_.storage(), file](const Progress& progress) {
+        const auto saved = trephine::saveExercise(exercise, folder, storage, progress);
         if (saved) *file = *saved;
         return saved ? Status() : Status(saved.error());
       },
@@ -260,7 +260,7 @@ void ExerciseTab::save(bool copy, Bench::Next then, bool on_another_case) {
         opened_ = onDisk(*file);
         workstation_.exerciseSaved(*file);
         emit saved();
-        bench_.tellExercises();
+        app_.tellExercises();
         if (then) then();
       });
 }
@@ -268,8 +268,8 @@ void ExerciseTab::save(bool copy, Bench::Next then, bool on_another_case) {
 // One that no exercise in the list has.
 std::string ExerciseTab::freeName(const std::string& wanted) const {
   std::set<std::string> taken;
-  for (const auto& file : bench_.exercises()) {
-    if (const Result<Scene> scene = readScene(file)) taken.insert(scene->name);
+  for (const auto& file : app_.exercises()) {
+    if (const Result<Exercise> exercise = readExercise(file)) taken.insert(exercise->name);
   }
   std::string name = wanted;
   for (int n = 2; taken.contains(name); ++n) name = wanted + " (" + std::to_string(n) + ")";
@@ -277,21 +277,21 @@ std::string ExerciseTab::freeName(const std::string& wanted) const {
 }
 
 void ExerciseTab::tryIt() {
-  if (!workstation_.currentCase()) return bench_.say(tr("Open a case first."));
-  bench_.takeTyped();
+  if (!workstation_.currentCase()) return app_.say(tr("Open a case first."));
+  app_.takeTyped();
   draw(false);
-  bench_.go(Place::train);
-  bench_.setTrying(true);
+  app_.go(Place::train);
+  app_.setTrying(true);
 }
 
 // --- To and from other workstations ---
 
 void ExerciseTab::exportIt() {
-  if (!workstation_.currentCase()) return bench_.say(tr("Open a case first."));
-  bench_.takeTyped();
+  if (!workstation_.currentCase()) return app_.say(tr("Open a case first."));
+  app_.takeTyped();
   if (!structuresInCase()) {
     QMessageBox* question =
-        ask(bench_.window(), "exportQuestion",
+        ask(app_.window(), "exportQuestion",
             tr("The structures have been changed and are not saved in the case."),
             tr("The exercise goes with those of the case as it was saved."),
             tr("Export &without the changes"), [this] { exportSaved(); });
@@ -305,16 +305,16 @@ void ExerciseTab::exportIt() {
 }
 
 void ExerciseTab::exportSaved() {
-  const bool saved = isOwn() && !workstation_.sceneEdited() && !workstation_.tissuesEdited();
+  const bool saved = isOwn() && !workstation_.exerciseEdited() && !workstation_.tissuesEdited();
   if (!saved) return save(false, [this] { exportSaved(); });
-  bench_.askForNewFolder(
+  app_.askForNewFolder(
       "exportExerciseDialog", tr("Export the exercise as a new folder"),
-      toQt(workstation_.sceneFile().parent_path().filename()),
-      [this, scene = workstation_.sceneFile()](const std::filesystem::path& folder) {
+      toQt(workstation_.exerciseFile().parent_path().filename()),
+      [this, exercise = workstation_.exerciseFile()](const std::filesystem::path& folder) {
         workstation_.save(tr("The exercise is exported: one folder with all that it needs."),
-                          [scene, folder](const Progress& progress) {
-                            const auto done =
-                                trephine::exportExercise(scene, "", folder, progress, hideNamesOf);
+                          [exercise, folder](const Progress& progress) {
+                            const auto done = trephine::exportExercise(exercise, "", folder,
+                                                                       progress, hideNamesOf);
                             return done ? Status() : Status(done.error());
                           });
       });
@@ -322,32 +322,33 @@ void ExerciseTab::exportSaved() {
 
 void ExerciseTab::importIt() {
   QFileDialog* dialog =
-      bench_.fileDialog("importExerciseDialog", tr("Import an exercise: its folder"));
+      app_.fileDialog("importExerciseDialog", tr("Import an exercise: its folder"));
   dialog->setFileMode(QFileDialog::Directory);
   dialog->setOption(QFileDialog::ShowDirsOnly);
   connect(dialog, &QFileDialog::fileSelected, this, [this](const QString& folder) {
-    auto scene = std::make_shared<std::filesystem::path>();
+    auto exercise = std::make_shared<std::filesystem::path>();
     auto without_devices = std::make_shared<bool>(false);
     workstation_.save(
         tr("The exercise is imported."),
-        [from = toPath(folder), storage = bench_.storage(), scene,
+        [from = toPath(folder), storage = app_.storage(), exercise,
          without_devices](const Progress& progress) -> Status {
           const auto imported = trephine::importExercise(from, storage, progress);
           if (!imported) return imported.error();
           if (!imported->check.verified()) return notVerified(imported->check);
-          *scene = imported->scene;
+          *exercise = imported->exercise;
           *without_devices = imported->left_devices_out;
           return {};
         },
-        [this, scene, without_devices] {
+        [this, exercise, without_devices] {
           if (*without_devices) {
-            bench_.say(
+            app_.say(
                 tr("The exercise is imported. It named devices and how they are set: those "
                    "of this workstation are used instead."));
           }
-          bench_.tellExercises();
-          bench_.unlessLost({Bench::Loss::structures, Bench::Loss::cuts, Bench::Loss::tissues},
-                            [this, scene] { bench_.openExercise(*scene, Place::prepare); });
+          app_.tellExercises();
+          app_.unlessLost({AppContext::UnsavedWork::structures, AppContext::UnsavedWork::cuts,
+                           AppContext::UnsavedWork::tissues},
+                          [this, exercise] { app_.openExercise(*exercise, Place::prepare); });
         });
   });
   dialog->open();

@@ -9,27 +9,27 @@
 #include <string>
 
 #include "ui/prepare/exercise_form.h"
-#include "ui/work/bench.h"
+#include "ui/work/app_context.h"
 
 namespace trephine {
 
 class ExerciseTab : public QObject {
   Q_OBJECT
  public:
-  ExerciseTab(Bench& bench, ExerciseForm& form);
+  ExerciseTab(AppContext& bench, ExerciseForm& form);
 
   // Whether it is seen; the form is filled while it is.
   void show(bool in_front);
   // In the storage folder, in its own place or as another one. `then` follows once it is written.
   // `on_another_case`: in the place of one that was made on another case, which is asked otherwise.
-  void save(bool copy, Bench::Next then, bool on_another_case = false);
+  void save(bool copy, AppContext::Next then, bool on_another_case = false);
 
   // The tool that places the entry goes once it was used.
   bool wantsOneEntry() const { return entry_once_; }
 
   // Whether the case has the structures as they are now, and what gives it them.
   std::function<bool()> structuresInCase;
-  std::function<void(Bench::Next then)> saveInCase;
+  std::function<void(AppContext::Next then)> saveInCase;
 
  signals:
   void saved();
@@ -41,7 +41,7 @@ class ExerciseTab : public QObject {
   void takeElsewhere(const std::filesystem::path& file);
   void draw(bool on);
   void outlineClicked(const Vec3& at_mm);
-  std::optional<Scene> sceneToSave();
+  std::optional<Exercise> exerciseToSave();
   bool isOwn() const;
   std::string freeName(const std::string& wanted) const;
   struct OnDisk {
@@ -49,14 +49,14 @@ class ExerciseTab : public QObject {
     std::string text;
   };
   void askToReplace(const char* name, const QString& why, const QString& what,
-                    const Bench::Next& replace, const Bench::Next& then);
+                    const AppContext::Next& replace, const AppContext::Next& then);
   static OnDisk onDisk(const std::filesystem::path& file);
   void tryIt();
   void exportIt();
   void exportSaved();
   void importIt();
 
-  Bench& bench_;
+  AppContext& app_;
   Workstation& workstation_;
   FourUp* views_;
   ExerciseForm* form_;

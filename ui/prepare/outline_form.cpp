@@ -5,7 +5,7 @@
 #include <QVBoxLayout>
 #include <algorithm>
 
-#include "scene/scene_numbers.h"
+#include "exercise/exercise_numbers.h"
 #include "ui/common/words.h"
 
 namespace trephine {
@@ -33,16 +33,16 @@ OutlineForm::OutlineForm(QWidget* parent) : QWidget(parent) {
   closed_ = new QCheckBox(tr("Closed"), fields);
   closed_->setObjectName("outlineClosed");
   connect(closed_, &QCheckBox::toggled, this, [this](bool on) {
-    edit("outline closed", [&](Scene& scene) {
-      if (scene.outline) scene.outline->closed = on;
+    edit("outline closed", [&](Exercise& exercise) {
+      if (exercise.outline) exercise.outline->closed = on;
     });
   });
   form->addRow(withHint(closed_, tr("The last point is joined to the first."), fields));
-  width_ = std::make_unique<NumberRows<SceneOutline>>(
-      std::span<const NumberOf<SceneOutline>>(kOutlineNumbers), *form, fields, "outline:");
-  width_->entered = [this](const SceneOutline& outline, const char* key) {
-    edit(key, [&](Scene& scene) {
-      if (scene.outline) scene.outline->width_mm = outline.width_mm;
+  width_ = std::make_unique<NumberRows<ExerciseOutline>>(
+      std::span<const NumberOf<ExerciseOutline>>(kOutlineNumbers), *form, fields, "outline:");
+  width_->entered = [this](const ExerciseOutline& outline, const char* key) {
+    edit(key, [&](Exercise& exercise) {
+      if (exercise.outline) exercise.outline->width_mm = outline.width_mm;
     });
   };
   landmark_ = settingChoice("outlineLandmark", tr("Landmark of the outline"), fields);
@@ -71,7 +71,7 @@ OutlineForm::OutlineForm(QWidget* parent) : QWidget(parent) {
       std::span<const NumberOf<OutlinePoint>>(kPointNumbers), *form, fields, "outlinePoint:");
   place_->entered = [this](const OutlinePoint& point, const char*) {
     const auto at = std::size_t(point_->wanted() - 1);
-    editHere("outline", [&](SceneOutline& outline) {
+    editHere("outline", [&](ExerciseOutline& outline) {
       if (at < outline.points_mm.size()) outline.points_mm[at] = point.at_mm;
     });
   };
@@ -95,7 +95,7 @@ QWidget* OutlineForm::buildButtons(QWidget* parent) {
     if (!showing_) emit drawingWanted(on);
   });
   connect(clear_, &QToolButton::clicked, this,
-          [this] { edit("outline off", [](Scene& scene) { scene.outline.reset(); }); });
+          [this] { edit("outline off", [](Exercise& exercise) { exercise.outline.reset(); }); });
   connect(back_, &QToolButton::clicked, this, [this] {
     if (here_) takeOff(here_->points_mm.size() - 1);
   });
@@ -106,47 +106,47 @@ QWidget* OutlineForm::buildButtons(QWidget* parent) {
   return row;
 }
 
-void OutlineForm::edit(const std::string& what, const std::function<void(Scene&)>& change) {
+void OutlineForm::edit(const std::string& what, const std::function<void(Exercise&)>& change) {
   if (showing_) return;
   const Status done = wanted ? wanted(what, change) : Status();
   done ? problem_->hide() : sayNotApplied(*problem_, done.error());
 }
 
 void OutlineForm::editHere(const std::string& what,
-                           const std::function<void(SceneOutline&)>& change) {
+                           const std::function<void(ExerciseOutline&)>& change) {
   if (!here_) return;
-  SceneOutline outline = *here_;
+  ExerciseOutline outline = *here_;
   change(outline);
-  edit(what, [&](Scene& scene) { scene.outline = outline; });
+  edit(what, [&](Exercise& exercise) { exercise.outline = outline; });
 }
 
 void OutlineForm::takeOff(std::size_t point) {
   if (!here_ || point >= here_->points_mm.size()) return;
-  SceneOutline outline = *here_;
+  ExerciseOutline outline = *here_;
   outline.points_mm.erase(outline.points_mm.begin() + std::ptrdiff_t(point));
-  edit("outline", [&](Scene& scene) {
+  edit("outline", [&](Exercise& exercise) {
     if (outline.points_mm.size() < 2) {
-      scene.outline.reset();
+      exercise.outline.reset();
     } else {
-      scene.outline = outline;
+      exercise.outline = outline;
     }
   });
 }
 
 void OutlineForm::goWith(const std::string& landmark) {
   if (!here_ || landmark == (here_->frame ? here_->frame->landmark : std::string())) return;
-  editHere("outline", [&](SceneOutline& outline) {
+  editHere("outline", [&](ExerciseOutline& outline) {
     outline.frame.reset();
     for (const PlacedLandmark& placed : landmarks_) {
-      if (placed.id == landmark) outline.frame = SceneOutline::Frame{landmark, placed.frame};
+      if (placed.id == landmark) outline.frame = ExerciseOutline::Frame{landmark, placed.frame};
     }
   });
 }
 
-void OutlineForm::show(const Scene& scene, const std::vector<PlacedLandmark>& landmarks) {
+void OutlineForm::show(const Exercise& exercise, const std::vector<PlacedLandmark>& landmarks) {
   showing_ = true;
   landmarks_ = landmarks;
-  here_ = scene.outline;
+  here_ = exercise.outline;
   bool is_here = here_.has_value();
   if (here_) {
     const auto placed = placedOutline(*here_, landmarks_);
@@ -172,7 +172,7 @@ void OutlineForm::show(const Scene& scene, const std::vector<PlacedLandmark>& la
     of->setEnabled(is_here);
   }
   width_->setEnabled(here_.has_value());
-  width_->show(here_ ? *here_ : SceneOutline{});
+  width_->show(here_ ? *here_ : ExerciseOutline{});
   const int last = std::max(1, int(count));
   point_->setLimits(1, last);
   point_->show(std::clamp(point_->wanted(), 1, last));

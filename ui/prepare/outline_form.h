@@ -12,7 +12,7 @@
 #include <optional>
 #include <vector>
 
-#include "scene/scene.h"
+#include "exercise/exercise.h"
 #include "ui/common/number_rows.h"
 
 namespace trephine {
@@ -29,28 +29,29 @@ class OutlineForm : public QWidget {
 
   // `landmarks`: as they are placed in the open case; empty: the points are shown as they were
   // drawn.
-  void show(const Scene& scene, const std::vector<PlacedLandmark>& landmarks);
+  void show(const Exercise& exercise, const std::vector<PlacedLandmark>& landmarks);
   // Clicks on the surface add points.
   void showDrawing(bool drawing);
-  // What was refused was of another scene.
+  // What was refused was of another exercise.
   void forgetRefusal() { problem_->hide(); }
 
-  // A person wants this change of the scene as it is then; `what` of it.
-  std::function<Status(const std::string& what, const std::function<void(Scene&)>& change)> wanted;
+  // A person wants this change of the exercise as it is then; `what` of it.
+  std::function<Status(const std::string& what, const std::function<void(Exercise&)>& change)>
+      wanted;
 
  signals:
   void drawingWanted(bool on);
 
  private:
   QWidget* buildButtons(QWidget* parent);
-  void edit(const std::string& what, const std::function<void(Scene&)>& change);
+  void edit(const std::string& what, const std::function<void(Exercise&)>& change);
   // As it lies here, changed.
-  void editHere(const std::string& what, const std::function<void(SceneOutline&)>& change);
+  void editHere(const std::string& what, const std::function<void(ExerciseOutline&)>& change);
   void takeOff(std::size_t point);
   void goWith(const std::string& landmark);
   void showPoint();
 
-  std::optional<SceneOutline> here_;
+  std::optional<ExerciseOutline> here_;
   std::vector<PlacedLandmark> landmarks_;
   bool showing_ = false;
   QLabel *problem_, *count_;
@@ -59,7 +60,7 @@ class OutlineForm : public QWidget {
   QComboBox* landmark_;
   WholeNumberField* point_;
   std::unique_ptr<NumberRows<OutlinePoint>> place_;
-  std::unique_ptr<NumberRows<SceneOutline>> width_;
+  std::unique_ptr<NumberRows<ExerciseOutline>> width_;
 };
 
 }  // namespace trephine

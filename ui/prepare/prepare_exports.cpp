@@ -26,7 +26,7 @@ QString surfaceFileName(const std::string& structure) {
 void PrepareWorkspace::connectExports() {
   connect(structures_, &StructurePanel::saveDicomWanted, this, [this] { askToSaveDicom(false); });
   connect(structures_, &StructurePanel::saveForSourceWanted, this, [this] {
-    ask(bench_.window(), "sourceUidsQuestion",
+    ask(app_.window(), "sourceUidsQuestion",
         tr("The file will name the UIDs of the patient's own CT, so that it finds the patient "
            "where "
            "the CT is kept."),
@@ -41,18 +41,18 @@ void PrepareWorkspace::connectExports() {
 // the library's lies in a folder without it.
 bool PrepareWorkspace::sourceAtHand() const {
   const Case* of = workstation_.currentCase();
-  const std::filesystem::path& source = bench_.caseSource();
+  const std::filesystem::path& source = app_.caseSource();
   return of && of->provenance && !of->provenance->source_ids.series.empty() && !source.empty() &&
-         source.parent_path() != bench_.storage() / "cases";
+         source.parent_path() != app_.storage() / "cases";
 }
 
 void PrepareWorkspace::askToSaveDicom(bool for_source) {
-  bench_.askForNewFolder(
+  app_.askForNewFolder(
       "dicomDialog", tr("Save the DICOM files as a new folder"), "structures-dicom",
       [this, for_source,
        volume = workstation_.currentCase()->volume](const std::filesystem::path& folder) {
         const Case* of = workstation_.currentCase();
-        if (!of || of->volume != volume || !bench_.keepsTheCase(folder)) return;
+        if (!of || of->volume != volume || !app_.keepsTheCase(folder)) return;
         saveDicom(folder, for_source);
       });
 }
@@ -65,7 +65,7 @@ void PrepareWorkspace::saveDicom(const std::filesystem::path& folder, bool for_s
   const std::uint64_t changes = editor_.changes();
   auto notes = std::make_shared<std::vector<std::string>>();
   const std::optional<std::filesystem::path> source =
-      for_source ? std::optional(bench_.caseSource()) : std::nullopt;
+      for_source ? std::optional(app_.caseSource()) : std::nullopt;
   workstation_.save(
       for_source ? tr("The structures are saved as DICOM that names the UIDs of the patient's CT.")
                  : tr("The structures are saved as DICOM, with the CT."),
@@ -98,10 +98,10 @@ void PrepareWorkspace::askToSaveSurface() {
   // As it is now: another case may come while the dialog stands.
   const std::shared_ptr<const LabelMap> copy = editor_.finished();
   if (!copy) return;
-  QFileDialog* dialog = bench_.saveDialog(tr("Save the surface of \"%1\"").arg(toQt(of->name)),
-                                          surfaceFileName(of->name), tr("Surface (*.stl)"));
+  QFileDialog* dialog = app_.saveDialog(tr("Save the surface of \"%1\"").arg(toQt(of->name)),
+                                        surfaceFileName(of->name), tr("Surface (*.stl)"));
   connect(dialog, &QFileDialog::fileSelected, this, [this, copy, label](const QString& file) {
-    if (!bench_.keepsTheCase(toPath(file))) return;
+    if (!app_.keepsTheCase(toPath(file))) return;
     workstation_.save(tr("The surface is saved."),
                       [copy, label, path = toPath(file)](const Progress& progress) -> Status {
                         const auto written = writeSurface(*copy, label, path, progress);

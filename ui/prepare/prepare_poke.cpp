@@ -11,7 +11,7 @@ constexpr int kPlotEvery_ms = 40;
 }
 
 void PrepareWorkspace::connectPoke() {
-  poke_ = makeAction(*bench_.window(), Symbol::train, "poke", tr("Poke"),
+  poke_ = makeAction(*app_.window(), Symbol::train, "poke", tr("Poke"),
                      QKeySequence(Qt::CTRL | Qt::Key_E),
                      tr("Feel the tissue with mouse or arm; nothing is cut"));
   poke_->setCheckable(true);
@@ -56,13 +56,13 @@ void PrepareWorkspace::showPoke() {
 void PrepareWorkspace::togglePoke() {
   showPoke();  // as it is until it has begun or ended
   if (workstation_.isPoke()) return workstation_.stop();
-  bench_.beforeStart([this] {
-    bench_.unlessLost({Bench::Loss::cuts}, [this] {
-      if (bench_.carved()) bench_.showWholeCase();
-      bench_.go(Place::prepare);
+  app_.beforeStart([this] {
+    app_.unlessLost({AppContext::UnsavedWork::cuts}, [this] {
+      if (app_.carved()) app_.showWholeCase();
+      app_.go(Place::prepare);
       tabs_->setCurrentIndex(kTissueTab);
       if (const Status& drawing = view_->canDraw(); !drawing) {
-        return bench_.report(drawing.error());
+        return app_.report(drawing.error());
       }
       workstation_.poke();
     });
@@ -73,8 +73,9 @@ void PrepareWorkspace::togglePoke() {
 void PrepareWorkspace::showPokesOf(Session& session) {
   const std::vector<PokeCurve> pokes = session.pokes();
   if (pokes.empty()) return;
-  const std::size_t arm = std::min(pokes.back().arm, session.scene().arms.size() - 1);
-  poke_plot_->showPokes(pokes, session.scene().tissues, session.scene().arms[arm].max_force_N);
+  const std::size_t arm = std::min(pokes.back().arm, session.exercise().arms.size() - 1);
+  poke_plot_->showPokes(pokes, session.exercise().tissues,
+                        session.exercise().arms[arm].max_force_N);
 }
 
 }  // namespace trephine

@@ -83,8 +83,8 @@ void PrepareWorkspace::connectSets() {
   connect(tissues_, &TissuePanel::exportWanted, this, &PrepareWorkspace::askToExportSet);
   connect(tissues_, &TissuePanel::revertWanted, this, &PrepareWorkspace::revertSet);
   connect(tissues_, &TissuePanel::setWanted, this, &PrepareWorkspace::useSet);
-  connect(tissues_, &TissuePanel::undoWanted, &workstation_, &Workstation::undoEdit);
-  connect(tissues_, &TissuePanel::redoWanted, &workstation_, &Workstation::redoEdit);
+  connect(tissues_, &TissuePanel::undoWanted, &workstation_, [this] { workstation_.undoEdit(); });
+  connect(tissues_, &TissuePanel::redoWanted, &workstation_, [this] { workstation_.redoEdit(); });
   connect(&workstation_, &Workstation::editsChanged, this, &PrepareWorkspace::showHistory);
   connect(tissues_, &TissuePanel::setsWanted, this,
           [this] { tissues_->setSets(setsOfWorkstation()); });
@@ -109,22 +109,22 @@ std::vector<std::pair<QString, std::filesystem::path>> PrepareWorkspace::setsOfW
 }
 
 std::filesystem::path PrepareWorkspace::ownSets() const {
-  return bench_.storage() / "tissues";
+  return app_.storage() / "tissues";
 }
 
 // While Prepare is shown without an exercise of Train, and not the structures.
 bool PrepareWorkspace::editsServe() const {
-  const bool exercise = workstation_.session() && !workstation_.isPoke();
-  return here_ && !exercise && !structuresShown();
+  const bool practising = workstation_.session() && !workstation_.isPoke();
+  return here_ && !practising && !structuresShown();
 }
 
 void PrepareWorkspace::showHistory() {
-  const SceneHistory& edits = workstation_.edits();
+  const ExerciseHistory& edits = workstation_.edits();
   const QString undo = edits.canUndo() ? editWords(edits.undoWhat()) : QString();
   const QString redo = edits.canRedo() ? editWords(edits.redoWhat()) : QString();
   tissues_->showHistory(undo, redo);
   if (!editsServe()) return;
-  QAction *undo_action = bench_.undoAction(), *redo_action = bench_.redoAction();
+  QAction *undo_action = app_.undoAction(), *redo_action = app_.redoAction();
   undo_action->setEnabled(!undo.isEmpty());
   redo_action->setEnabled(!redo.isEmpty());
   undo_action->setToolTip(undo.isEmpty() ? tr("Takes back the last change; there is none")
@@ -134,22 +134,22 @@ void PrepareWorkspace::showHistory() {
                               : tr("Redo: %1").arg(redo));
 }
 
-// In the place of the scene's: what landmarks lose by it is said.
+// In the place of the exercise's: what landmarks lose by it is said.
 void PrepareWorkspace::takeSet(const TissueSet& set, const char* what) {
-  if (!workstation_.scene()) return;
+  if (!workstation_.exercise()) return;
   TissueSet own = set;
   own.elsewhere_file.clear();
   NewTissues wanted = workstation_.withTissues(own);
   workstation_.closeEdit();
-  if (Status done = workstation_.edit(wanted.scene, what); !done) {
-    return bench_.report(done.error());
+  if (Status done = workstation_.edit(wanted.exercise, what); !done) {
+    return app_.report(done.error());
   }
   workstation_.closeEdit();
   tissues_touched_ = true;
-  showScene();
+  showExercise();
   QStringList said{tr("The exercise has the tissues \"%1\" now.").arg(shownName(set.name))};
   for (const std::string& note : wanted.notes) said << toQt(note) + '.';
-  bench_.say(said.join(' '));
+  app_.say(said.join(' '));
 }
 
 void PrepareWorkspace::newSet() {
@@ -157,29 +157,29 @@ void PrepareWorkspace::newSet() {
 }
 
 void PrepareWorkspace::duplicateSet() {
-  if (!workstation_.scene()) return;
+  if (!workstation_.exercise()) return;
   TissueSet set = workstation_.tissues();
   set.name = tr("Copy of %1").arg(toQt(set.name)).left(60).toStdString();
   takeSet(set, "set");
 }
 
 void PrepareWorkspace::askForSet() {
-  bench_.askForFile("importSetDialog", tr("Import tissues"), tr("Tissues (*.json)"),
+  app_.askForFile("importSetDialog", tr("Import tissues"), tr("Tissues (*.json)"),
                     [this](const auto& file) { useSet(file); });
 }
 
 void PrepareWorkspace::useSet(const std::filesystem::path& file) {
   const Result<TissueSet> set = readTissueSet(file);
-  if (!set) return bench_.report(set.error());
+  if (!set) return app_.report(set.error());
   takeSet(*set, "set");
 }
 
 // Among the sets of this workstation, unless another place is chosen.
 void PrepareWorkspace::askToExportSet() {
-  if (!workstation_.scene()) return;
+  if (!workstation_.exercise()) return;
   (void)makeFolder(ownSets());
   QFileDialog* dialog =
-      bench_.saveDialog(tr("Export tissues"), setFileName(workstation_.tissues().name),
+      app_.saveDialog(tr("Export tissues"), setFileName(workstation_.tissues().name),
                         tr("Tissues (*.json)"));
   dialog->setDirectory(toQt(ownSets()));
   connect(dialog, &QFileDialog::fileSelected, this,
@@ -188,8 +188,8 @@ void PrepareWorkspace::askToExportSet() {
 }
 
 void PrepareWorkspace::revertSet() {
-  if (!workstation_.scene()) return;
-  if (!workstation_.tissuesEdited()) return bench_.say(tr("The set is as its file has it."));
+  if (!workstation_.exercise()) return;
+  if (!workstation_.tissuesEdited()) return app_.say(tr("The set is as its file has it."));
   takeSet(workstation_.declaredTissues(), "revert");
 }
 

@@ -7,9 +7,9 @@
 #include <utility>
 
 #include "base/range.h"
+#include "exercise/entry_point.h"
 #include "imaging/segmentation/overlap_order.h"
 #include "imaging/structure_importer.h"
-#include "scene/entry_point.h"
 #include "tissue/tissue_edits.h"
 #include "ui/common/question.h"
 #include "ui/common/words.h"
@@ -78,25 +78,25 @@ void PrepareWorkspace::connectStructures() {
     showUndo();
     settled_.start();
   });
-  connect(&editor_, &StructureEditor::failed, &bench_, &Bench::report);
+  connect(&editor_, &StructureEditor::failed, &app_, &AppContext::report);
   settled_.setParent(this);
   settled_.setObjectName("structuresSettled");
   settled_.setSingleShot(true);
   settled_.setInterval(kSettled_ms);
   connect(&settled_, &QTimer::timeout, this, [this] { (void)takeStructures(); });
-  bench_.setGuard(Bench::Loss::structures,
-                  [this](Bench::Next go_on) { unlessStructuresAreLost(std::move(go_on)); });
-  bench_.setBeforeStart([this](Bench::Next go_on) { beforeStart(std::move(go_on)); });
-  connect(bench_.undoAction(), &QAction::triggered, this, [this] {
+  app_.setGuard(AppContext::UnsavedWork::structures,
+                [this](AppContext::Next go_on) { unlessStructuresAreLost(std::move(go_on)); });
+  app_.setBeforeStart([this](AppContext::Next go_on) { beforeStart(std::move(go_on)); });
+  connect(app_.undoAction(), &QAction::triggered, this, [this] {
     if (editsServe()) return workstation_.undoEdit();
     if (!workstation_.session()) editor_.undo();
   });
-  connect(bench_.redoAction(), &QAction::triggered, this, [this] {
+  connect(app_.redoAction(), &QAction::triggered, this, [this] {
     if (editsServe()) return workstation_.redoEdit();
     if (!workstation_.session()) editor_.redo();
   });
-  connect(&bench_, &Bench::cutsChanged, this, &PrepareWorkspace::showUndo);
-  connect(&bench_, &Bench::caseShown, this, [this] {
+  connect(&app_, &AppContext::cutsChanged, this, &PrepareWorkspace::showUndo);
+  connect(&app_, &AppContext::caseShown, this, [this] {
     tissues_->setLabelsOpen(workstation_.placed()->labels != nullptr);
     openStructures();
   });
@@ -117,10 +117,7 @@ void PrepareWorkspace::connectStructures() {
   });
   connect(&workstation_, &Workstation::structuresChanged, this, &PrepareWorkspace::showStructures);
   connect(&workstation_, &Workstation::placingFailed, this, &PrepareWorkspace::placingFailed);
-  connect(&workstation_, &Workstation::structuresAsked, this,
-          &PrepareWorkspace::askAboutStructures);
-  connect(&workstation_, &Workstation::overlapAsked, this, &PrepareWorkspace::askAboutOverlap);
-  connect(&workstation_, &Workstation::thresholdAsked, this, &PrepareWorkspace::askForThreshold);
+  connect(&workstation_, &Workstation::asked, this, &PrepareWorkspace::askAboutStructures);
   connect(tabs_, &QTabWidget::currentChanged, this, [this] {
     showTab();
     showStructureTab();
@@ -142,7 +139,7 @@ bool PrepareWorkspace::takeStructures() {
   return workstation_.useStructures(made);
 }
 
-// The scene was placed in other structures: made here, or read.
+// The exercise was placed in other structures: made here, or read.
 void PrepareWorkspace::showStructures() {
   const Case& of = *workstation_.currentCase();
   if (of.structures != own_structures_) {
@@ -156,15 +153,15 @@ void PrepareWorkspace::showStructures() {
     tabs_->setCurrentIndex(kStructureTab);
     showStructureReport();
   }
-  if (bench_.carved() && !bench_.cutsUnsaved()) bench_.showWholeCase();
+  if (app_.carved() && !app_.cutsUnsaved()) app_.showWholeCase();
   tissues_->setLabelsOpen(workstation_.placed()->labels != nullptr);
   showStructureTab();
   showEntry();
-  if (std::exchange(entry_asked_, false)) bench_.lookAtCase();
+  if (std::exchange(entry_asked_, false)) app_.lookAtCase();
   // Not by a dialog: it would come with every stroke.
   if (const auto& why = workstation_.placed()->error) structures_->say(toQt(why->sentence()));
   settled_.start();  // what was changed meanwhile
-  if (Bench::Next start = std::exchange(start_when_placed_, {})) {
+  if (AppContext::Next start = std::exchange(start_when_placed_, {})) {
     QMetaObject::invokeMethod(
         this, [this, start] { beforeStart(start); }, Qt::QueuedConnection);
   }
@@ -182,10 +179,10 @@ void PrepareWorkspace::placingFailed() {
 // Of those that came from a file: beside the window, which goes on.
 void PrepareWorkspace::showStructureReport() {
   const Case& of = *workstation_.currentCase();
-  if (auto* before = bench_.window()->findChild<StructureReport*>())
+  if (auto* before = app_.window()->findChild<StructureReport*>())
     before->close();  // of another file
   if (of.structure_cards.empty()) return;
-  (new StructureReport(of, bench_.window()))->show();
+  (new StructureReport(of, app_.window()))->show();
 }
 
 // Of a case that was opened.
@@ -201,7 +198,7 @@ void PrepareWorkspace::openStructures() {
     tissues_touched_ = false;
   }
   own_structures_ = of.structures;
-  structures_->setWanted(workstation_.scene()->structures);
+  structures_->setWanted(workstation_.exercise()->structures);
   structures_->setSourceAtHand(sourceAtHand());
   showStructureTab();
   showEntry();
@@ -227,7 +224,7 @@ bool PrepareWorkspace::offerMissing() {
 }
 
 void PrepareWorkspace::makeMissing() {
-  bench_.go(Place::prepare);
+  app_.go(Place::prepare);
   tabs_->setCurrentIndex(kStructureTab);
   views_->setTool(SliceTool::grow);
   structures_->offerWanted();
@@ -252,12 +249,12 @@ void PrepareWorkspace::showStructureTab() {
 void PrepareWorkspace::structureToolChanged(SliceTool tool) {
   if (isForStructures(tool) && !here_) {
     views_->setTool(SliceTool::window);
-    return bench_.say(tr("Structures are made in Prepare (Ctrl+2)."));
+    return app_.say(tr("Structures are made in Prepare (Ctrl+2)."));
   }
   if (isForStructures(tool)) tabs_->setCurrentIndex(kStructureTab);
   structures_->showTool(tool);
   if (tool == SliceTool::entry) {
-    bench_.say(
+    app_.say(
         tr("Click where the exercise enters; drag to where the instrument comes from. Del: back to "
            "its own place."));
   }
@@ -268,12 +265,11 @@ void PrepareWorkspace::structureToolChanged(SliceTool tool) {
 void PrepareWorkspace::placeEntry(const Vec3& at_mm, const Vec3& from_mm) {
   const Case* of = workstation_.currentCase();
   if (workstation_.phase() != Workstation::Phase::ready || !of) {
-    return bench_.say(
-        tr("The entry point cannot be changed while an exercise runs: stop it first."));
+    return app_.say(tr("The entry point cannot be changed while an exercise runs: stop it first."));
   }
-  const Scene& scene = *workstation_.scene();
-  const Landmark* landmark = entryLandmark(scene);
-  if (!landmark) return bench_.say(tr("This exercise is fixed in its own patient."));
+  const Exercise& exercise = *workstation_.exercise();
+  const Landmark* landmark = entryLandmark(exercise);
+  if (!landmark) return app_.say(tr("This exercise is fixed in its own patient."));
   Vec3 outward = from_mm - at_mm;
   if (!(glm::length(outward) > 0.0)) {
     const auto out = outwardAt(*of->volume, workstation_.placedTissues(),
@@ -282,20 +278,20 @@ void PrepareWorkspace::placeEntry(const Vec3& at_mm, const Vec3& from_mm) {
     outward = out ? *out : before ? before->rotation * Vec3(0.0, 0.0, 1.0) : Vec3(0.0, -1.0, 0.0);
   }
   const Landmark entry = placedAt(*landmark, at_mm, glm::normalize(outward));
-  bench_.unlessLost({Bench::Loss::cuts}, [this, entry] {
+  app_.unlessLost({AppContext::UnsavedWork::cuts}, [this, entry] {
     entry_asked_ = workstation_.placeEntry(entry);
     if (entry_asked_ && exercise_->wantsOneEntry()) views_->setTool(SliceTool::window);
-    bench_.say(entry_asked_ ? tr("The exercise enters here now. Del: back to its own place.")
-                            : tr("Busy: try again in a moment."));
+    app_.say(entry_asked_ ? tr("The exercise enters here now. Del: back to its own place.")
+                          : tr("Busy: try again in a moment."));
   });
 }
 
 void PrepareWorkspace::leaveEntry() {
-  if (!workstation_.entry()) return bench_.say(tr("The exercise enters at its own place."));
-  bench_.unlessLost({Bench::Loss::cuts}, [this] {
+  if (!workstation_.entry()) return app_.say(tr("The exercise enters at its own place."));
+  app_.unlessLost({AppContext::UnsavedWork::cuts}, [this] {
     entry_asked_ = workstation_.placeEntry({});
-    bench_.say(entry_asked_ ? tr("The exercise enters at its own place again.")
-                            : tr("Busy: try again in a moment."));
+    app_.say(entry_asked_ ? tr("The exercise enters at its own place again.")
+                          : tr("Busy: try again in a moment."));
   });
 }
 
@@ -307,7 +303,7 @@ void PrepareWorkspace::showEntry() {
 
 void PrepareWorkspace::structureKey(int key) {
   if (!here_ && key != Qt::Key_V && key != Qt::Key_Escape) {
-    return bench_.say(tr("Structures are made in Prepare (Ctrl+2)."));
+    return app_.say(tr("Structures are made in Prepare (Ctrl+2)."));
   }
   switch (key) {
     case Qt::Key_K:
@@ -333,28 +329,32 @@ void PrepareWorkspace::structureKey(int key) {
 void PrepareWorkspace::showUndo() {
   if (editsServe()) return showHistory();
   if (workstation_.phase() == Workstation::Phase::running) return;
-  const bool serve = structuresShown() && !bench_.cutsUnsaved();
+  const bool serve = structuresShown() && !app_.cutsUnsaved();
   const auto undo = serve ? editor_.undoText() : std::nullopt;
   const auto redo = serve ? editor_.redoText() : std::nullopt;
-  QAction *undo_action = bench_.undoAction(), *redo_action = bench_.redoAction();
+  QAction *undo_action = app_.undoAction(), *redo_action = app_.redoAction();
   undo_action->setEnabled(undo.has_value());
   redo_action->setEnabled(redo.has_value());
   undo_action->setToolTip(undo ? tr("Undo: %1").arg(*undo)
-                          : bench_.cutsUnsaved()
+                          : app_.cutsUnsaved()
                               ? tr("The exercise has ended: its cuts stay until Reset")
                               : tr("Takes back the last change; there is none"));
   redo_action->setToolTip(redo ? tr("Redo: %1").arg(*redo)
                                : tr("Brings back what was taken back; there is nothing"));
 }
 
-void PrepareWorkspace::askAboutStructures(const Error& error, const std::filesystem::path& file,
-                                          const Answers& answers,
-                                          const std::vector<std::string>& options) {
-  const auto use = [this, file, answers = answers, code = error.code](const std::string& with) {
-    return [this, file, answers = Answers(answers), code, with]() mutable {
-      answers[code] = with;
-      workstation_.useLabels(file, answers);
-    };
+// Without an answer nothing changes.
+void PrepareWorkspace::askAboutStructures(const StructureQuestion& question) {
+  switch (question.asked.kind) {
+    case StructureAsked::Kind::option: return askForOption(question.asked.choice);
+    case StructureAsked::Kind::order: return askForOrder(question.asked.names);
+    case StructureAsked::Kind::threshold: return askForThreshold();
+  }
+}
+
+void PrepareWorkspace::askForOption(const Choice& choice) {
+  const auto use = [this](const std::string& option) {
+    return [this, option] { workstation_.answer(option); };
   };
   const auto words = [](const std::string& option) {
     return option == "ct"       ? tr("&Put it on the CT, voxel by voxel")
@@ -363,26 +363,25 @@ void PrepareWorkspace::askAboutStructures(const Error& error, const std::filesys
            : option == "pixdim" ? tr("Take the steps of its &pixdim")
                                 : tr("&Use it all the same");
   };
-  QMessageBox* question = ask(bench_.window(), "structuresQuestion", toQt(error.what) + '.',
-                              tr("What is used as it is may be felt and cut in the wrong place."),
-                              words(options.front()), use(options.front()));
+  const std::vector<std::string>& options = choice.options;
+  QMessageBox* question =
+      ask(app_.window(), "structuresQuestion", toQt(choice.question) + '.',
+          tr("What is used as it is may be felt and cut in the wrong place."),
+          words(options.front()), use(options.front()));
   for (std::size_t n = 1; n < options.size(); ++n) {
     orElse(*question, "otherForm", words(options[n]), use(options[n]));
   }
 }
 
-void PrepareWorkspace::askAboutOverlap(const std::vector<std::string>& names,
-                                       const std::filesystem::path& file, const Answers& answers) {
-  auto* dialog = new OverlapDialog(names, bench_.window());
-  connect(dialog, &QDialog::accepted, this, [this, dialog, file, answers = answers]() mutable {
-    answers["OVERLAP"] = orderAnswer(dialog->order());
-    workstation_.useLabels(file, answers);
-  });
+void PrepareWorkspace::askForOrder(const std::vector<std::string>& names) {
+  auto* dialog = new OverlapDialog(names, app_.window());
+  connect(dialog, &QDialog::accepted, this,
+          [this, dialog] { workstation_.answer(orderAnswer(dialog->order())); });
   dialog->open();
 }
 
-void PrepareWorkspace::askForThreshold(const std::filesystem::path& file, const Answers& answers) {
-  auto* dialog = new QInputDialog(bench_.window());
+void PrepareWorkspace::askForThreshold() {
+  auto* dialog = new QInputDialog(app_.window());
   dialog->setObjectName("thresholdQuestion");
   dialog->setAttribute(Qt::WA_DeleteOnClose);
   dialog->setWindowTitle(tr("A fractional segmentation"));
@@ -395,16 +394,13 @@ void PrepareWorkspace::askForThreshold(const std::filesystem::path& file, const 
   dialog->setDoubleStep(0.05);
   dialog->setDoubleValue(StructureRequest().threshold);
   connect(dialog, &QInputDialog::doubleValueSelected, this,
-          [this, file, answers = answers](double value) mutable {
-            answers[Workstation::kThreshold] = plainNumber(value);
-            workstation_.useLabels(file, answers);
-          });
+          [this](double value) { workstation_.answer(plainNumber(value)); });
   dialog->open();
 }
 
 // What was grown and reaches too far, perhaps, before an exercise runs on it.
-void PrepareWorkspace::askAboutPreview(Bench::Next go_on) {
-  QMessageBox* question = ask(bench_.window(), "previewQuestion",
+void PrepareWorkspace::askAboutPreview(AppContext::Next go_on) {
+  QMessageBox* question = ask(app_.window(), "previewQuestion",
                               tr("What was grown does not count yet, and may be too large."),
                               tr("Look at it in the slices first, or start with it or without."),
                               tr("&Take it"), [this, go_on] {
@@ -418,14 +414,14 @@ void PrepareWorkspace::askAboutPreview(Bench::Next go_on) {
 }
 
 // An exercise runs on what was made a moment ago.
-void PrepareWorkspace::beforeStart(Bench::Next go_on) {
+void PrepareWorkspace::beforeStart(AppContext::Next go_on) {
   if (editor_.busy()) {
-    return bench_.say(tr("A structure is being made: wait for it, or cancel it, and start then."));
+    return app_.say(tr("A structure is being made: wait for it, or cancel it, and start then."));
   }
   if (editor_.preview() && editor_.preview()->leaked) return askAboutPreview(std::move(go_on));
   if (editor_.preview()) editor_.takePreview();
   if (!takeStructures()) {
-    return bench_.say(tr("The structures are being put in place: try again in a moment."));
+    return app_.say(tr("The structures are being put in place: try again in a moment."));
   }
   if (workstation_.isOpening()) {
     start_when_placed_ = std::move(go_on);
@@ -436,12 +432,12 @@ void PrepareWorkspace::beforeStart(Bench::Next go_on) {
 
 void PrepareWorkspace::askForLabels() {
   if (workstation_.session()) {
-    return bench_.say(tr("An exercise is running: stop it, then open structures."));
+    return app_.say(tr("An exercise is running: stop it, then open structures."));
   }
-  QFileDialog* dialog = bench_.fileDialog("labelsDialog", tr("Open structures of the case"));
+  QFileDialog* dialog = app_.fileDialog("labelsDialog", tr("Open structures of the case"));
   connect(dialog, &QFileDialog::fileSelected, this, [this](const QString& file) {
-    bench_.unlessLost({Bench::Loss::structures, Bench::Loss::cuts},
-                      [this, file] { workstation_.useLabels(toPath(file)); });
+    app_.unlessLost({AppContext::UnsavedWork::structures, AppContext::UnsavedWork::cuts},
+                    [this, file] { workstation_.useLabels(toPath(file)); });
   });
   dialog->open();
 }
@@ -450,30 +446,30 @@ void PrepareWorkspace::askToSaveStructures() {
   saveStructuresThen({});
 }
 
-void PrepareWorkspace::saveStructuresThen(Bench::Next then) {
+void PrepareWorkspace::saveStructuresThen(AppContext::Next then) {
   // As they are now: another case may come while the dialog stands.
   const std::shared_ptr<const LabelMap> copy = editor_.finished();
-  if (!copy) return bench_.say(tr("There is no structure to save."));
+  if (!copy) return app_.say(tr("There is no structure to save."));
   const std::uint64_t changes = editor_.changes();
-  QFileDialog* dialog = bench_.saveDialog(
+  QFileDialog* dialog = app_.saveDialog(
       tr("Save structures"), "structures.nii.gz",
       tr("NIfTI with names beside it (*.nii.gz *.nii);;3D Slicer (*.seg.nrrd *.nrrd);;MetaImage "
          "with names beside it (*.mha)"));
-  connect(dialog, &QFileDialog::fileSelected, this,
-          [this, copy, changes, then = std::move(then)](const QString& file) {
-            if (!bench_.keepsTheCase(structuresFile(toPath(file))) ||
-                !bench_.keepsTheCase(toPath(file)))
-              return;
-            workstation_.save(
-                tr("The structures are saved as %1.").arg(QFileInfo(file).fileName()),
-                [copy, path = toPath(file)](const Progress& progress) {
-                  return writeSegmentation(*copy, path, false, progress);
-                },
-                [this, changes, then] {
-                  editor_.markSaved(changes);
-                  if (then) then();
-                });
-          });
+  connect(
+      dialog, &QFileDialog::fileSelected, this,
+      [this, copy, changes, then = std::move(then)](const QString& file) {
+        if (!app_.keepsTheCase(structuresFile(toPath(file))) || !app_.keepsTheCase(toPath(file)))
+          return;
+        workstation_.save(
+            tr("The structures are saved as %1.").arg(QFileInfo(file).fileName()),
+            [copy, path = toPath(file)](const Progress& progress) {
+              return writeSegmentation(*copy, path, false, progress);
+            },
+            [this, changes, then] {
+              editor_.markSaved(changes);
+              if (then) then();
+            });
+      });
   dialog->open();
 }
 
@@ -482,9 +478,9 @@ bool PrepareWorkspace::isStored() const {
   return of && !of->stored.empty();
 }
 
-void PrepareWorkspace::saveInCase(Bench::Next then) {
+void PrepareWorkspace::saveInCase(AppContext::Next then) {
   if (!isStored()) {
-    return bench_.say(tr("This case is not one of the library's: save to a file instead."));
+    return app_.say(tr("This case is not one of the library's: save to a file instead."));
   }
   std::shared_ptr<const LabelMap> map;  // null: as it was
   if (in_case_ != editor_.changes()) {
@@ -499,13 +495,13 @@ void PrepareWorkspace::saveInCase(Bench::Next then) {
   std::optional<TissueSet> tissues;
   if (tissues_touched_ || workstation_.tissuesEdited()) tissues = workstation_.tissues();
   if (!map && !tissues) {
-    bench_.say(tr("Nothing of it has changed since it was saved."));
+    app_.say(tr("Nothing of it has changed since it was saved."));
     if (then) then();
     return;
   }
   workstation_.save(
       tr("Structures and tissues are saved in the case."),
-      [library = bench_.library(), id = workstation_.currentCase()->stored, map,
+      [library = app_.library(), id = workstation_.currentCase()->stored, map,
        tissues](const Progress& progress) -> Status {
         if (map) {
           const auto saved = library->saveStructures(id, *map, progress);
@@ -524,9 +520,9 @@ void PrepareWorkspace::saveInCase(Bench::Next then) {
       });
 }
 
-void PrepareWorkspace::unlessStructuresAreLost(Bench::Next go_on) {
+void PrepareWorkspace::unlessStructuresAreLost(AppContext::Next go_on) {
   if (!editor_.edited()) return go_on();
-  QMessageBox* question = ask(bench_.window(), "structuresUnsaved",
+  QMessageBox* question = ask(app_.window(), "structuresUnsaved",
                               tr("The structures have been made or changed and not saved."),
                               tr("Going on takes them away."), tr("&Go on without them"), go_on);
   if (isStored()) {

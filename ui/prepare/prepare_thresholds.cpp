@@ -2,7 +2,7 @@
 // moved.
 #include <algorithm>
 
-#include "scene/structure_view.h"
+#include "exercise/structure_view.h"
 #include "ui/prepare/prepare_workspace.h"
 
 namespace trephine {
@@ -15,7 +15,7 @@ void PrepareWorkspace::connectThresholds() {
           [this](std::size_t tissue) { tissues_->select(tissue); });
   connect(tissues_, &TissuePanel::chosenChanged, this, &PrepareWorkspace::showHistogram);
   connect(tissues_, &TissuePanel::overlapsShown, histogram_, &HistogramView::showOverlaps);
-  connect(&bench_, &Bench::caseShown, this, &PrepareWorkspace::countVoxels);
+  connect(&app_, &AppContext::caseShown, this, &PrepareWorkspace::countVoxels);
   connect(&workstation_, &Workstation::structuresChanged, this, &PrepareWorkspace::countVoxels);
   seen_later_.setSingleShot(true);
   seen_later_.setInterval(0);
@@ -52,14 +52,14 @@ void PrepareWorkspace::countVoxels() {
 }
 
 void PrepareWorkspace::showHistogram() {
-  if (!workstation_.scene()) return;
+  if (!workstation_.exercise()) return;
   histogram_->setTissues(workstation_.placedTissues(), tissues_->chosen());
   histogram_->setLocked(tissues_->isLocked());
   tissues_->setShares(histogram_->shares());
 }
 
 void PrepareWorkspace::thresholdBegan() {
-  if (!workstation_.scene() || tissues_->isLocked()) return;
+  if (!workstation_.exercise() || tissues_->isLocked()) return;
   tissues_->thresholdBegan();
   workstation_.closeEdit();
   moving_ = Moving{tissueTable(workstation_.placedTissues()), {}};

@@ -4,9 +4,10 @@
 #include <QMessageBox>
 #include <algorithm>
 
-#include "scene/arm_limits.h"
+#include "exercise/arm_limits.h"
 #include "tissue/tissue_edits.h"
 #include "ui/common/words.h"
+#include "ui/work/arms_of_place.h"
 #include "ui/prepare/prepare_workspace.h"
 
 namespace trephine {
@@ -19,12 +20,12 @@ void PrepareWorkspace::connectTissues() {
     views_->setTissues(workstation_.placedTissues(), looks);
     showSeen();
   });
-  bench_.setGuard(Bench::Loss::tissues,
-                  [this](Bench::Next go_on) { unlessTissuesStay(std::move(go_on)); });
-  connect(&workstation_, &Workstation::sceneChanged, this, &PrepareWorkspace::showScene);
+  app_.setGuard(AppContext::UnsavedWork::tissues,
+                  [this](AppContext::Next go_on) { unlessTissuesStay(std::move(go_on)); });
+  connect(&workstation_, &Workstation::exerciseChanged, this, &PrepareWorkspace::showExercise);
   for (const auto changed : {&Workstation::controllerChanged, &Workstation::armsAnswered}) {
     connect(&workstation_, changed, this, [this] {
-      if (workstation_.scene()) showRenderable(workstation_.controllerInForce());
+      if (workstation_.exercise()) showRenderable(workstation_.controllerInForce());
     });
   }
   connect(&workstation_, &Workstation::locksChanged, this, [this] {
@@ -41,18 +42,18 @@ void PrepareWorkspace::connectTissues() {
   connect(&workstation_, &Workstation::openingEnded, this, [this] { tissues_->setEnabled(true); });
 }
 
-void PrepareWorkspace::showScene() {
-  const std::optional<Scene>& scene = workstation_.scene();
-  if (!scene) return;
+void PrepareWorkspace::showExercise() {
+  const std::optional<Exercise>& exercise = workstation_.exercise();
+  if (!exercise) return;
   const TissueSet& placed = workstation_.placedTissues();
   tissues_->setTissues(workstation_.tissues(), workstation_.declaredTissues());
-  structures_->setWanted(scene->structures);
-  showRenderable(scene->controller);
+  structures_->setWanted(exercise->structures);
+  showRenderable(exercise->controller);
   tissues_->setLooks(workstation_.looks());
   editor_.setTissues(placed);
   views_->setTissues(placed, workstation_.looks());
   showSeen();
-  views_->setAnatomy(scene->anatomy);
+  views_->setAnatomy(exercise->anatomy);
   showHistogram();
   showHistory();
 }
@@ -66,11 +67,11 @@ void PrepareWorkspace::showTab() {
 }
 
 void PrepareWorkspace::showRenderable(ControllerKind in_force) {
-  const Scene& scene = *workstation_.scene();
+  const Exercise& exercise = *workstation_.exercise();
   tissues_->setRenderable(
-      armsLimit(withForceLimit(scene), workstation_.rig()),
-      [scene](const Tissue& tissue) { return demandedOf(scene, tissue); }, scene.laws,
-      scene.removal, in_force);
+      armsLimit(withForceLimit(exercise, armSettings().most_N), workstation_.rig()),
+      [exercise](const Tissue& tissue) { return demandedOf(exercise, tissue); }, exercise.laws,
+      exercise.removal, in_force);
 }
 
 // The views show what the panel of structures lists while it is in front, else what the exercise
@@ -78,15 +79,15 @@ void PrepareWorkspace::showRenderable(ControllerKind in_force) {
 void PrepareWorkspace::showLabelsInUse() {
   const Case* of = workstation_.currentCase();
   if (!of || !(views_->mirror().volume().geometry == of->volume->geometry)) return;
-  const bool exercise = workstation_.phase() != Workstation::Phase::ready;
+  const bool practising = workstation_.phase() != Workstation::Phase::ready;
   const std::shared_ptr<const LabelMap> wanted =
-      structuresShown() && !exercise ? editor_.map() : workstation_.placed()->labels;
+      structuresShown() && !practising ? editor_.map() : workstation_.placed()->labels;
   if (wanted != views_->mirror().labels()) views_->showLabels(wanted);
   showSeen();
 }
 
 void PrepareWorkspace::showSeen() {
-  if (!workstation_.scene()) return;
+  if (!workstation_.exercise()) return;
   const std::shared_ptr<const LabelMap>& map = views_->mirror().labels();
   std::vector<Structure> rows;
   for (const Structure& s : map ? map->structures : std::vector<Structure>{}) {
@@ -121,7 +122,7 @@ void PrepareWorkspace::showSeen() {
 
 // An opacity or colour that was set for a tissue goes before one that was set for its structure.
 void PrepareWorkspace::tissuesEdited(const TissueSet& set, const QString& what) {
-  if (!workstation_.scene()) return;  // there is no exercise yet that they could be of
+  if (!workstation_.exercise()) return;  // there is no exercise yet that they could be of
   const std::shared_ptr<const LabelMap> map = editor_.map();
   for (auto& [label, look] : structure_looks_) {
     const Structure* of = map ? map->find(label) : nullptr;
@@ -134,11 +135,11 @@ void PrepareWorkspace::tissuesEdited(const TissueSet& set, const QString& what) 
     }
   }
   NewTissues wanted = workstation_.withTissues(set);
-  if (Status done = workstation_.edit(wanted.scene, what.toStdString()); !done) {
+  if (Status done = workstation_.edit(wanted.exercise, what.toStdString()); !done) {
     tissues_->setTissues(workstation_.tissues(), workstation_.declaredTissues());
-    return bench_.report(done.error());
+    return app_.report(done.error());
   }
-  if (!wanted.notes.empty()) bench_.say(toQt(wanted.notes.front()) + '.');
+  if (!wanted.notes.empty()) app_.say(toQt(wanted.notes.front()) + '.');
   tissues_touched_ = true;
   const TissueSet& placed = workstation_.placedTissues();
   editor_.setTissues(placed);
@@ -156,32 +157,32 @@ void PrepareWorkspace::tissuesEdited(const TissueSet& set, const QString& what) 
 
 void PrepareWorkspace::structureLookWanted(int label, TissueLook look) {
   structure_looks_[label].look = look;
-  showSeen();  // which hands it to a tissue of the scene, where one is of it
+  showSeen();  // which hands it to a tissue of the exercise, where one is of it
 }
 
-void PrepareWorkspace::unlessTissuesStay(Bench::Next go_on) {
-  const bool scene = workstation_.sceneEdited();
-  if (!scene && !workstation_.tissuesEdited()) return go_on();
+void PrepareWorkspace::unlessTissuesStay(AppContext::Next go_on) {
+  const bool exercise = workstation_.exerciseEdited();
+  if (!exercise && !workstation_.tissuesEdited()) return go_on();
   auto* box = new QMessageBox(QMessageBox::Question, tr("Trephine"),
-                              scene ? tr("The exercise has been changed and not saved.")
+                              exercise ? tr("The exercise has been changed and not saved.")
                                     : tr("The tissues have been changed and not saved."),
                               QMessageBox::Save | QMessageBox::Discard | QMessageBox::Cancel,
-                              bench_.window());
+                              app_.window());
   box->setObjectName("unsavedTissues");
   box->setAttribute(Qt::WA_DeleteOnClose);
-  box->setInformativeText(scene ? tr("Save it? Discarded changes cannot be had back.")
+  box->setInformativeText(exercise ? tr("Save it? Discarded changes cannot be had back.")
                           : isStored()
                               ? tr("Save them in the case? Discarded changes cannot be had back.")
                               : tr("Save them to a file? Discarded changes cannot be had back."));
   box->setDefaultButton(QMessageBox::Save);
-  connect(box, &QMessageBox::finished, this, [this, scene, go_on = std::move(go_on)](int answer) {
+  connect(box, &QMessageBox::finished, this, [this, exercise, go_on = std::move(go_on)](int answer) {
     if (answer == QMessageBox::Discard) return go_on();
     if (answer != QMessageBox::Save) return;
     // And what is changed while that is written.
-    if (scene) return exercise_->save(false, [this, go_on] { unlessTissuesStay(go_on); });
+    if (exercise) return exercise_->save(false, [this, go_on] { unlessTissuesStay(go_on); });
     if (isStored()) return saveInCase(go_on);
     QFileDialog* dialog =
-        bench_.saveDialog(tr("Save tissues"), "tissues.json", tr("Tissues (*.json)"));
+        app_.saveDialog(tr("Save tissues"), "tissues.json", tr("Tissues (*.json)"));
     connect(dialog, &QFileDialog::fileSelected, this,
             [this, go_on](const QString& file) { workstation_.saveTissues(toPath(file), go_on); });
     dialog->open();

@@ -8,9 +8,9 @@
 
 namespace trephine {
 
-PrepareWorkspace::PrepareWorkspace(Bench& bench)
+PrepareWorkspace::PrepareWorkspace(AppContext& bench)
     : Workspace(&bench),
-      bench_(bench),
+      app_(bench),
       workstation_(bench.workstation()),
       views_(&bench.views()),
       view_(&bench.view()) {
@@ -44,10 +44,10 @@ PrepareWorkspace::PrepareWorkspace(Bench& bench)
   connectThresholds();
   connectSets();
   connectPoke();
-  arms_ = new ArmsTab(bench_, *tools);
-  exercise_ = new ExerciseTab(bench_, *form_);
+  arms_ = new ArmsTab(app_, *tools);
+  exercise_ = new ExerciseTab(app_, *form_);
   exercise_->structuresInCase = [this] { return in_case_ == editor_.changes(); };
-  exercise_->saveInCase = [this](Bench::Next then) { saveInCase(std::move(then)); };
+  exercise_->saveInCase = [this](AppContext::Next then) { saveInCase(std::move(then)); };
   connect(exercise_, &ExerciseTab::saved, this, [this] { tissues_touched_ = false; });
   connect(exercise_, &ExerciseTab::labelsWanted, this, &PrepareWorkspace::askForLabels);
   connectStructures();
@@ -64,7 +64,7 @@ Workspace::Parts PrepareWorkspace::parts() {
 
 void PrepareWorkspace::enter() {
   here_ = true;
-  bench_.setTrying(false);
+  app_.setTrying(false);
   showTab();
   showStructureTab();
   (void)offerMissing();

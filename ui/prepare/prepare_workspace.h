@@ -15,7 +15,7 @@
 #include "ui/tissue/histogram_view.h"
 #include "ui/tissue/poke_plot.h"
 #include "ui/tissue/tissue_panel.h"
-#include "ui/work/bench.h"
+#include "ui/work/app_context.h"
 
 namespace trephine {
 
@@ -24,7 +24,7 @@ class PrepareWorkspace : public Workspace {
  public:
   static constexpr int kTissueTab = 0, kStructureTab = 1, kToolTab = 2, kExerciseTab = 3;
 
-  explicit PrepareWorkspace(Bench& bench);
+  explicit PrepareWorkspace(AppContext& bench);
 
   QString title() const override { return tr("Prepare"); }
   Symbol symbol() const override { return Symbol::prepare; }
@@ -44,7 +44,7 @@ class PrepareWorkspace : public Workspace {
   void connectExports();
 
   // Tissues (prepare_tissues.cpp).
-  void showScene();
+  void showExercise();
   void showTab();
   void showRenderable(ControllerKind in_force);
   void showLabelsInUse();
@@ -52,7 +52,7 @@ class PrepareWorkspace : public Workspace {
   void tissuesEdited(const TissueSet& set, const QString& what);
   void structureLookWanted(int label, TissueLook look);
   // Goes on with what takes the place of the tissues; where they have been edited it asks first.
-  void unlessTissuesStay(Bench::Next go_on);
+  void unlessTissuesStay(AppContext::Next go_on);
 
   // Thresholds over the histogram (prepare_thresholds.cpp).
   void connectThresholds();
@@ -88,7 +88,7 @@ class PrepareWorkspace : public Workspace {
   // Structures (prepare_structures.cpp).
   bool structuresShown() const;
   bool takeStructures();
-  void beforeStart(Bench::Next go_on);
+  void beforeStart(AppContext::Next go_on);
   void openStructures();
   void showStructures();
   void placingFailed();
@@ -99,18 +99,17 @@ class PrepareWorkspace : public Workspace {
   void showUndo();
   bool offerMissing();
   void askForLabels();
-  void askAboutStructures(const Error& error, const std::filesystem::path& file,
-                          const Answers& answers, const std::vector<std::string>& options);
-  void askAboutOverlap(const std::vector<std::string>& names, const std::filesystem::path& file,
-                       const Answers& answers);
-  void askForThreshold(const std::filesystem::path& file, const Answers& answers);
-  void askAboutPreview(Bench::Next go_on);
+  void askAboutStructures(const StructureQuestion& question);
+  void askForOption(const Choice& choice);
+  void askForOrder(const std::vector<std::string>& names);
+  void askForThreshold();
+  void askAboutPreview(AppContext::Next go_on);
   void askToSaveStructures();
-  void saveStructuresThen(Bench::Next then);
-  void unlessStructuresAreLost(Bench::Next go_on);
+  void saveStructuresThen(AppContext::Next then);
+  void unlessStructuresAreLost(AppContext::Next go_on);
   // Structures and tissues, where they have been changed, into the case of the library.
   bool isStored() const;
-  void saveInCase(Bench::Next then);
+  void saveInCase(AppContext::Next then);
   // Where the exercise enters; from nowhere: out of what was clicked.
   void placeEntry(const Vec3& at_mm, const Vec3& from_mm);
   void leaveEntry();
@@ -122,7 +121,7 @@ class PrepareWorkspace : public Workspace {
   void saveDicom(const std::filesystem::path& folder, bool for_source);
   void askToSaveSurface();
 
-  Bench& bench_;
+  AppContext& app_;
   Workstation& workstation_;
   FourUp* views_;
   ViewWidget* view_;
@@ -160,11 +159,11 @@ class PrepareWorkspace : public Workspace {
   std::optional<std::uint64_t> in_case_ = 0;
   bool tissues_touched_ = false;
   QTimer settled_;
-  Bench::Next start_when_placed_;    // an exercise waits for its structures
-  bool entry_asked_ = false;         // and the case is being placed with it
-  bool here_ = false;                // this workspace is the one that is shown
-  StructureLooks structure_looks_;   // of the view alone
-  std::optional<SeenTissues> seen_;  // what the 3-D view was told last
+  AppContext::Next start_when_placed_;  // an exercise waits for its structures
+  bool entry_asked_ = false;            // and the case is being placed with it
+  bool here_ = false;                   // this workspace is the one that is shown
+  StructureLooks structure_looks_;      // of the view alone
+  std::optional<SeenTissues> seen_;     // what the 3-D view was told last
 };
 
 }  // namespace trephine

@@ -10,8 +10,8 @@
 #include "base/utf8.h"
 #include "haptics/law_input.h"
 #include "render/scene_renderer.h"
-#include "scene/arms_file.h"
-#include "scene/scene_edits.h"
+#include "exercise/arms_file.h"
+#include "exercise/exercise_edits.h"
 #include "ui/common/colours.h"
 #include "ui/common/words.h"
 
@@ -50,7 +50,7 @@ QString lawMeaning(LawKind law) {
 }
 
 // What laws and controllers cost holds while these alone are changed.
-bool sameButLaws(Scene a, const Scene& b) {
+bool sameButLaws(Exercise a, const Exercise& b) {
   a.laws = b.laws;
   a.controller = b.controller;
   return a == b;
@@ -144,7 +144,7 @@ QWidget* ToolsPanel::buildTools() {
   kind_ = settingChoice("toolKind", tr("Kind of tool"), tool_editor_);
   fill(*kind_, kToolNames);
   connect(kind_, &QComboBox::activated, this, [this](int) {
-    editTool("kind", [this](SceneTool& of) {
+    editTool("kind", [this](ExerciseTool& of) {
       ToolDescription& d = of.tool.made_from;
       d.kind = ToolKind(kind_->currentData().toInt());
       // A burr is at least as long as its head.
@@ -159,7 +159,7 @@ QWidget* ToolsPanel::buildTools() {
   shape_ = settingChoice("toolShape", tr("Shape of the burr"), tool_editor_);
   fill(*shape_, kShapeNames);
   connect(shape_, &QComboBox::activated, this, [this](int) {
-    editTool("shape", [this](SceneTool& of) {
+    editTool("shape", [this](ExerciseTool& of) {
       ToolDescription& d = of.tool.made_from;
       d.shape = BurrShape(shape_->currentData().toInt());
       if (d.shape == BurrShape::cylinder) d.head_mm = std::max(d.head_mm, 2.0 * d.radius_mm);
@@ -172,7 +172,7 @@ QWidget* ToolsPanel::buildTools() {
     auto made = std::make_unique<NumberRows<ToolDescription>>(rows, *tool_form_, tool_editor_,
                                                               "tool:");
     made->entered = [this](const ToolDescription& d, const char* key) {
-      editTool(key, [&](SceneTool& of) { of.tool.made_from = d; });
+      editTool(key, [&](ExerciseTool& of) { of.tool.made_from = d; });
     };
     return made;
   };
@@ -202,13 +202,13 @@ QWidget* ToolsPanel::buildTools() {
   look_numbers_ = std::make_unique<NumberRows<ToolLook>>(
       std::span<const NumberOf<ToolLook>>(kLookNumbers), *tool_form_, tool_editor_, "tool:");
   look_numbers_->entered = [this](const ToolLook& look, const char* key) {
-    editTool(key, [&](SceneTool& of) { of.look = look; });
+    editTool(key, [&](ExerciseTool& of) { of.look = look; });
   };
   axis_ = std::make_unique<NumberRows<ToolLook>>(std::span<const NumberOf<ToolLook>>(kAxis),
                                                  *tool_form_, tool_editor_, "tool:");
   axis_->entered = [this](const ToolLook& look, const char* key) {
     if (!(glm::length(look.axis) > 0.0)) return showTool();
-    editTool(key, [&](SceneTool& of) { of.look.axis = glm::normalize(look.axis); });
+    editTool(key, [&](ExerciseTool& of) { of.look.axis = glm::normalize(look.axis); });
   };
   tool_problem_ = problemLabel("toolProblem", box);
   connect(tools_, &QListWidget::currentRowChanged, this, [this] {
@@ -222,26 +222,26 @@ QWidget* ToolsPanel::buildTools() {
   return box;
 }
 
-SceneTool* ToolsPanel::tool(Scene& scene) const {
+ExerciseTool* ToolsPanel::tool(Exercise& exercise) const {
   const int row = tools_->currentRow();
-  return row >= 0 && std::size_t(row) < scene.tools.size() ? &scene.tools[std::size_t(row)]
+  return row >= 0 && std::size_t(row) < exercise.tools.size() ? &exercise.tools[std::size_t(row)]
                                                            : nullptr;
 }
 
-void ToolsPanel::editScene(QLabel* problem, const std::string& what,
-                           const std::function<void(Scene&)>& edit) {
+void ToolsPanel::editExercise(QLabel* problem, const std::string& what,
+                           const std::function<void(Exercise&)>& edit) {
   const Status done = wanted ? wanted(what, edit) : Status();
   if (done) return problem->hide();
   sayNotApplied(*problem, done.error());
-  const Scene as_it_is = scene_;
-  setScene(as_it_is);
+  const Exercise as_it_is = exercise_;
+  setExercise(as_it_is);
 }
 
 // The tool is made anew of what it is described by.
-void ToolsPanel::editTool(const std::string& what, const std::function<void(SceneTool&)>& edit) {
-  const SceneTool* of = tool(scene_);
+void ToolsPanel::editTool(const std::string& what, const std::function<void(ExerciseTool&)>& edit) {
+  const ExerciseTool* of = tool(exercise_);
   if (!of) return;
-  SceneTool edited = *of;
+  ExerciseTool edited = *of;
   edit(edited);
   const Result<Tool> made = makeTool(edited.tool.made_from);
   if (!made) {
@@ -249,20 +249,20 @@ void ToolsPanel::editTool(const std::string& what, const std::function<void(Scen
     return showTool();
   }
   edited.tool = *made;
-  editScene(tool_problem_, "tool:" + edited.id + ":" + what,
-            [&](Scene& scene) { *tool(scene) = edited; });
+  editExercise(tool_problem_, "tool:" + edited.id + ":" + what,
+            [&](Exercise& exercise) { *tool(exercise) = edited; });
 }
 
 void ToolsPanel::nameTool() {
-  SceneTool* of = tool(scene_);
+  ExerciseTool* of = tool(exercise_);
   const std::string typed = cleanUtf8(id_->text().toStdString());
   id_->setModified(false);
   if (!of || typed == of->id) return;
   if (typed.empty()) return id_->setText(toQt(of->id));
   const std::string before = of->id;
-  editScene(tool_problem_, "tool name", [&](Scene& scene) {
-    tool(scene)->id = typed;
-    for (SceneArm& arm : scene.arms) {
+  editExercise(tool_problem_, "tool name", [&](Exercise& exercise) {
+    tool(exercise)->id = typed;
+    for (ExerciseArm& arm : exercise.arms) {
       if (arm.tool == before) arm.tool = typed;
       std::ranges::replace(arm.other_tools, before, typed);
     }
@@ -272,23 +272,23 @@ void ToolsPanel::nameTool() {
 void ToolsPanel::addTool(const std::filesystem::path& file) {
   const std::string stem = cleanUtf8(file.stem().string());
   std::string id = stem;
-  for (int n = 2; scene_.findTool(id); ++n) id = stem + "-" + std::to_string(n);
+  for (int n = 2; exercise_.findTool(id); ++n) id = stem + "-" + std::to_string(n);
   const Json json{{"id", id}, {"file", file.string()}};
   JsonReader reader(json, file.string());
-  const SceneTool tool = readSceneTool(reader, file.parent_path());
+  const ExerciseTool tool = readExerciseTool(reader, file.parent_path());
   if (Status read = reader.finish(); !read) {
     tool_problem_->setText(
         tr("Not added. %1. %2.").arg(toQt(read.error().what), toQt(read.error().next)));
     return tool_problem_->show();
   }
-  editScene(tool_problem_, "add tool", [&](Scene& scene) { scene.tools.push_back(tool); });
+  editExercise(tool_problem_, "add tool", [&](Exercise& exercise) { exercise.tools.push_back(tool); });
   tools_->setCurrentRow(tools_->count() - 1);
 }
 
 void ToolsPanel::removeTool() {
-  const SceneTool* of = tool(scene_);
+  const ExerciseTool* of = tool(exercise_);
   if (!of) return;
-  for (const SceneArm& arm : scene_.arms) {
+  for (const ExerciseArm& arm : exercise_.arms) {
     const bool other = std::ranges::find(arm.other_tools, of->id) != arm.other_tools.end();
     if (arm.tool != of->id && !other) continue;
     tool_problem_->setText(tr("Not removed. The %1 arm has it: give that another tool first.")
@@ -296,20 +296,20 @@ void ToolsPanel::removeTool() {
     return tool_problem_->show();
   }
   const int row = tools_->currentRow();
-  editScene(tool_problem_, "remove tool",
-            [&](Scene& scene) { scene.tools.erase(scene.tools.begin() + row); });
+  editExercise(tool_problem_, "remove tool",
+            [&](Exercise& exercise) { exercise.tools.erase(exercise.tools.begin() + row); });
 }
 
 void ToolsPanel::setMesh(const std::filesystem::path& file) {
-  editTool("mesh", [&](SceneTool& of) {
+  editTool("mesh", [&](ExerciseTool& of) {
     of.look = ToolLook{};
     of.look.mesh = file;
   });
 }
 
 void ToolsPanel::showTool() {
-  Scene& scene = scene_;
-  const SceneTool* of = tool(scene);
+  Exercise& exercise = exercise_;
+  const ExerciseTool* of = tool(exercise);
   tool_editor_->setVisible(of);
   remove_->setEnabled(of);
   if (!of) return;
@@ -363,9 +363,9 @@ QWidget* ToolsPanel::buildArms() {
   connect(arm_name_, &QLineEdit::editingFinished, this, [this] {
     const std::string typed = cleanUtf8(arm_name_->text().toStdString());
     arm_name_->setModified(false);
-    if (chosenArm() >= scene_.arms.size() || typed == scene_.arms[chosenArm()].name) return;
+    if (chosenArm() >= exercise_.arms.size() || typed == exercise_.arms[chosenArm()].name) return;
     if (typed.empty()) return showArm();
-    editArm("name", [&](SceneArm& arm) { arm.name = typed; });
+    editArm("name", [&](ExerciseArm& arm) { arm.name = typed; });
   });
   add_arm_ = settingButton("addArm", tr("Add one"), tr("Another arm, as this one"), of_arm);
   remove_arm_ = settingButton("removeArm", tr("Remove it"), tr("One arm stays"), of_arm);
@@ -382,7 +382,7 @@ QWidget* ToolsPanel::buildArms() {
   arm_tool_ = settingChoice("armTool", tr("Tool of the arm"), fields);
   connect(arm_tool_, &QComboBox::activated, this, [this](int) {
     const std::string id = arm_tool_->currentData().toString().toStdString();
-    editArm("tool", [&](SceneArm& arm) {
+    editArm("tool", [&](ExerciseArm& arm) {
       // The one that it had stays at hand.
       const std::string before = std::exchange(arm.tool, id);
       std::erase(arm.other_tools, id);
@@ -405,7 +405,7 @@ QWidget* ToolsPanel::buildArms() {
         ids.push_back(item.data(Qt::UserRole).toString().toStdString());
       }
     }
-    editArm("other tools", [&](SceneArm& arm) { arm.other_tools = ids; });
+    editArm("other tools", [&](ExerciseArm& arm) { arm.other_tools = ids; });
   });
   arm_form_->addRow(tr("Others"),
                     withHint(other_tools_, tr("What may be taken meanwhile (Ctrl+T)."), fields));
@@ -413,23 +413,23 @@ QWidget* ToolsPanel::buildArms() {
   connect(arm_landmark_, &QComboBox::activated, this, [this](int) {
     const std::string id = arm_landmark_->currentData().toString().toStdString();
     const std::size_t index = chosenArm();
-    if (!mapAt || index >= scene_.arms.size()) return;
-    const SceneMap map = mapAt(scene_, index, id);
-    editArm("landmark", [&](SceneArm& arm) { arm.map = map; });
+    if (!mapAt || index >= exercise_.arms.size()) return;
+    const ExerciseMap map = mapAt(exercise_, index, id);
+    editArm("landmark", [&](ExerciseArm& arm) { arm.map = map; });
   });
   arm_form_->addRow(
       tr("Landmark"),
       withHint(arm_landmark_,
                tr("The place that it goes with, on any patient; or none, in this one."), fields));
-  map_numbers_ = std::make_unique<NumberRows<SceneMap>>(
-      std::span<const NumberOf<SceneMap>>(kSceneMapNumbers), *arm_form_, fields, "arm:");
-  map_numbers_->entered = [this](const SceneMap& map, const char* key) {
-    editArm(key, [&](SceneArm& arm) { arm.map = map; });
+  map_numbers_ = std::make_unique<NumberRows<ExerciseMap>>(
+      std::span<const NumberOf<ExerciseMap>>(kExerciseMapNumbers), *arm_form_, fields, "arm:");
+  map_numbers_->entered = [this](const ExerciseMap& map, const char* key) {
+    editArm(key, [&](ExerciseArm& arm) { arm.map = map; });
   };
   fixed_numbers_ = std::make_unique<NumberRows<WorkspaceMap>>(
       std::span<const NumberOf<WorkspaceMap>>(kWorkspaceMapNumbers), *arm_form_, fields, "fixed:");
   fixed_numbers_->entered = [this](const WorkspaceMap& map, const char* key) {
-    editArm(key, [&](SceneArm& arm) {
+    editArm(key, [&](ExerciseArm& arm) {
       arm.map.fixed = map;
       arm.map.motion_scale = map.motion_scale;
       arm.map.force_scale = map.force_scale;
@@ -439,14 +439,14 @@ QWidget* ToolsPanel::buildArms() {
       std::span<const NumberOf<MapTurn>>(kMapTurnNumbers), *arm_form_, fields, "fixed:");
   fixed_turn_->entered = [this](const MapTurn& turn, const char* key) {
     turned_ = turn;
-    editArm(key, [&](SceneArm& arm) {
+    editArm(key, [&](ExerciseArm& arm) {
       if (arm.map.fixed) arm.map.fixed->rotation = rotationOf(turn);
     });
   };
-  arm_numbers_ = std::make_unique<NumberRows<SceneArm>>(
-      std::span<const NumberOf<SceneArm>>(kArmNumbers), *arm_form_, fields, "arm:");
-  arm_numbers_->entered = [this](const SceneArm& entered, const char* key) {
-    editArm(key, [&](SceneArm& arm) { arm = entered; });
+  arm_numbers_ = std::make_unique<NumberRows<ExerciseArm>>(
+      std::span<const NumberOf<ExerciseArm>>(kArmNumbers), *arm_form_, fields, "arm:");
+  arm_numbers_->entered = [this](const ExerciseArm& entered, const char* key) {
+    editArm(key, [&](ExerciseArm& arm) { arm = entered; });
   };
   arm_problem_ = problemLabel("armProblem", box);
   layout->addWidget(title);
@@ -455,22 +455,22 @@ QWidget* ToolsPanel::buildArms() {
   return box;
 }
 
-void ToolsPanel::editArm(const std::string& what, const std::function<void(SceneArm&)>& edit) {
+void ToolsPanel::editArm(const std::string& what, const std::function<void(ExerciseArm&)>& edit) {
   const std::size_t index = chosenArm();
-  if (index >= scene_.arms.size()) return;
-  editScene(arm_problem_, "arm:" + scene_.arms[index].name + ":" + what,
-            [&](Scene& scene) { edit(scene.arms[index]); });
+  if (index >= exercise_.arms.size()) return;
+  editExercise(arm_problem_, "arm:" + exercise_.arms[index].name + ":" + what,
+            [&](Exercise& exercise) { edit(exercise.arms[index]); });
 }
 
 void ToolsPanel::addArm() {
-  if (chosenArm() >= scene_.arms.size()) return;
-  SceneArm more = scene_.arms[chosenArm()];
+  if (chosenArm() >= exercise_.arms.size()) return;
+  ExerciseArm more = exercise_.arms[chosenArm()];
   const auto named = [&](const std::string& name) {
-    return std::ranges::find(scene_.arms, name, &SceneArm::name) != scene_.arms.end();
+    return std::ranges::find(exercise_.arms, name, &ExerciseArm::name) != exercise_.arms.end();
   };
   more.name = !named("left") ? "left" : !named("right") ? "right" : "arm-3";
   for (int n = 3; named(more.name); ++n) more.name = "arm-" + std::to_string(n);
-  editScene(arm_problem_, "add arm", [&](Scene& scene) { scene.arms.push_back(more); });
+  editExercise(arm_problem_, "add arm", [&](Exercise& exercise) { exercise.arms.push_back(more); });
   arm_->setCurrentIndex(arm_->count() - 1);
   showArm();
   emit armChosen();
@@ -478,19 +478,19 @@ void ToolsPanel::addArm() {
 
 void ToolsPanel::removeArm() {
   const std::size_t index = chosenArm();
-  if (index >= scene_.arms.size()) return;
-  editScene(arm_problem_, "remove arm",
-            [&](Scene& scene) { scene.arms.erase(scene.arms.begin() + std::ptrdiff_t(index)); });
+  if (index >= exercise_.arms.size()) return;
+  editExercise(arm_problem_, "remove arm",
+            [&](Exercise& exercise) { exercise.arms.erase(exercise.arms.begin() + std::ptrdiff_t(index)); });
 }
 
 void ToolsPanel::showArm() {
   const std::size_t index = chosenArm();
-  if (index >= scene_.arms.size()) return;
-  const SceneArm& arm = scene_.arms[index];
+  if (index >= exercise_.arms.size()) return;
+  const ExerciseArm& arm = exercise_.arms[index];
   const bool before = std::exchange(showing_, true);
   arm_tool_->clear();
   other_tools_->clear();
-  for (const SceneTool& of : scene_.tools) {
+  for (const ExerciseTool& of : exercise_.tools) {
     arm_tool_->addItem(toQt(of.id), toQt(of.id));
     if (of.id == arm.tool) continue;
     auto* item = new QListWidgetItem(toQt(of.id), other_tools_);
@@ -501,14 +501,14 @@ void ToolsPanel::showArm() {
   }
   arm_tool_->setCurrentIndex(arm_tool_->findData(toQt(arm.tool)));
   arm_landmark_->clear();
-  for (const Landmark& landmark : scene_.landmarks) {
+  for (const Landmark& landmark : exercise_.landmarks) {
     arm_landmark_->addItem(toQt(landmark.id), toQt(landmark.id));
   }
   arm_landmark_->addItem(tr("none: fixed in this patient"), QString());
   arm_landmark_->setCurrentIndex(
       arm_landmark_->findData(arm.map.fixed ? QString() : toQt(arm.map.landmark)));
   if (!arm_name_->hasFocus() || !arm_name_->isModified()) arm_name_->setText(toQt(arm.name));
-  remove_arm_->setEnabled(scene_.arms.size() > 1);
+  remove_arm_->setEnabled(exercise_.arms.size() > 1);
   map_numbers_->setVisible(!arm.map.fixed);
   map_numbers_->show(arm.map);
   fixed_numbers_->setVisible(arm.map.fixed.has_value());
@@ -539,10 +539,10 @@ QWidget* ToolsPanel::buildLaws() {
     check->setObjectName("law:" + QString::fromUtf8(name.data(), qsizetype(name.size())));
     connect(check, &QCheckBox::toggled, this, [this, law = law](bool on) {
       if (showing_) return;
-      editScene(law_problem_, "laws", [&](Scene& scene) {
-        std::erase(scene.laws, law);
-        if (on) scene.laws.push_back(law);
-        std::ranges::sort(scene.laws);
+      editExercise(law_problem_, "laws", [&](Exercise& exercise) {
+        std::erase(exercise.laws, law);
+        if (on) exercise.laws.push_back(law);
+        std::ranges::sort(exercise.laws);
       });
     });
     auto* cost = new QLabel(box);
@@ -563,8 +563,8 @@ QWidget* ToolsPanel::buildLaws() {
     controller_->addItem(controllerWord(kind), int(kind));
   }
   connect(controller_, &QComboBox::activated, this, [this](int) {
-    editScene(law_problem_, "controller", [this](Scene& scene) {
-      scene.controller = ControllerKind(controller_->currentData().toInt());
+    editExercise(law_problem_, "controller", [this](Exercise& exercise) {
+      exercise.controller = ControllerKind(controller_->currentData().toInt());
     });
   });
   controller_hint_ = settingHint({}, fields);
@@ -583,8 +583,8 @@ QWidget* ToolsPanel::buildLaws() {
   force_at_ = settingChoice("forceAt", tr("Where the force acts"), fields);
   fill(*force_at_, kForceAtNames);
   connect(force_at_, &QComboBox::activated, this, [this](int) {
-    editScene(law_problem_, "force at", [this](Scene& scene) {
-      scene.force_at = ForceAt(force_at_->currentData().toInt());
+    editExercise(law_problem_, "force at", [this](Exercise& exercise) {
+      exercise.force_at = ForceAt(force_at_->currentData().toInt());
     });
   });
   rows->addRow(tr("Force at"),
@@ -597,18 +597,18 @@ QWidget* ToolsPanel::buildLaws() {
   removal_ = settingChoice("removal", tr("How tissue is removed"), fields);
   fill(*removal_, kRemovalNames);
   connect(removal_, &QComboBox::activated, this, [this](int) {
-    editScene(law_problem_, "removal", [this](Scene& scene) {
-      scene.removal = RemovalKind(removal_->currentData().toInt());
+    editExercise(law_problem_, "removal", [this](Exercise& exercise) {
+      exercise.removal = RemovalKind(removal_->currentData().toInt());
     });
   });
   rows->addRow(tr("Removal"), withHint(removal_,
                                        tr("As much as the work of hand and motor pays for, "
                                           "or all that is met."),
                                        fields));
-  rate_ = std::make_unique<NumberRows<Scene>>(std::span<const NumberOf<Scene>>(kSceneNumbers), *rows,
+  rate_ = std::make_unique<NumberRows<Exercise>>(std::span<const NumberOf<Exercise>>(kExerciseNumbers), *rows,
                                               fields, "scene:");
-  rate_->entered = [this](const Scene& other, const char* key) {
-    editScene(law_problem_, key, [&](Scene& scene) { scene.rate_hz = other.rate_hz; });
+  rate_->entered = [this](const Exercise& other, const char* key) {
+    editExercise(law_problem_, key, [&](Exercise& exercise) { exercise.rate_hz = other.rate_hz; });
   };
   rate_trade_ = new TradeView("rateTrade", fields);
   rows->addRow(rate_trade_);
@@ -638,23 +638,23 @@ QWidget* ToolsPanel::buildLaws() {
 }
 
 void ToolsPanel::showLaws() {
-  for (const auto& [law, check] : laws_) check->setChecked(names(scene_.laws, law));
+  for (const auto& [law, check] : laws_) check->setChecked(names(exercise_.laws, law));
   for (const auto& [law, label] : law_costs_) {
     label->clear();
     for (const auto& [of, words] : costs_.laws) {
       if (of == law) label->setText(words);
     }
   }
-  chooseData(*controller_, int(scene_.controller));
-  controller_hint_->setText(controllerMeaning(scene_.controller));
+  chooseData(*controller_, int(exercise_.controller));
+  controller_hint_->setText(controllerMeaning(exercise_.controller));
   controller_cost_->clear();
   for (const auto& [of, words] : costs_.controllers) {
-    if (of == scene_.controller) controller_cost_->setText(words);
+    if (of == exercise_.controller) controller_cost_->setText(words);
   }
   controller_cost_->setVisible(!controller_cost_->text().isEmpty());
-  chooseData(*force_at_, int(scene_.force_at));
-  chooseData(*removal_, int(scene_.removal));
-  rate_->show(scene_);
+  chooseData(*force_at_, int(exercise_.force_at));
+  chooseData(*removal_, int(exercise_.removal));
+  rate_->show(exercise_);
   showTrades();
 }
 
@@ -665,14 +665,14 @@ void ToolsPanel::setTrades(const std::vector<TradeRow>& rows, const QString& whe
 }
 
 void ToolsPanel::showTrades() {
-  const SceneTool* of = tool(scene_);
+  const ExerciseTool* of = tool(exercise_);
   const ToolDescription d = of ? of->tool.made_from : ToolDescription{};
   const char* points = d.kind == ToolKind::blade  ? "points_blade"
                        : d.kind == ToolKind::burr ? "points_burr"
                                                   : "";
   points_trade_->show(trades_, points, std::to_string(d.points));
-  force_trade_->show(trades_, "force_at", nameOf(kForceAtNames, scene_.force_at));
-  rate_trade_->show(trades_, "rate_hz", plainNumber(scene_.rate_hz));
+  force_trade_->show(trades_, "force_at", nameOf(kForceAtNames, exercise_.force_at));
+  rate_trade_->show(trades_, "rate_hz", plainNumber(exercise_.rate_hz));
   rays_trade_->show(trades_, "ray_casting",
                     plainNumber(SceneRenderer::kSampleDistance) + " voxels");
 }
@@ -689,23 +689,23 @@ void ToolsPanel::setCosts(const Costs& costs) {
   showing_ = false;
 }
 
-void ToolsPanel::setScene(const Scene& scene) {
-  if (scene != scene_) {  // what was refused was of another
+void ToolsPanel::setExercise(const Exercise& exercise) {
+  if (exercise != exercise_) {  // what was refused was of another
     for (QLabel* problem : {tool_problem_, arm_problem_, law_problem_}) problem->hide();
   }
-  if (!sameButLaws(scene, scene_)) costs_ = {};  // they were of another
-  scene_ = scene;
+  if (!sameButLaws(exercise, exercise_)) costs_ = {};  // they were of another
+  exercise_ = exercise;
   showing_ = true;
   body_->setEnabled(locked_->text().isEmpty());
   const int row = std::max(0, tools_->currentRow());
   tools_->clear();
-  for (const SceneTool& of : scene_.tools) {
+  for (const ExerciseTool& of : exercise_.tools) {
     new QListWidgetItem(tr("%1 \u2014 %2").arg(toQt(of.id), toolKindWord(of)), tools_);
   }
   tools_->setCurrentRow(std::min(row, tools_->count() - 1));
   const int arm = std::max(0, arm_->currentIndex());
   arm_->clear();
-  for (const SceneArm& of : scene_.arms) arm_->addItem(toQt(of.name));
+  for (const ExerciseArm& of : exercise_.arms) arm_->addItem(toQt(of.name));
   arm_->setCurrentIndex(std::min(arm, arm_->count() - 1));
   showTool();
   showArm();
@@ -716,7 +716,7 @@ void ToolsPanel::setScene(const Scene& scene) {
 void ToolsPanel::setLocked(const QString& why) {
   locked_->setText(why);
   locked_->setVisible(!why.isEmpty());
-  body_->setEnabled(why.isEmpty() && !scene_.arms.empty());
+  body_->setEnabled(why.isEmpty() && !exercise_.arms.empty());
 }
 
 }  // namespace trephine

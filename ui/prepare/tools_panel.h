@@ -1,6 +1,6 @@
 // Tools and arms of the exercise: what is in the hands, where an arm reaches in the patient, which
-// laws are felt and what keeps them steady. It shows a scene and tells what a person wants of it;
-// what is refused is said below the field's group and the scene stays.
+// laws are felt and what keeps them steady. It shows an exercise and tells what a person wants of
+// it; what is refused is said below the field's group and the exercise stays.
 #pragma once
 
 #include <QCheckBox>
@@ -15,8 +15,8 @@
 #include <functional>
 #include <memory>
 
-#include "scene/scene.h"
-#include "scene/scene_numbers.h"
+#include "exercise/exercise.h"
+#include "exercise/exercise_numbers.h"
 #include "ui/common/number_rows.h"
 #include "ui/prepare/trade_view.h"
 
@@ -27,7 +27,7 @@ class ToolsPanel : public QWidget {
  public:
   explicit ToolsPanel(QWidget* parent = nullptr);
 
-  void setScene(const Scene& scene);
+  void setExercise(const Exercise& exercise);
   // Why nothing may be changed; empty: it may.
   void setLocked(const QString& why);
   std::size_t chosenArm() const { return std::size_t(std::max(0, arm_->currentIndex())); }
@@ -42,11 +42,13 @@ class ToolsPanel : public QWidget {
   // How far that is; nothing: it is not being measured.
   void showMeasuring(std::optional<double> share);
 
-  // A person wants this change of the scene as it is then; `what` of it.
-  std::function<Status(const std::string& what, const std::function<void(Scene&)>& change)> wanted;
+  // A person wants this change of the exercise as it is then; `what` of it.
+  std::function<Status(const std::string& what, const std::function<void(Exercise&)>& change)>
+      wanted;
   // The map of an arm that goes with that landmark instead, or, with "", stays where it is in this
   // patient.
-  std::function<SceneMap(const Scene& scene, std::size_t arm, const std::string& landmark)> mapAt;
+  std::function<ExerciseMap(const Exercise& exercise, std::size_t arm, const std::string& landmark)>
+      mapAt;
 
  signals:
   void armChosen();
@@ -56,7 +58,7 @@ class ToolsPanel : public QWidget {
   void tradesWanted();
 
  public slots:
-  // A tool file becomes one of the scene's.
+  // A tool file becomes one of the exercise's.
   void addTool(const std::filesystem::path& file);
   void setMesh(const std::filesystem::path& file);
 
@@ -68,16 +70,17 @@ class ToolsPanel : public QWidget {
   void showArm();
   void showLaws();
   void showTrades();
-  SceneTool* tool(Scene& scene) const;
-  void editTool(const std::string& what, const std::function<void(SceneTool&)>& edit);
-  void editArm(const std::string& what, const std::function<void(SceneArm&)>& edit);
-  void editScene(QLabel* problem, const std::string& what, const std::function<void(Scene&)>& edit);
+  ExerciseTool* tool(Exercise& exercise) const;
+  void editTool(const std::string& what, const std::function<void(ExerciseTool&)>& edit);
+  void editArm(const std::string& what, const std::function<void(ExerciseArm&)>& edit);
+  void editExercise(QLabel* problem, const std::string& what,
+                    const std::function<void(Exercise&)>& edit);
   void removeTool();
   void nameTool();
   void addArm();
   void removeArm();
 
-  Scene scene_;
+  Exercise exercise_;
   bool showing_ = false;
   QWidget* body_;
   QLabel* locked_;
@@ -98,17 +101,17 @@ class ToolsPanel : public QWidget {
   QLineEdit* arm_name_;
   QToolButton *add_arm_, *remove_arm_;
   QFormLayout* arm_form_;
-  std::unique_ptr<NumberRows<SceneMap>> map_numbers_;
+  std::unique_ptr<NumberRows<ExerciseMap>> map_numbers_;
   std::unique_ptr<NumberRows<WorkspaceMap>> fixed_numbers_;
   std::unique_ptr<NumberRows<MapTurn>> fixed_turn_;
   MapTurn turned_;  // as it was entered: other angles are the same rotation
-  std::unique_ptr<NumberRows<SceneArm>> arm_numbers_;
+  std::unique_ptr<NumberRows<ExerciseArm>> arm_numbers_;
   std::vector<std::pair<LawKind, QCheckBox*>> laws_;
   std::vector<std::pair<LawKind, QLabel*>> law_costs_;
   QComboBox *controller_, *force_at_, *removal_;
   QLabel *controller_hint_, *controller_cost_;
   QToolButton* measure_;
-  std::unique_ptr<NumberRows<Scene>> rate_;
+  std::unique_ptr<NumberRows<Exercise>> rate_;
   Costs costs_;
   std::vector<TradeRow> trades_;
   TradeView *points_trade_, *force_trade_, *rate_trade_, *rays_trade_;

@@ -4,7 +4,7 @@
 
 #include "training/replay.h"
 #include "ui/common/words.h"
-#include "ui/work/stored_case.h"
+#include "library/stored_case.h"
 #include "volume/phantom.h"
 
 namespace trephine {
@@ -18,7 +18,7 @@ Result<Case> recordedCase(const ListedRecording& recording, CaseLibrary& library
   if (phantomNamed(recording.case_source)) return readCase(recording.case_source, progress);
   for (const ListedCase& one : library.list()) {
     if (one.problem || one.record.volume_sha256 != recording.volume_sha256) continue;
-    Result<Workstation::Stored> stored = storedCase(library, one.id, progress);
+    Result<StoredCase> stored = storedCase(library, one.id, progress);
     if (!stored) return stored.error();
     return std::move(stored->of);
   }
@@ -28,8 +28,8 @@ Result<Case> recordedCase(const ListedRecording& recording, CaseLibrary& library
 
 }  // namespace
 
-ReviewWorkspace::ReviewWorkspace(Bench& bench)
-    : Workspace(&bench), bench_(bench), page_(new ReviewPage) {
+ReviewWorkspace::ReviewWorkspace(AppContext& bench)
+    : Workspace(&bench), app_(bench), page_(new ReviewPage) {
   connect(page_, &ReviewPage::replayWanted, this, &ReviewWorkspace::replay);
   connect(page_, &ReviewPage::cancelWanted, &replaying_, &BackgroundTask::cancel);
   connect(&listing_, &BackgroundTask::progressed, page_, &ReviewPage::showReading);
@@ -64,10 +64,10 @@ void ReviewWorkspace::list() {
     std::map<std::string, QString> cases;  // names
     std::filesystem::path opened;
   };
-  if (const std::string wanted = bench_.takeReviewed(); !wanted.empty()) wanted_case_ = wanted;
+  if (const std::string wanted = app_.takeReviewed(); !wanted.empty()) wanted_case_ = wanted;
   const bool begun = listing_.run(
-      [this, folder = bench_.recordings(), opened = opened_,
-       library = bench_.library()](const Progress& progress) -> Result<Listed> {
+      [this, folder = app_.recordings(), opened = opened_,
+       library = app_.library()](const Progress& progress) -> Result<Listed> {
         Listed listed{{}, {}, opened};
         for (const std::string& name : phantomNames()) {
           listed.cases[phantomSource(name)] = builtInName(name);
@@ -113,7 +113,7 @@ void ReviewWorkspace::list() {
 
 void ReviewWorkspace::show(const std::vector<ListedRecording>& rows, bool all,
                            const std::map<std::string, QString>& cases) {
-  const Case* of = bench_.workstation().currentCase();
+  const Case* of = app_.workstation().currentCase();
   page_->showRecordings(rows, all, of ? of->sha256 : "", cases);
   // Once, as soon as it is there: then a person chooses.
   if (!wanted_case_.empty() && page_->selectNewestOf(wanted_case_)) wanted_case_.clear();
@@ -121,11 +121,11 @@ void ReviewWorkspace::show(const std::vector<ListedRecording>& rows, bool all,
 }
 
 void ReviewWorkspace::replay(const ListedRecording& of) {
-  const Case* open = bench_.workstation().currentCase();
+  const Case* open = app_.workstation().currentCase();
   std::optional<Case> at_hand;
   if (open && open->sha256 == of.volume_sha256) at_hand = *open;
   const bool begun = replaying_.run(
-      [of, at_hand, library = bench_.library()](const Progress& progress) -> Result<ReplayResult> {
+      [of, at_hand, library = app_.library()](const Progress& progress) -> Result<ReplayResult> {
         Result<std::unique_ptr<SessionReader>> recording = SessionReader::open(of.file);
         if (!recording) return recording.error();
         std::optional<Case> on = at_hand;
@@ -139,7 +139,7 @@ void ReviewWorkspace::replay(const ListedRecording& of) {
       },
       [this](Result<ReplayResult> result) {
         if (!result) {
-          if (result.error().code != "CANCELLED") bench_.report(result.error());
+          if (result.error().code != "CANCELLED") app_.report(result.error());
           return page_->showOutcome(result.error().code == "CANCELLED" ? tr("Cancelled.")
                                                                        : QString());
         }

@@ -3,14 +3,14 @@
 
 #include "ui/common/background_task.h"
 #include "ui/review/review_page.h"
-#include "ui/work/bench.h"
+#include "ui/work/app_context.h"
 
 namespace trephine {
 
 class ReviewWorkspace : public Workspace {
   Q_OBJECT
  public:
-  explicit ReviewWorkspace(Bench& bench);
+  explicit ReviewWorkspace(AppContext& bench);
 
   QString title() const override { return tr("Review"); }
   Symbol symbol() const override { return Symbol::review; }
@@ -32,7 +32,7 @@ class ReviewWorkspace : public Workspace {
             const std::map<std::string, QString>& cases);
   void replay(const ListedRecording& of);
 
-  Bench& bench_;
+  AppContext& app_;
   ReviewPage* page_;
   bool replay_newest_ = false;
   bool choose_opened_ = false, list_again_ = false;

@@ -12,7 +12,7 @@
 #include <memory>
 #include <optional>
 
-#include "scene/structure_view.h"
+#include "exercise/structure_view.h"
 #include "structures/edit_history.h"
 #include "structures/grow.h"
 #include "structures/shape_tools.h"

@@ -6,7 +6,7 @@
 #include <QWidget>
 #include <optional>
 
-#include "scene/structure_view.h"
+#include "exercise/structure_view.h"
 #include "ui/tissue/look_box.h"
 
 namespace trephine {

@@ -9,7 +9,7 @@
 #include <memory>
 #include <optional>
 
-#include "scene/tissue_shares.h"
+#include "exercise/tissue_shares.h"
 #include "tissue/tissue_edits.h"
 #include "volume/hu_histogram.h"
 

@@ -1,5 +1,5 @@
-// The tissues of a set, one below the other: eye, colour, name, HU, opacity and how much of the case
-// each has; presets of looks above it, one more or one less below it.
+// The tissues of a set, one below the other: eye, colour, name, HU, opacity and how much of the
+// case each has; presets of looks above it, one more or one less below it.
 #pragma once
 
 #include <QLabel>
@@ -8,7 +8,7 @@
 #include <QWidget>
 #include <vector>
 
-#include "scene/tissue_shares.h"
+#include "exercise/tissue_shares.h"
 #include "tissue/tissue_look.h"
 #include "ui/tissue/look_box.h"
 

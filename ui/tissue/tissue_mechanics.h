@@ -10,8 +10,8 @@
 #include <optional>
 #include <vector>
 
+#include "exercise/arm_limits.h"
 #include "haptics/controllers.h"
-#include "scene/arm_limits.h"
 #include "ui/common/number_field.h"
 #include "ui/tissue/limit_bar.h"
 

@@ -1,5 +1,5 @@
-// The scene's tissues: the set and what is done with it, its list, and the numbers of the one that
-// is chosen. What is not a possible number or set is refused in words beside the field and not
+// The exercise's tissues: the set and what is done with it, its list, and the numbers of the one
+// that is chosen. What is not a possible number or set is refused in words beside the field and not
 // applied; HU that have lost their tissue are mentioned. It keeps no set: who shows one does.
 #pragma once
 
@@ -16,8 +16,8 @@
 #include <functional>
 #include <optional>
 
+#include "exercise/arm_limits.h"
 #include "haptics/controllers.h"
-#include "scene/arm_limits.h"
 #include "tissue/tissue_edits.h"
 #include "tissue/tissue_look.h"
 #include "tissue/tissue_set.h"
@@ -50,8 +50,8 @@ class TissuePanel : public QWidget {
   void setLabelsOpen(bool open);
   // Of the case: a tissue can be restricted to one.
   void setStructures(const std::vector<std::string>& names);
-  // What the arms show, and what the scene's `laws` together demand of a tissue: what lies above is
-  // said to be felt as that under `bounded`, and to be bounded by nothing under the others.
+  // What the arms show, and what the exercise's `laws` together demand of a tissue: what lies above
+  // is said to be felt as that under `bounded`, and to be bounded by nothing under the others.
   // `in_force` is the controller now.
   void setRenderable(const std::optional<ArmsLimit>& most,
                      std::function<Impedance(const Tissue&)> demanded,

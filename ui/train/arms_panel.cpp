@@ -36,7 +36,7 @@ QString newtons(double force_N) {
 
 }  // namespace
 
-QString armName(const SceneArm& arm) {
+QString armName(const ExerciseArm& arm) {
   if (arm.name == "left") return ArmsPanel::tr("Left arm");
   if (arm.name == "right") return ArmsPanel::tr("Right arm");
   return toQt(arm.name);
@@ -46,7 +46,7 @@ QString toolWaitsWords() {
   return ArmsPanel::tr("Take the tool out of the tissue: then it is changed.");
 }
 
-QString forceScaleWords(const SceneArm& arm) {
+QString forceScaleWords(const ExerciseArm& arm) {
   const double force = arm.map.fixed ? arm.map.fixed->force_scale : arm.map.force_scale;
   // In general: what is changed just now stands at "Force is".
   if (force == 1.0) return ArmsPanel::tr("Felt = modelled, up to what the arm can show");
@@ -73,7 +73,7 @@ ArmsPanel::ArmsPanel(QWidget* parent) : QWidget(parent) {
     controller_->addItem(controllerWord(kind), int(kind));
     controller_->setItemData(controller_->count() - 1, controllerMeaning(kind), Qt::ToolTipRole);
   }
-  controller_->setCurrentIndex(-1);  // until a scene says which
+  controller_->setCurrentIndex(-1);  // until an exercise says which
   missed_ = value(inside, "missedDeadlines");
   dropped_ = value(inside, "dropped");
   for (QLabel* label : {missed_, dropped_}) label->setWordWrap(true);
@@ -109,18 +109,18 @@ ArmsPanel::ArmsPanel(QWidget* parent) : QWidget(parent) {
   showIdle();
 }
 
-void ArmsPanel::setScene(const Scene& scene) {
+void ArmsPanel::setExercise(const Exercise& exercise) {
   for (QWidget* card : card_widgets_) delete card;
   card_widgets_.clear();
   cards_.clear();
-  for (std::size_t i = 0; i < scene.arms.size(); ++i) cards_.push_back(addCard(scene, i));
-  period_s_ = 1.0 / scene.rate_hz;
-  controller_->setCurrentIndex(controller_->findData(int(scene.controller)));
+  for (std::size_t i = 0; i < exercise.arms.size(); ++i) cards_.push_back(addCard(exercise, i));
+  period_s_ = 1.0 / exercise.rate_hz;
+  controller_->setCurrentIndex(controller_->findData(int(exercise.controller)));
   showIdle();
 }
 
-ArmsPanel::Card ArmsPanel::addCard(const Scene& scene, std::size_t index) {
-  const SceneArm& arm = scene.arms[index];
+ArmsPanel::Card ArmsPanel::addCard(const Exercise& exercise, std::size_t index) {
+  const ExerciseArm& arm = exercise.arms[index];
   auto* frame = new QFrame(this);
   frame->setProperty("card", true);
   const QString prefix = toQt(arm.name);
@@ -164,7 +164,7 @@ ArmsPanel::Card ArmsPanel::addCard(const Scene& scene, std::size_t index) {
   card.tool->setAccessibleName(tr("Tool"));
   card.tool->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon);
   for (std::size_t n = 0; n <= arm.other_tools.size(); ++n) {
-    if (const SceneTool* tool = scene.toolOf(index, n)) card.tool->addItem(toolWord(*tool));
+    if (const ExerciseTool* tool = exercise.toolOf(index, n)) card.tool->addItem(toolWord(*tool));
   }
   card.tool->setToolTip(arm.other_tools.empty()
                             ? tr("The exercise has one tool for this arm")

@@ -9,8 +9,8 @@
 #include <QWidget>
 #include <vector>
 
+#include "exercise/exercise.h"
 #include "haptics/haptic_loop.h"
-#include "scene/scene.h"
 #include "session/energy_watch.h"
 #include "ui/train/force_bar.h"
 #include "ui/train/trace_view.h"
@@ -22,23 +22,23 @@ class ArmsPanel : public QWidget {
  public:
   explicit ArmsPanel(QWidget* parent = nullptr);
 
-  // One card an arm of the scene.
-  void setScene(const Scene& scene);
+  // One card an arm of the exercise.
+  void setExercise(const Exercise& exercise);
   // The newest state; `limits_N` by arm.
   void showState(const LoopState& state, const TissueSet& tissues,
                  const std::vector<double>& limits_N);
   // With every picture, for the traces.
   void follow(const LoopState& state);
-  // The recording can no longer be written; until setScene() or showIdle().
+  // The recording can no longer be written; until setExercise() or showIdle().
   void showUnrecorded();
   void showIdle();
   // Why the controller may not be changed; empty: it may.
   void setLocked(const QString& why);
-  void showController(std::optional<ControllerKind> kind);  // none: no scene says which
+  void showController(std::optional<ControllerKind> kind);  // none: no exercise says which
 
  signals:
   void controllerWanted(trephine::ControllerKind kind);
-  void toolWanted(std::size_t arm, std::size_t tool);  // Scene::toolOf
+  void toolWanted(std::size_t arm, std::size_t tool);  // Exercise::toolOf
 
  private:
   struct Card {
@@ -50,7 +50,7 @@ class ArmsPanel : public QWidget {
     double device_per_model;  // energy
     EnergyWatch watch;
   };
-  Card addCard(const Scene& scene, std::size_t index);
+  Card addCard(const Exercise& exercise, std::size_t index);
   static void showTool(Card& card, std::int32_t in_hand, std::int32_t wanted);
 
   QVBoxLayout* cards_layout_;
@@ -63,10 +63,10 @@ class ArmsPanel : public QWidget {
 };
 
 // "Left arm".
-QString armName(const SceneArm& arm);
+QString armName(const ExerciseArm& arm);
 // While another tool waits for the one in hand to be out of tissue.
 QString toolWaitsWords();
 // How what is felt follows from what the tissue does: "Felt as the tissue is."
-QString forceScaleWords(const SceneArm& arm);
+QString forceScaleWords(const ExerciseArm& arm);
 
 }  // namespace trephine

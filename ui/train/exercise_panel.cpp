@@ -52,11 +52,11 @@ QString stepsWords(const CardText& card) {
   return html + QStringLiteral("</ol>");
 }
 
-QString toolWords(const Scene& scene, const std::array<std::int32_t, kMaxArms>& in_hand) {
+QString toolWords(const Exercise& exercise, const std::array<std::int32_t, kMaxArms>& in_hand) {
   QStringList lines;
-  for (std::size_t i = 0; i < scene.arms.size(); ++i) {
-    const SceneTool& tool = *scene.toolOf(i, std::size_t(in_hand[i]));
-    lines << ExercisePanel::tr("%1: %2").arg(armName(scene.arms[i]), toolWord(tool));
+  for (std::size_t i = 0; i < exercise.arms.size(); ++i) {
+    const ExerciseTool& tool = *exercise.toolOf(i, std::size_t(in_hand[i]));
+    lines << ExercisePanel::tr("%1: %2").arg(armName(exercise.arms[i]), toolWord(tool));
   }
   return lines.join('\n');
 }
@@ -108,20 +108,20 @@ ExercisePanel::ExercisePanel(QWidget* parent) : QWidget(parent) {
   showIdle();
 }
 
-void ExercisePanel::setScene(const Scene& scene, const QString& language) {
-  title_->setText(toQt(scene.name));
-  const CardText* card = cardFor(scene, language.toStdString());
+void ExercisePanel::setExercise(const Exercise& exercise, const QString& language) {
+  title_->setText(toQt(exercise.name));
+  const CardText* card = cardFor(exercise, language.toStdString());
   goal_->setText(card ? toQt(card->goal) : tr("Cut as the exercise's name says."));
   steps_->setText(card ? stepsWords(*card) : QString());
   steps_->setVisible(card && !card->steps.empty());
   hands_->setText(card ? toQt(card->hands) : QString());
   hands_->setVisible(!hands_->text().isEmpty());
-  showTools(scene, {});
+  showTools(exercise, {});
 }
 
-void ExercisePanel::showTools(const Scene& scene,
+void ExercisePanel::showTools(const Exercise& exercise,
                               const std::array<std::int32_t, kMaxArms>& in_hand) {
-  tools_->setText(toolWords(scene, in_hand));
+  tools_->setText(toolWords(exercise, in_hand));
 }
 
 void ExercisePanel::showTime(double seconds) {

@@ -8,7 +8,7 @@
 #include <array>
 #include <vector>
 
-#include "scene/scene.h"
+#include "exercise/exercise.h"
 
 namespace trephine {
 
@@ -26,10 +26,10 @@ class ExercisePanel : public QWidget {
  public:
   explicit ExercisePanel(QWidget* parent = nullptr);
 
-  void setScene(const Scene& scene, const QString& language);
+  void setExercise(const Exercise& exercise, const QString& language);
   void showTime(double seconds);
-  // By arm, as Scene::toolOf counts them.
-  void showTools(const Scene& scene, const std::array<std::int32_t, kMaxArms>& in_hand);
+  // By arm, as Exercise::toolOf counts them.
+  void showTools(const Exercise& exercise, const std::array<std::int32_t, kMaxArms>& in_hand);
   // Rows of nothing removed are left out.
   void showRemoved(const std::vector<RemovedOf>& tissues, const std::vector<RemovedOf>& structures);
   void showIdle();
@@ -49,7 +49,7 @@ class ExercisePanel : public QWidget {
 
 // The card's steps, numbered, as rich text.
 QString stepsWords(const CardText& card);
-// Which tool is in which hand, as the scene has it: "Right arm: burr, 6 mm".
-QString toolWords(const Scene& scene, const std::array<std::int32_t, kMaxArms>& in_hand = {});
+// Which tool is in which hand, as the exercise has it: "Right arm: burr, 6 mm".
+QString toolWords(const Exercise& exercise, const std::array<std::int32_t, kMaxArms>& in_hand = {});
 
 }  // namespace trephine

@@ -48,14 +48,14 @@ void PointerHands::letGo() {
 
 void PointerHands::begin(Session* session) {
   session_ = session;
-  places_.assign(session_ ? session_->scene().arms.size() : 1, std::nullopt);
+  places_.assign(session_ ? session_->exercise().arms.size() : 1, std::nullopt);
   last_.reset();
   stays_ = false;
   active_ = 0;
   if (session_) {
     const std::string main = read(settings::kMainHand).toStdString();
-    const std::vector<SceneArm>& arms = session_->scene().arms;
-    const auto found = std::ranges::find(arms, main, &SceneArm::name);
+    const std::vector<ExerciseArm>& arms = session_->exercise().arms;
+    const auto found = std::ranges::find(arms, main, &ExerciseArm::name);
     active_ = found == arms.end() ? arms.size() - 1 : std::size_t(found - arms.begin());
     if (!hasHand()) active_ = nextSimulated();
   }
@@ -64,7 +64,7 @@ void PointerHands::begin(Session* session) {
 
 // After the active one, which it is itself where there is no other.
 std::size_t PointerHands::nextSimulated() const {
-  const std::size_t count = session_->scene().arms.size();
+  const std::size_t count = session_->exercise().arms.size();
   for (std::size_t i = 1; i < count; ++i) {
     if (session_->isSimulated((active_ + i) % count)) return (active_ + i) % count;
   }

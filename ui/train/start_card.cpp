@@ -76,12 +76,12 @@ void StartCard::showNoCase() {
   place();
 }
 
-void StartCard::showExercise(const Scene& scene, const QString& language, bool may_start) {
-  const CardText* card = cardFor(scene, language.toStdString());
-  title_->setText(toQt(scene.name));
+void StartCard::showExercise(const Exercise& exercise, const QString& language, bool may_start) {
+  const CardText* card = cardFor(exercise, language.toStdString());
+  title_->setText(toQt(exercise.name));
   goal_->setText(card ? toQt(card->goal) : tr("Cut as the exercise's name says."));
   steps_->setText(card ? stepsWords(*card) : QString());
-  hands_->setText(card && !card->hands.empty() ? toQt(card->hands) : toolWords(scene));
+  hands_->setText(card && !card->hands.empty() ? toQt(card->hands) : toolWords(exercise));
   start_->show();
   start_->setEnabled(may_start);
   aside_->show();

@@ -5,7 +5,7 @@
 #include <QLabel>
 #include <QPushButton>
 
-#include "scene/scene.h"
+#include "exercise/exercise.h"
 #include "ui/common/floating_card.h"
 
 namespace trephine {
@@ -16,7 +16,7 @@ class StartCard : public FloatingCard {
   explicit StartCard(QWidget& over);
 
   void showNoCase();
-  void showExercise(const Scene& scene, const QString& language, bool may_start);
+  void showExercise(const Exercise& exercise, const QString& language, bool may_start);
   QPushButton& asideButton() { return *aside_; }
 
  signals:

@@ -18,18 +18,18 @@ constexpr int kNoticeWidest = 460;
 constexpr int kMargin = 16;
 
 // "Left arm", "Both arms": what a line is about.
-QString whoWords(const std::vector<std::size_t>& arms, const Scene& scene) {
-  if (arms.size() > 1 && arms.size() == scene.arms.size()) {
+QString whoWords(const std::vector<std::size_t>& arms, const Exercise& exercise) {
+  if (arms.size() > 1 && arms.size() == exercise.arms.size()) {
     return arms.size() == 2 ? StateNotice::tr("Both arms") : StateNotice::tr("All arms");
   }
   QStringList names;
-  for (std::size_t arm : arms) names << armName(scene.arms[arm]);
+  for (std::size_t arm : arms) names << armName(exercise.arms[arm]);
   return names.join(", ");
 }
 
 }  // namespace
 
-ForceNotice forceNotice(const LoopState& state, const Scene& scene, double still_s) {
+ForceNotice forceNotice(const LoopState& state, const Exercise& exercise, double still_s) {
   if (still_s > 0.0) {
     return {
         StateNotice::tr("NO FORCE"),
@@ -43,7 +43,7 @@ ForceNotice forceNotice(const LoopState& state, const Scene& scene, double still
   std::vector<std::vector<std::size_t>> with_it;  // the arms that have it
   std::vector<std::size_t> all;
   std::uint32_t faults = 0;
-  for (std::size_t i = 0; i < scene.arms.size(); ++i) {
+  for (std::size_t i = 0; i < exercise.arms.size(); ++i) {
     const ArmRecord& arm = state.record.arms[i];
     QStringList of_arm;
     if (arm.faults != 0) of_arm << faultWords(arm.faults);
@@ -77,13 +77,13 @@ ForceNotice forceNotice(const LoopState& state, const Scene& scene, double still
   }
   const bool pedal_lost = state.record.arms[0].buttons & kPedalLost;
   if (all.empty() && pedal_lost) out.title = StateNotice::tr("THE PEDAL DOES NOT ANSWER");
-  if (!all.empty()) out.title = StateNotice::tr("NO FORCE: %1").arg(whoWords(all, scene));
+  if (!all.empty()) out.title = StateNotice::tr("NO FORCE: %1").arg(whoWords(all, exercise));
   for (qsizetype r = 0; r < reasons.size(); ++r) {
     if (r > 0) out.why += '\n';
-    if (reasons.size() > 1) out.why += whoWords(with_it[std::size_t(r)], scene) + ": ";
+    if (reasons.size() > 1) out.why += whoWords(with_it[std::size_t(r)], exercise) + ": ";
     out.why += reasons[r];
   }
-  if ((faults & kFaultDeviceLost) && all.size() < scene.arms.size()) {
+  if ((faults & kFaultDeviceLost) && all.size() < exercise.arms.size()) {
     out.why += '\n' + StateNotice::tr("The other hand goes on, and so does the recording.");
   }
   if (pedal_lost) {
@@ -102,24 +102,24 @@ ForceNotice forceNotice(const LoopState& state, const Scene& scene, double still
   return out;
 }
 
-QString backWords(std::uint32_t second, const LoopState& state, const Scene& scene) {
+QString backWords(std::uint32_t second, const LoopState& state, const Exercise& exercise) {
   const QString back =
       StateNotice::tr("Back at %1: tissue, counts and forces as they were. The clock runs on.")
           .arg(timeWords(second));
   std::vector<std::size_t> waiting;
-  for (std::size_t i = 0; i < scene.arms.size(); ++i) {
+  for (std::size_t i = 0; i < exercise.arms.size(); ++i) {
     if (state.record.arms[i].tool_state & kToolWaits) waiting.push_back(i);
   }
   if (waiting.empty()) return back;
   return StateNotice::tr("%1 %2: draw the tool out of the tissue to feel again.")
-      .arg(back, whoWords(waiting, scene));
+      .arg(back, whoWords(waiting, exercise));
 }
 
-QString undoneWords(const LoopState& before, const LoopState& after, const Scene& scene,
+QString undoneWords(const LoopState& before, const LoopState& after, const Exercise& exercise,
                     double voxel_mm3) {
   QStringList undone, redone;
-  for (std::size_t arm = 0; arm < scene.arms.size(); ++arm) {
-    const std::vector<Tissue>& tissues = scene.tissues.tissues;
+  for (std::size_t arm = 0; arm < exercise.arms.size(); ++arm) {
+    const std::vector<Tissue>& tissues = exercise.tissues.tissues;
     QStringList back, again;
     for (std::size_t t = 0; t < tissues.size(); ++t) {
       const double voxels = double(before.removed[arm][t]) - double(after.removed[arm][t]);
@@ -129,7 +129,7 @@ QString undoneWords(const LoopState& before, const LoopState& after, const Scene
               .arg(volumeWords(std::abs(voxels) * voxel_mm3), toQt(tissues[t].name));
       (voxels > 0.0 ? back : again) << words;
     }
-    const QString who = armName(scene.arms[arm]);
+    const QString who = armName(exercise.arms[arm]);
     if (!back.isEmpty()) undone << StateNotice::tr("%1, %2").arg(who, back.join(", "));
     if (!again.isEmpty()) redone << StateNotice::tr("%1, %2").arg(who, again.join(", "));
   }
@@ -190,9 +190,9 @@ StateNotice::Card StateNotice::makeCard(const char* name, const char* button_nam
   return {frame, title, why, button};
 }
 
-void StateNotice::showState(const LoopState& state, const Scene& scene, double still_s,
+void StateNotice::showState(const LoopState& state, const Exercise& exercise, double still_s,
                             bool ready) {
-  show(state.paused, forceNotice(state, scene, still_s), ready);
+  show(state.paused, forceNotice(state, exercise, still_s), ready);
 }
 
 void StateNotice::showIdle() {

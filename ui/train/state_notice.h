@@ -9,8 +9,8 @@
 #include <QPushButton>
 #include <QWidget>
 
+#include "exercise/exercise.h"
 #include "haptics/haptic_loop.h"
-#include "scene/scene.h"
 
 namespace trephine {
 
@@ -21,12 +21,12 @@ struct ForceNotice {
 };
 
 // `still_s`: how long the ticks have stood still, and the state with them.
-ForceNotice forceNotice(const LoopState& state, const Scene& scene, double still_s);
+ForceNotice forceNotice(const LoopState& state, const Exercise& exercise, double still_s);
 
 // What is said once a rewind has come to its second: the state is the one after it.
-QString backWords(std::uint32_t second, const LoopState& state, const Scene& scene);
+QString backWords(std::uint32_t second, const LoopState& state, const Exercise& exercise);
 // What an undo brought back, or a redo took again, of which arm; empty: nothing.
-QString undoneWords(const LoopState& before, const LoopState& after, const Scene& scene,
+QString undoneWords(const LoopState& before, const LoopState& after, const Exercise& exercise,
                     double voxel_mm3);
 
 class StateNotice : public QWidget {
@@ -36,7 +36,8 @@ class StateNotice : public QWidget {
   explicit StateNotice(QWidget* view, const QWidget* bar = nullptr);
 
   // `ready`: nothing has been touched yet.
-  void showState(const LoopState& state, const Scene& scene, double still_s, bool ready = false);
+  void showState(const LoopState& state, const Exercise& exercise, double still_s,
+                 bool ready = false);
   void showIdle();
   // "Force on" with its key, for a menu; enabled while it can be used.
   QAction* forceOnAction() { return force_on_; }

@@ -24,67 +24,68 @@ QString listedName(const std::string& name) {
 
 }  // namespace
 
-void TrainWorkspace::fillScenes() {
-  const QSignalBlocker quiet(scenes_);
-  scenes_->clear();
+void TrainWorkspace::fillExercises() {
+  const QSignalBlocker quiet(exercises_);
+  exercises_->clear();
   listed_.clear();
-  for (const std::filesystem::path& file : bench_.exercises()) {
-    Result<Scene> scene = readScene(file);
+  for (const std::filesystem::path& file : app_.exercises()) {
+    Result<Exercise> exercise = readExercise(file);
     const QString folder = toQt(file.parent_path().filename());
-    if (!scene) {  // said where one looks for it
-      scenes_->addItem(tr("%1 (cannot be read)").arg(folder), toQt(file));
-      refuse(scenes_->count() - 1, toQt(scene.error().sentence()));
+    if (!exercise) {  // said where one looks for it
+      exercises_->addItem(tr("%1 (cannot be read)").arg(folder), toQt(file));
+      refuse(exercises_->count() - 1, toQt(exercise.error().sentence()));
       continue;
     }
-    const QString name = listedName(scene->name);  // of two from elsewhere perhaps the same
-    scenes_->addItem(scenes_->findText(name) < 0 ? name : tr("%1 (%2)").arg(name, folder),
-                     toQt(file));
-    listed_.emplace_back(file, *std::move(scene));
+    const QString name = listedName(exercise->name);  // of two from elsewhere perhaps the same
+    exercises_->addItem(exercises_->findText(name) < 0 ? name : tr("%1 (%2)").arg(name, folder),
+                        toQt(file));
+    listed_.emplace_back(file, *std::move(exercise));
   }
   showAllowed();
   showInUse();
 }
 
-void TrainWorkspace::chooseScene(int index) {
-  const auto file = toPath(scenes_->itemData(index).toString());
+void TrainWorkspace::chooseExercise(int index) {
+  const auto file = toPath(exercises_->itemData(index).toString());
   showInUse();  // until the other is on its way: it may be asked about, or not be had
   // A built-in case changes with the exercise, and its structures with it.
   const Case* of = workstation_.currentCase();
-  std::vector<Bench::Loss> losses{Bench::Loss::cuts, Bench::Loss::tissues};
-  if (of && of->built_in) losses.insert(losses.begin(), Bench::Loss::structures);
-  bench_.unlessLost(losses, [this, file] { useScene(file); });
+  std::vector<AppContext::UnsavedWork> losses{AppContext::UnsavedWork::cuts,
+                                              AppContext::UnsavedWork::tissues};
+  if (of && of->built_in) losses.insert(losses.begin(), AppContext::UnsavedWork::structures);
+  app_.unlessLost(losses, [this, file] { useExercise(file); });
   view_->setFocus();
 }
 
 // One stays where one is: the list is over Prepare too.
-void TrainWorkspace::useScene(const std::filesystem::path& file) {
-  bench_.openExercise(file, here_ ? Place::train : Place::prepare);
+void TrainWorkspace::useExercise(const std::filesystem::path& file) {
+  app_.openExercise(file, here_ ? Place::train : Place::prepare);
 }
 
-// In the list of exercises; without a scene, the one that an imported case would get.
+// In the list of exercises; without an exercise, the one that an imported case would get.
 void TrainWorkspace::showInUse() {
-  const std::optional<Scene>& scene = workstation_.scene();
-  if (!scene) {
-    scenes_->setCurrentIndex(scenes_->findData(toQt(defaultScene("cranium"))));
+  const std::optional<Exercise>& exercise = workstation_.exercise();
+  if (!exercise) {
+    exercises_->setCurrentIndex(exercises_->findData(toQt(defaultExercise("cranium"))));
     return arms_->showController({});
   }
-  const QString file = toQt(workstation_.sceneFile());
-  int index = scenes_->findData(file);
-  if (index < 0) index = scenes_->findText(listedName(scene->name));
+  const QString file = toQt(workstation_.exerciseFile());
+  int index = exercises_->findData(file);
+  if (index < 0) index = exercises_->findText(listedName(exercise->name));
   if (index < 0) {
-    scenes_->addItem(listedName(scene->name), file);
-    index = scenes_->count() - 1;
+    exercises_->addItem(listedName(exercise->name), file);
+    index = exercises_->count() - 1;
   }
-  scenes_->setCurrentIndex(index);
-  arms_->showController(scene->controller);
+  exercises_->setCurrentIndex(index);
+  arms_->showController(exercise->controller);
 }
 
-void TrainWorkspace::showScene() {
-  const std::optional<Scene>& scene = workstation_.scene();
-  if (!scene) return;
+void TrainWorkspace::showChosen() {
+  const std::optional<Exercise>& exercise = workstation_.exercise();
+  if (!exercise) return;
   showInUse();
-  arms_->setScene(*scene);
-  exercise_->setScene(*scene, read(settings::kLanguage));
+  arms_->setExercise(*exercise);
+  exercise_->setExercise(*exercise, read(settings::kLanguage));
   showOutline();
   showCard();
 }
@@ -95,7 +96,7 @@ void TrainWorkspace::showCard() {
   const Phase phase = workstation_.phase();
   const bool idle = phase == Phase::ready || phase == Phase::empty;
   const bool result = result_shown_ && phase == Phase::ready;
-  const bool card = !result_shown_ && phase == Phase::ready && !bench_.carved();
+  const bool card = !result_shown_ && phase == Phase::ready && !app_.carved();
   exercise_->offerCard(!here_ || !aside_ ? QString()
                        : result          ? tr("Show the &result")
                        : card            ? tr("Show &what to do")
@@ -108,7 +109,7 @@ void TrainWorkspace::showCard() {
   if (phase == Phase::empty) return workstation_.isOpening() ? card_->hide() : card_->showNoCase();
   result_->setVisible(result && !aside_);
   if (!card || aside_) return card_->hide();
-  card_->showExercise(*workstation_.scene(), read(settings::kLanguage), start_->isEnabled());
+  card_->showExercise(*workstation_.exercise(), read(settings::kLanguage), start_->isEnabled());
 }
 
 void TrainWorkspace::putAside(bool aside) {
@@ -119,11 +120,11 @@ void TrainWorkspace::putAside(bool aside) {
 
 void TrainWorkspace::showOutline() {
   const std::optional<Placement>& placed = workstation_.placed();
-  if (!placed || !placed->scene.outline) return view_->setOutline({}, false, 1.0);
-  const Scene& scene = placed->scene;
+  if (!placed || !placed->exercise.outline) return view_->setOutline({}, false, 1.0);
+  const Exercise& exercise = placed->exercise;
   view_->setOutline(
-      outlineOn(scene, placed->landmarks, *placed->patient.volume, placed->labels.get()),
-      scene.outline->closed, scene.outline->width_mm);
+      outlineOn(exercise, placed->landmarks, *placed->patient.volume, placed->labels.get()),
+      exercise.outline->closed, exercise.outline->width_mm);
 }
 
 void TrainWorkspace::showLocks() {
@@ -135,15 +136,15 @@ void TrainWorkspace::showLocks() {
 
 // What would be refused cannot be chosen.
 void TrainWorkspace::showAllowed() {
-  for (const auto& [file, scene] : listed_) {
-    const Status may = workstation_.mayPractise(scene, file);
-    refuse(scenes_->findData(toQt(file)), may ? QString() : toQt(may.error().sentence()));
+  for (const auto& [file, exercise] : listed_) {
+    const Status may = workstation_.mayPractise(exercise, file);
+    refuse(exercises_->findData(toQt(file)), may ? QString() : toQt(may.error().sentence()));
   }
 }
 
 // Why the row cannot be chosen; empty: it can.
 void TrainWorkspace::refuse(int index, const QString& why) {
-  auto* rows = qobject_cast<QStandardItemModel*>(scenes_->model());
+  auto* rows = qobject_cast<QStandardItemModel*>(exercises_->model());
   QStandardItem* row = rows ? rows->item(index) : nullptr;
   if (!row) return;
   row->setEnabled(why.isEmpty());
@@ -151,31 +152,31 @@ void TrainWorkspace::refuse(int index, const QString& why) {
 }
 
 // Until it is open, or cannot be had.
-void TrainWorkspace::showOpening(const Scene& scene, const std::filesystem::path& file) {
+void TrainWorkspace::showOpening(const Exercise& exercise, const std::filesystem::path& file) {
   if (!result_shown_) aside_ = false;
-  scenes_->setPlaceholderText(listedName(scene.name));  // where the list has it not yet
-  const int index = scenes_->findData(toQt(file));
-  scenes_->setCurrentIndex(index >= 0 ? index : scenes_->findText(listedName(scene.name)));
-  arms_->showController(scene.controller);
+  exercises_->setPlaceholderText(listedName(exercise.name));  // where the list has it not yet
+  const int index = exercises_->findData(toQt(file));
+  exercises_->setCurrentIndex(index >= 0 ? index : exercises_->findText(listedName(exercise.name)));
+  arms_->showController(exercise.controller);
 }
 
 // Which exercise the case has, where that is news, and that it is for something else.
 void TrainWorkspace::sayWhatIsOpen() {
-  const QString exercise = toQt(workstation_.scene()->name);
+  const QString name = toQt(workstation_.exercise()->name);
   QString words;
-  if (!exercise_said_.isEmpty() && exercise != exercise_said_) {
-    words = tr("The exercise is now \"%1\".").arg(exercise);
+  if (!exercise_said_.isEmpty() && name != exercise_said_) {
+    words = tr("The exercise is now \"%1\".").arg(name);
   }
-  exercise_said_ = exercise;
+  exercise_said_ = name;
   for (const Warning& warning : workstation_.placed()->warnings) {
     if (warning.code != "OTHER_ANATOMY" && warning.code != "NO_VAULT") continue;
     words += (words.isEmpty() ? "" : " ") + toQt(warning.text) + '.';
   }
-  if (!words.isEmpty()) bench_.say(words);
+  if (!words.isEmpty()) app_.say(words);
 }
 
 // Before an exercise starts on a case that is not what it is for, once a case and exercise.
-void TrainWorkspace::unlessItDoesNotFit(Bench::Next go_on) {
+void TrainWorkspace::unlessItDoesNotFit(AppContext::Next go_on) {
   const std::optional<Placement>& of = workstation_.placed();
   if (!of || of->warnings.empty() || warned_) return go_on();
   QStringList words;
@@ -191,18 +192,18 @@ void TrainWorkspace::unlessItDoesNotFit(Bench::Next go_on) {
                        : lacks    ? tr("Make the structure in the slices first, or go on as it is.")
                        : no_place ? tr("Click where it is to enter (I) first, or go on as it is.")
                                   : tr("Choose an exercise that fits, or go on as it is.");
-  QMessageBox* question = ask(bench_.window(), "misfitQuestion", words.join('\n'), next,
+  QMessageBox* question = ask(app_.window(), "misfitQuestion", words.join('\n'), next,
                               tr("&Go on as it is"), [this, go_on] {
                                 warned_ = true;
                                 go_on();
                               });
   if (!fits.empty()) {
-    const std::filesystem::path file = defaultScene(fits);
-    const int index = scenes_->findData(toQt(file));
-    orElse(*question, "changeExercise", tr("&Change to \"%1\"").arg(scenes_->itemText(index)),
+    const std::filesystem::path file = defaultExercise(fits);
+    const int index = exercises_->findData(toQt(file));
+    orElse(*question, "changeExercise", tr("&Change to \"%1\"").arg(exercises_->itemText(index)),
            [this, file] {
-             bench_.unlessLost({Bench::Loss::cuts, Bench::Loss::tissues},
-                               [this, file] { useScene(file); });
+             app_.unlessLost({AppContext::UnsavedWork::cuts, AppContext::UnsavedWork::tissues},
+                             [this, file] { useExercise(file); });
            });
   } else if (lacks) {
     orElse(*question, "makeStructure", tr("&Make it"), [this] { emit structureWanted(); });

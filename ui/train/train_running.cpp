@@ -21,19 +21,19 @@ constexpr int kRemovedEvery_ms = 500;
 constexpr std::uint32_t kPedalBack_s = 5;
 constexpr double kBehind_s = 1.0;  // a kill loses less than this of a recording that keeps up
 
-QString handName(const SceneArm& arm) {
+QString handName(const ExerciseArm& arm) {
   if (arm.name == "left") return TrainWorkspace::tr("Left hand");
   if (arm.name == "right") return TrainWorkspace::tr("Right hand");
   return toQt(arm.name);
 }
 
-std::vector<ToolView> toolViews(const Scene& scene, const LoopState& state) {
+std::vector<ToolView> toolViews(const Exercise& exercise, const LoopState& state) {
   std::vector<ToolView> tools;
-  for (std::size_t i = 0; i < scene.arms.size(); ++i) {
-    const SceneTool* tool = scene.toolOf(i, std::size_t(state.tools[i]));
+  for (std::size_t i = 0; i < exercise.arms.size(); ++i) {
+    const ExerciseTool* tool = exercise.toolOf(i, std::size_t(state.tools[i]));
     const ArmRecord& arm = state.record.arms[i];
     if (!tool || !isFinite(arm.proxy_position_mm)) continue;
-    const QColor colour = colours::ofArm(scene.arms[i], i);
+    const QColor colour = colours::ofArm(exercise.arms[i], i);
     tools.push_back(toolView(*tool, {arm.proxy_position_mm, arm.proxy_orientation},
                              arm.tissue_class >= 0, colours::rgbOf(colour)));
   }
@@ -57,7 +57,7 @@ void TrainWorkspace::tick() {
   if (!session) return;
   const LoopState& state = session->state();
   views_->pullChanges(session->grid());
-  showTools(toolViews(session->scene(), state));
+  showTools(toolViews(session->exercise(), state));
   followPedal(state);
   hands_->follow();
   arms_->follow(state);
@@ -97,24 +97,24 @@ void TrainWorkspace::showState(Session& session, const LoopState& state) {
       arm.sent_N = arm.demanded_N = Vec3(0.0);
     }
   }
-  arms_->showState(shown, session.scene().tissues, limits_N_);
+  arms_->showState(shown, session.exercise().tissues, limits_N_);
   if (!session.recordingStatus()) arms_->showUnrecorded();
   if (state.ticks > 0 && workstation_.session()) workstation_.noteController(state.controller);
   if (workstation_.session()) {
     pause_->setChecked(state.paused);
-    for (std::size_t i = 0; i < session.scene().arms.size(); ++i) {
+    for (std::size_t i = 0; i < session.exercise().arms.size(); ++i) {
       touched_ = touched_ || state.record.arms[i].tissue_class >= 0;
     }
     touched_ = touched_ || hands_->taken();
-    notice_->showState(state, session.scene(), session.standsStillFor_s(), !touched_);
+    notice_->showState(state, session.exercise(), session.standsStillFor_s(), !touched_);
     if (cards_wanted_ && isDue(cards_clock_, kCardsEvery_ms)) tellCards(session, shown);
     if (!session.isPoke()) exercise_->showTime(double(state.seconds));
-    exercise_->showTools(session.scene(), state.tools);
+    exercise_->showTools(session.exercise(), state.tools);
     if (isDue(removed_clock_, kRemovedEvery_ms)) showRemoved(session, state);
     showHand();
     if (!session.isPoke()) {
-      bench_.undoAction()->setEnabled(state.can_undo);
-      bench_.redoAction()->setEnabled(state.can_redo);
+      app_.undoAction()->setEnabled(state.can_undo);
+      app_.redoAction()->setEnabled(state.can_redo);
       showRewind(state);
     }
   }
@@ -122,13 +122,13 @@ void TrainWorkspace::showState(Session& session, const LoopState& state) {
 
 void TrainWorkspace::tellCards(const Session& session, const LoopState& state) {
   cards_clock_.restart();
-  const Scene& scene = session.scene();
+  const Exercise& exercise = session.exercise();
   std::vector<HandForce> hands;
-  for (std::size_t i = 0; i < scene.arms.size() && i < limits_N_.size(); ++i) {
+  for (std::size_t i = 0; i < exercise.arms.size() && i < limits_N_.size(); ++i) {
     const ArmRecord& arm = state.record.arms[i];
     HandForce hand;
-    hand.name = handName(scene.arms[i]);
-    hand.colour = colours::ofArm(scene.arms[i], i);
+    hand.name = handName(exercise.arms[i]);
+    hand.colour = colours::ofArm(exercise.arms[i], i);
     hand.sent_N = glm::length(arm.sent_N);
     hand.demanded_N = glm::length(arm.demanded_N);
     hand.limit_N = limits_N_[i];
@@ -136,23 +136,23 @@ void TrainWorkspace::tellCards(const Session& session, const LoopState& state) {
     hands.push_back(hand);
   }
   QString goal;
-  if (const CardText* card = cardFor(scene, read(settings::kLanguage).toStdString())) {
+  if (const CardText* card = cardFor(exercise, read(settings::kLanguage).toStdString())) {
     goal = toQt(card->goal);
   }
   QString time = timeWords(state.seconds);
   if (state.paused) time = tr("%1, paused").arg(time);
-  emit cardsChanged({forceCard(hands), exerciseCard(toQt(scene.name), time, goal)});
+  emit cardsChanged({forceCard(hands), exerciseCard(toQt(exercise.name), time, goal)});
 }
 
 // Of the tissues as the session counts them, of the structures as the views' copy shows them.
 void TrainWorkspace::showRemoved(Session& session, const LoopState& state) {
   removed_clock_.restart();
-  const std::vector<Tissue>& tissues = session.scene().tissues.tissues;
+  const std::vector<Tissue>& tissues = session.exercise().tissues.tissues;
   const double voxel_mm3 = session.grid().geometry().voxelVolume_mm3();
   std::vector<RemovedOf> removed, of_structures;
   for (std::size_t t = 0; t < tissues.size(); ++t) {
     std::uint64_t voxels = 0;
-    for (std::size_t arm = 0; arm < session.scene().arms.size(); ++arm) {
+    for (std::size_t arm = 0; arm < session.exercise().arms.size(); ++arm) {
       voxels += state.removed[arm][t];
     }
     removed.push_back(
@@ -183,20 +183,20 @@ void TrainWorkspace::showHand() {
   const bool shown = session && (here_ || session->isPoke()) && hands_->taken();
   if (!shown) return hand_bar_->hide();
   const std::size_t active = hands_->active();
-  const SceneArm& arm = session->scene().arms[active];
+  const ExerciseArm& arm = session->exercise().arms[active];
   const LoopState& state = session->state();
-  const SceneTool& tool = *session->scene().toolOf(active, std::size_t(state.tools[active]));
+  const ExerciseTool& tool = *session->exercise().toolOf(active, std::size_t(state.tools[active]));
   hand_bar_->showHand(handName(arm), colours::ofArm(arm, active), toolWord(tool),
                       state.wanted_tools[active] != state.tools[active], hands_->push_N(),
                       hands_->mostPush_N(),
-                      touchedName(state.record.arms[active], session->scene().tissues),
+                      touchedName(state.record.arms[active], session->exercise().tissues),
                       state.record.arms[active].flags & TREPHINE_ARM_AT_LIMIT);
 }
 
 // Of the hand that the mouse and the keys have.
 void TrainWorkspace::showChangeTool() {
   const Session* session = workstation_.session();
-  const bool alone = session && session->scene().arms[hands_->active()].other_tools.empty();
+  const bool alone = session && session->exercise().arms[hands_->active()].other_tools.empty();
   change_tool_->setEnabled(session && !alone);
   const QString key = change_tool_->shortcut().toString(QKeySequence::NativeText);
   const QString tip = alone ? tr("The exercise has one tool for this hand")
@@ -206,7 +206,7 @@ void TrainWorkspace::showChangeTool() {
 
 void TrainWorkspace::giveTool(std::size_t arm, std::size_t tool) {
   Session* session = workstation_.session();
-  if (session && !session->changeTool(arm, tool)) bench_.say(tr("Busy: try again in a moment."));
+  if (session && !session->changeTool(arm, tool)) app_.say(tr("Busy: try again in a moment."));
   view_->setFocus();
 }
 
@@ -214,7 +214,7 @@ void TrainWorkspace::nextTool() {
   Session* session = workstation_.session();
   if (!session) return;
   const std::size_t arm = hands_->active();
-  const std::size_t tools = 1 + session->scene().arms[arm].other_tools.size();
+  const std::size_t tools = 1 + session->exercise().arms[arm].other_tools.size();
   giveTool(arm, (std::size_t(session->state().wanted_tools[arm]) + 1) % tools);
 }
 
@@ -226,37 +226,37 @@ void TrainWorkspace::clutch() {
   // A device's x is to the right, its y up, its z towards the hand. Mouse and keys follow the view
   // as it is: the tool that they hold is not turned.
   const Quat rotation = glm::quat_cast(Mat3(camera.right(), camera.up(), -camera.forward()));
-  for (std::size_t i = 0; i < session->scene().arms.size(); ++i) {
+  for (std::size_t i = 0; i < session->exercise().arms.size(); ++i) {
     const bool on = clutch_->isChecked();
     const bool sent = on || session->isSimulated(i) ? session->clutch(i, on)
                                                     : session->clutch(i, false, rotation);
-    if (!sent) bench_.say(tr("Busy: try again in a moment."));
+    if (!sent) app_.say(tr("Busy: try again in a moment."));
   }
 }
 
 void TrainWorkspace::recentre() {
   Session* session = workstation_.session();
   if (!session) return;
-  for (std::size_t i = 0; i < session->scene().arms.size(); ++i) {
-    if (!session->recentre(i)) bench_.say(tr("Busy: try again in a moment."));
+  for (std::size_t i = 0; i < session->exercise().arms.size(); ++i) {
+    if (!session->recentre(i)) app_.say(tr("Busy: try again in a moment."));
   }
   hands_->goneBack();
 }
 
 void TrainWorkspace::showResult(Session& session, const RunReport& report) {
   ExerciseResult result;
-  result.exercise = toQt(session.scene().name);
-  if (const CardText* card = cardFor(session.scene(), read(settings::kLanguage).toStdString())) {
+  result.exercise = toQt(session.exercise().name);
+  if (const CardText* card = cardFor(session.exercise(), read(settings::kLanguage).toStdString())) {
     result.goal = toQt(card->goal);
   }
   result.seconds = session.state().seconds;
   for (const auto& [id, mm3] : report.removed_mm3) {
-    const Tissue* tissue = session.scene().tissues.find(id);
+    const Tissue* tissue = session.exercise().tissues.find(id);
     if (tissue) result.tissues.push_back({toQt(tissue->name), colours::of(tissue->colour), mm3});
   }
   result.structures = report.structures_cut;
   for (std::size_t i = 0; i < report.arms.size(); ++i) {
-    result.ways.push_back({handName(session.scene().arms[i]), report.arms[i].statistics.path_mm,
+    result.ways.push_back({handName(session.exercise().arms[i]), report.arms[i].statistics.path_mm,
                            report.arms[i].statistics.max_force_N});
   }
   result.recorded = session.recordingStatus() && report.events_dropped == 0;
@@ -291,7 +291,7 @@ void TrainWorkspace::showRates() {
 void TrainWorkspace::command(CommandKind kind) {
   Session* session = workstation_.session();
   if (!session) return;
-  if (!session->send(kind)) return bench_.say(tr("Busy: try again in a moment."));
+  if (!session->send(kind)) return app_.say(tr("Busy: try again in a moment."));
 }
 
 // Or a redo.
@@ -305,14 +305,14 @@ void TrainWorkspace::undo(CommandKind which) {
 void TrainWorkspace::rewind(std::uint32_t second) {
   Session* session = workstation_.session();
   if (!session) return;
-  if (!session->rewind(second)) return bench_.say(tr("Busy: try again in a moment."));
+  if (!session->rewind(second)) return app_.say(tr("Busy: try again in a moment."));
   going_back_ = {second, session->state().ticks};
   showRewind(session->state());
 }
 
 void TrainWorkspace::showRewind(const LoopState& state) {
   if (going_back_ && !state.busy && state.ticks > going_back_->asked_tick + Session::kAnswerTicks) {
-    bench_.say(backWords(going_back_->second, state, *workstation_.scene()));
+    app_.say(backWords(going_back_->second, state, *workstation_.exercise()));
     going_back_.reset();
   }
   const auto answered = [&](std::uint64_t asked_tick) {
@@ -321,14 +321,14 @@ void TrainWorkspace::showRewind(const LoopState& state) {
   if (undoing_ && answered(undoing_->ticks)) {
     Session* session = workstation_.session();
     const double voxel_mm3 = session ? session->grid().geometry().voxelVolume_mm3() : 0.0;
-    bench_.say(undoneWords(*undoing_, state, *workstation_.scene(), voxel_mm3));
+    app_.say(undoneWords(*undoing_, state, *workstation_.exercise(), voxel_mm3));
     undoing_.reset();
   }
   if (const Session* session = workstation_.session()) {
     std::vector<RewindBar::Stroke> strokes;
     for (const Session::Stroke& stroke : session->strokes()) {
       const auto arm = std::size_t(stroke.arm);
-      strokes.push_back({stroke.second, colours::ofArm(session->scene().arms[arm], arm)});
+      strokes.push_back({stroke.second, colours::ofArm(session->exercise().arms[arm], arm)});
     }
     rewind_->showStrokes(strokes);
   }

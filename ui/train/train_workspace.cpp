@@ -20,20 +20,20 @@ constexpr int kLeftWidth = 165;
 
 }  // namespace
 
-TrainWorkspace::TrainWorkspace(Bench& bench)
+TrainWorkspace::TrainWorkspace(AppContext& bench)
     : Workspace(&bench),
-      bench_(bench),
+      app_(bench),
       workstation_(bench.workstation()),
       views_(&bench.views()),
       view_(&bench.view()) {
   buildActions();
-  scenes_ = new QComboBox;
-  scenes_->setObjectName("scenes");
-  scenes_->setToolTip(tr("The exercise"));
-  scenes_->setAccessibleName(tr("Exercise"));
-  scenes_->setSizeAdjustPolicy(QComboBox::AdjustToContents);
+  exercises_ = new QComboBox;
+  exercises_->setObjectName("scenes");
+  exercises_->setToolTip(tr("The exercise"));
+  exercises_->setAccessibleName(tr("Exercise"));
+  exercises_->setSizeAdjustPolicy(QComboBox::AdjustToContents);
   constexpr int kMostWidth = 320;  // of the widest letters
-  scenes_->setMaximumWidth(kMostWidth);
+  exercises_->setMaximumWidth(kMostWidth);
   notice_ = new StateNotice(views_, views_->bar());
   rewind_ = new RewindBar;
   arms_ = new ArmsPanel;
@@ -45,7 +45,7 @@ TrainWorkspace::TrainWorkspace(Bench& bench)
   hand_bar_ = new HandBar(*view_);
   hands_ = new PointerHands(*view_);
   connectParts();
-  fillScenes();
+  fillExercises();
   frame_timer_.setObjectName("frame");
   frame_timer_.setInterval(kFrame_ms);
   rate_clock_.start();
@@ -81,7 +81,7 @@ bool TrainWorkspace::escape() {
 }
 
 void TrainWorkspace::buildActions() {
-  QWidget& window = *bench_.window();
+  QWidget& window = *app_.window();
   start_ = makeAction(window, Symbol::start, "start", tr("Start"), QKeySequence(Qt::Key_F5),
                       tr("Start the exercise"));
   stop_ =
@@ -111,13 +111,13 @@ void TrainWorkspace::buildActions() {
 
 void TrainWorkspace::connectParts() {
   connect(start_, &QAction::triggered, this, &TrainWorkspace::start);
-  connect(stop_, &QAction::triggered, &workstation_, &Workstation::stop);
+  connect(stop_, &QAction::triggered, &workstation_, [this] { workstation_.stop(); });
   connect(pause_, &QAction::triggered, this,
           [this](bool on) { command(on ? CommandKind::pause : CommandKind::resume); });
   connect(notice_, &StateNotice::goOnWanted, this, [this] { command(CommandKind::resume); });
   connect(notice_, &StateNotice::forceWanted, this, [this] { command(CommandKind::clear_faults); });
-  connect(bench_.undoAction(), &QAction::triggered, this, [this] { undo(CommandKind::undo); });
-  connect(bench_.redoAction(), &QAction::triggered, this, [this] { undo(CommandKind::redo); });
+  connect(app_.undoAction(), &QAction::triggered, this, [this] { undo(CommandKind::undo); });
+  connect(app_.redoAction(), &QAction::triggered, this, [this] { undo(CommandKind::redo); });
   connect(reset_, &QAction::triggered, this, &TrainWorkspace::reset);
   connect(rewind_, &RewindBar::rewindAsked, this, &TrainWorkspace::rewind);
   // Space belongs to buttons and lists where they have the focus.
@@ -128,7 +128,7 @@ void TrainWorkspace::connectParts() {
     workstation_.setController(kind);
     view_->setFocus();
   });
-  connect(scenes_, &QComboBox::activated, this, &TrainWorkspace::chooseScene);
+  connect(exercises_, &QComboBox::activated, this, &TrainWorkspace::chooseExercise);
   connect(hands_, &PointerHands::changed, this, &TrainWorkspace::showHand);
   connect(other_hand_, &QAction::triggered, hands_, &PointerHands::takeOther);
   connect(change_tool_, &QAction::triggered, this, &TrainWorkspace::nextTool);
@@ -136,20 +136,20 @@ void TrainWorkspace::connectParts() {
   connect(clutch_, &QAction::triggered, this, &TrainWorkspace::clutch);
   connect(recentre_, &QAction::triggered, this, &TrainWorkspace::recentre);
   connect(card_, &StartCard::startWanted, start_, &QAction::trigger);
-  connect(card_, &StartCard::caseWanted, this, [this] { bench_.go(Place::cases); });
+  connect(card_, &StartCard::caseWanted, this, [this] { app_.go(Place::cases); });
   connect(card_, &StartCard::asideWanted, this, [this] { putAside(true); });
-  connect(&bench_, &Bench::exercisesChanged, this, &TrainWorkspace::fillScenes);
-  connect(&bench_, &Bench::tryingChanged, this, [this] { exercise_->offerBack(bench_.trying()); });
+  connect(&app_, &AppContext::exercisesChanged, this, &TrainWorkspace::fillExercises);
+  connect(&app_, &AppContext::tryingChanged, this, [this] { exercise_->offerBack(app_.trying()); });
   connect(exercise_, &ExercisePanel::backWanted, this, [this] {
     // Of a trial nothing is kept but its recording.
     if (workstation_.session()) {
       back_from_trial_ = true;
       workstation_.stop();
-    } else if (bench_.carved()) {
-      bench_.showWholeCase();
+    } else if (app_.carved()) {
+      app_.showWholeCase();
     }
-    bench_.setTrying(false);
-    bench_.go(Place::prepare);
+    app_.setTrying(false);
+    app_.go(Place::prepare);
   });
   connect(exercise_, &ExercisePanel::cardWanted, this, [this] { putAside(false); });
   card_->takeTabFrom(*view_);
@@ -161,22 +161,22 @@ void TrainWorkspace::connectParts() {
   connect(&workstation_, &Workstation::structuresChanged, this, &TrainWorkspace::showOutline);
   connect(view_, &ViewWidget::framePainted, this, [this] { ++frames_; });
 
-  connect(&bench_, &Bench::caseShown, this, [this] {
+  connect(&app_, &AppContext::caseShown, this, [this] {
     warned_ = result_shown_ = aside_ = false;
     exercise_->showIdle();  // of the exercise before
     sayWhatIsOpen();
     showOutline();
     showCard();
   });
-  connect(&bench_, &Bench::cutsChanged, this, &TrainWorkspace::showReset);
+  connect(&app_, &AppContext::cutsChanged, this, &TrainWorkspace::showReset);
   connect(&workstation_, &Workstation::openingEnded, this, &TrainWorkspace::showInUse);
-  connect(&workstation_, &Workstation::sceneOpening, this, &TrainWorkspace::showOpening);
-  connect(&workstation_, &Workstation::sceneChanged, this, &TrainWorkspace::showScene);
+  connect(&workstation_, &Workstation::exerciseOpening, this, &TrainWorkspace::showOpening);
+  connect(&workstation_, &Workstation::exerciseChanged, this, &TrainWorkspace::showChosen);
   connect(&workstation_, &Workstation::phaseChanged, this, &TrainWorkspace::showPhase);
   connect(&workstation_, &Workstation::sessionStarted, this, &TrainWorkspace::sessionStarted);
   connect(&workstation_, &Workstation::sessionEnded, this, &TrainWorkspace::sessionEnded);
   connect(&workstation_, &Workstation::controllerChanged, this, [this] {
-    if (workstation_.scene()) arms_->showController(workstation_.controllerInForce());
+    if (workstation_.exercise()) arms_->showController(workstation_.controllerInForce());
   });
   connect(&workstation_, &Workstation::recordingFailed, this, &TrainWorkspace::askToGoOn);
   connect(&frame_timer_, &QTimer::timeout, this, &TrainWorkspace::tick);
@@ -186,13 +186,13 @@ void TrainWorkspace::connectParts() {
 
 void TrainWorkspace::startExercise(std::optional<OperatorScript> script, double seconds) {
   // What nobody sees moves no arm.
-  bench_.go(Place::train);
-  if (const Status& drawing = view_->canDraw(); !drawing) return bench_.report(drawing.error());
-  workstation_.start(bench_.recordings(), std::move(script), seconds);
+  app_.go(Place::train);
+  if (const Status& drawing = view_->canDraw(); !drawing) return app_.report(drawing.error());
+  workstation_.start(app_.recordings(), std::move(script), seconds);
 }
 
 void TrainWorkspace::start() {
-  startUnlessLost({Bench::Loss::cuts});
+  startUnlessLost({AppContext::UnsavedWork::cuts});
 }
 
 // What was cut can be seen again by its recording, so nothing is asked.
@@ -200,16 +200,16 @@ void TrainWorkspace::tryAgain() {
   recorded_ ? startUnlessLost({}) : start();
 }
 
-void TrainWorkspace::startUnlessLost(const std::vector<Bench::Loss>& losses) {
-  bench_.beforeStart([this, losses] {
-    unlessItDoesNotFit([this, losses] { bench_.unlessLost(losses, [this] { startExercise(); }); });
+void TrainWorkspace::startUnlessLost(const std::vector<AppContext::UnsavedWork>& losses) {
+  app_.beforeStart([this, losses] {
+    unlessItDoesNotFit([this, losses] { app_.unlessLost(losses, [this] { startExercise(); }); });
   });
 }
 
 void TrainWorkspace::showReset() {
   const Workstation::Phase phase = workstation_.phase();
   const bool ready = phase == Workstation::Phase::ready && !workstation_.isOpening();
-  reset_->setEnabled(phase == Workstation::Phase::running || (ready && bench_.carved()));
+  reset_->setEnabled(phase == Workstation::Phase::running || (ready && app_.carved()));
 }
 
 void TrainWorkspace::showPhase() {
@@ -217,7 +217,7 @@ void TrainWorkspace::showPhase() {
   const Phase phase = workstation_.phase();
   const bool opening = workstation_.isOpening();
   const bool running = phase == Phase::running, ready = phase == Phase::ready && !opening;
-  scenes_->setEnabled(ready || (phase == Phase::empty && !opening));
+  exercises_->setEnabled(ready || (phase == Phase::empty && !opening));
   start_->setEnabled(ready);
   for (QAction* action : {stop_, pause_}) action->setEnabled(running);
   if (!running) {
@@ -234,22 +234,22 @@ void TrainWorkspace::showPhase() {
   views_->setTraining(running);
   switch (phase) {
     case Phase::starting:
-      return bench_.hint(tr("Starting\u2026"));
+      return app_.hint(tr("Starting\u2026"));
     case Phase::ending:
-      return bench_.hint(tr("Ending the recording\u2026"));
+      return app_.hint(tr("Ending the recording\u2026"));
     case Phase::running:
       if (workstation_.isPoke()) {
-        return bench_.hint(tr("Poking: nothing is cut. Mouse: the tool. Wheel up: press. Tab: other "
+        return app_.hint(tr("Poking: nothing is cut. Mouse: the tool. Wheel up: press. Tab: other "
                               "hand. Right drag: turn."));
       }
       if (!pointerHasAHand()) {
-        return bench_.hint(
+        return app_.hint(
             tr("Space: pause. The arms move the tools. Right drag: turn. Ctrl+wheel: zoom."));
       }
-      return bench_.hint(
+      return app_.hint(
           tr("Space: pause. Mouse: the tool. Wheel up: press. Tab: other hand. Right drag: turn."));
     default:
-      bench_.hint(opening ? tr("Opening a case\u2026")
+      app_.hint(opening ? tr("Opening a case\u2026")
                   : ready ? tr("Drag: turn. Middle drag: shift. Wheel: zoom. F5: start.")
                           : QString());
   }
@@ -258,7 +258,7 @@ void TrainWorkspace::showPhase() {
 bool TrainWorkspace::pointerHasAHand() const {
   const Session* session = workstation_.session();
   if (!session) return false;
-  for (std::size_t i = 0; i < session->scene().arms.size(); ++i) {
+  for (std::size_t i = 0; i < session->exercise().arms.size(); ++i) {
     if (session->isSimulated(i)) return true;
   }
   return false;
@@ -268,7 +268,7 @@ void TrainWorkspace::reset() {
   if (Session* session = workstation_.session()) {
     const LoopState& state = session->state();
     if (!state.can_undo && !state.can_redo) return;  // nothing was cut
-    ask(bench_.window(), "resetQuestion", tr("Put all tissue back?"),
+    ask(app_.window(), "resetQuestion", tr("Put all tissue back?"),
         tr("Undo cannot bring the cuts again; the bar of seconds still leads back to them. Hands "
            "that mouse and keys move go back to where they began."),
         tr("&Put back"), [this] {
@@ -276,8 +276,8 @@ void TrainWorkspace::reset() {
           rewind_->noteReset();
         });
   } else if (workstation_.phase() == Workstation::Phase::ready) {
-    bench_.unlessLost({Bench::Loss::cuts}, [this] {
-      bench_.showWholeCase();
+    app_.unlessLost({AppContext::UnsavedWork::cuts}, [this] {
+      app_.showWholeCase();
       result_shown_ = aside_ = false;
       showCard();
     });
@@ -286,19 +286,19 @@ void TrainWorkspace::reset() {
 
 void TrainWorkspace::sessionStarted() {
   pedal_ = {};
-  bench_.say({});  // of the exercise before
+  app_.say({});  // of the exercise before
   Session& session = *workstation_.session();
   limits_N_.clear();
-  for (const SceneArm& arm : session.scene().arms) limits_N_.push_back(arm.max_force_N);
+  for (const ExerciseArm& arm : session.exercise().arms) limits_N_.push_back(arm.max_force_N);
   going_back_.reset();
   undoing_.reset();
   ticks_shown_ = 0;
   rate_clock_.restart();
-  if (!session.isPoke()) bench_.exerciseBegan();
+  if (!session.isPoke()) app_.exerciseBegan();
   touched_ = result_shown_ = aside_ = false;
   removed_clock_.restart();
   exercise_->showIdle();
-  hand_bar_->setTissues(session.scene().tissues);
+  hand_bar_->setTissues(session.exercise().tissues);
   hands_->begin(&session);
   frame_timer_.start();
   view_->setFocus();
@@ -309,16 +309,16 @@ void TrainWorkspace::sessionEnded(Session& session) {
   hands_->begin(nullptr);
   showState(session, session.state());
   arms_->showIdle();
-  arms_->showController(workstation_.scene()->controller);
+  arms_->showController(workstation_.exercise()->controller);
   showTools({});
   emit ratesChanged({});
   if (session.isPoke()) return;
   const RunReport report = session.report();
-  bench_.exerciseEnded(report.removed_voxels > 0);
-  if (std::exchange(back_from_trial_, false)) bench_.showWholeCase();
+  app_.exerciseEnded(report.removed_voxels > 0);
+  if (std::exchange(back_from_trial_, false)) app_.showWholeCase();
   std::error_code ec;
   const bool any = std::filesystem::exists(report.recording, ec);
-  bench_.say(session.recordingStatus() ? QString()
+  app_.say(session.recordingStatus() ? QString()
              : any                     ? tr("The exercise is recorded in part only.")
                                        : tr("The exercise is not recorded."));
   showResult(session, report);
@@ -326,14 +326,14 @@ void TrainWorkspace::sessionEnded(Session& session) {
 
 // The exercise goes on behind the question.
 void TrainWorkspace::askToGoOn(const Error& error) {
-  QMessageBox* dialog = showError(bench_.window(), error);
+  QMessageBox* dialog = showError(app_.window(), error);
   dialog->setObjectName("recordingFailed");
   dialog->setStandardButtons(QMessageBox::NoButton);
   QPushButton* go_on = dialog->addButton(tr("Go on unrecorded"), QMessageBox::AcceptRole);
   QPushButton* stop = dialog->addButton(tr("Stop"), QMessageBox::RejectRole);
   dialog->setDefaultButton(go_on);
   dialog->setEscapeButton(go_on);
-  connect(stop, &QPushButton::clicked, &workstation_, &Workstation::stop);
+  connect(stop, &QPushButton::clicked, &workstation_, [this] { workstation_.stop(); });
   connect(&workstation_, &Workstation::sessionEnded, dialog, &QMessageBox::close);
 }
 

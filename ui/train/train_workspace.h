@@ -18,7 +18,7 @@
 #include "ui/train/rewind_bar.h"
 #include "ui/train/start_card.h"
 #include "ui/train/state_notice.h"
-#include "ui/work/bench.h"
+#include "ui/work/app_context.h"
 
 namespace trephine {
 
@@ -27,7 +27,7 @@ class TrainWorkspace : public Workspace {
  public:
   static constexpr double kNoEnd_s = 1e9;
 
-  explicit TrainWorkspace(Bench& bench);
+  explicit TrainWorkspace(AppContext& bench);
 
   QString title() const override { return tr("Train"); }
   Symbol symbol() const override { return Symbol::train; }
@@ -37,7 +37,7 @@ class TrainWorkspace : public Workspace {
   bool escape() override;
 
   // The exercises to choose from, for the bar; what one does with a running one.
-  QComboBox* exercises() const { return scenes_; }
+  QComboBox* exercises() const { return exercises_; }
   QAction* startAction() const { return start_; }
   QAction* stopAction() const { return stop_; }
   QAction* pauseAction() const { return pause_; }
@@ -53,8 +53,8 @@ class TrainWorkspace : public Workspace {
   // A tick of which also those parts are shown that change more slowly than pictures, but for the
   // rates, which are of the true clock.
   void showAll();
-  // A scene that is about to open may not be in the list.
-  void chooseNothing() { scenes_->setCurrentIndex(-1); }
+  // An exercise that is about to open may not be in the list.
+  void chooseNothing() { exercises_->setCurrentIndex(-1); }
   void showInUse();  // in the list of exercises
   // Somebody reads the state as cards (cardsChanged).
   void setCardsWanted(bool wanted) { cards_wanted_ = wanted; }
@@ -69,20 +69,20 @@ class TrainWorkspace : public Workspace {
  private:
   void buildActions();
   void connectParts();
-  void fillScenes();
-  void chooseScene(int index);
-  void useScene(const std::filesystem::path& file);
-  void showScene();
-  void showOpening(const Scene& scene, const std::filesystem::path& file);
+  void fillExercises();
+  void chooseExercise(int index);
+  void useExercise(const std::filesystem::path& file);
+  void showChosen();
+  void showOpening(const Exercise& exercise, const std::filesystem::path& file);
   void sayWhatIsOpen();
   void showPhase();
   void showReset();
   void start();
   void tryAgain();
-  void startUnlessLost(const std::vector<Bench::Loss>& losses);
+  void startUnlessLost(const std::vector<AppContext::UnsavedWork>& losses);
   void reset();
   // Goes on with the exercise; where the case is not what it is for it asks first.
-  void unlessItDoesNotFit(Bench::Next go_on);
+  void unlessItDoesNotFit(AppContext::Next go_on);
   void sessionStarted();
   void sessionEnded(Session& session);
   void followPedal(const LoopState& state);
@@ -112,12 +112,12 @@ class TrainWorkspace : public Workspace {
   void clutch();
   void recentre();
 
-  Bench& bench_;
+  AppContext& app_;
   Workstation& workstation_;
   FourUp* views_;
   ViewWidget* view_;
   QAction *start_, *stop_, *pause_, *reset_, *clutch_, *recentre_, *other_hand_, *change_tool_;
-  QComboBox* scenes_;
+  QComboBox* exercises_;
   ArmsPanel* arms_;
   StateNotice* notice_;  // over the views
   RewindBar* rewind_;
@@ -132,7 +132,7 @@ class TrainWorkspace : public Workspace {
   bool result_shown_ = false;  // instead of the card
   bool recorded_ = false;      // whole, the exercise of the result
   bool aside_ = false;         // card or result, by the person
-  std::vector<std::pair<std::filesystem::path, Scene>> listed_;  // the workstation's exercises
+  std::vector<std::pair<std::filesystem::path, Exercise>> listed_;  // the workstation's exercises
   QTimer frame_timer_;
   QElapsedTimer panel_clock_, rate_clock_, removed_clock_, cards_clock_;
   bool all_is_due_ = false;

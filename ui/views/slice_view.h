@@ -76,7 +76,7 @@ class SliceView : public SlicePane {
   void boxDrawn(const trephine::Vec3& from_mm, const trephine::Vec3& to_mm, int across);
   // Of the exercise; `from_mm` is where the drag ended, the same place after a click.
   void entryChosen(const trephine::Vec3& at_mm, const trephine::Vec3& from_mm);
-  void entryLeft();  // back to where the scene says
+  void entryLeft();  // back to where the exercise says
   // The chosen workspace's middle, dragged in the slice; `done` when it is let go of.
   void workspaceMoved(const trephine::Vec3& centre_mm, bool done);
   // `across`: the axis of the grid that this view's slices lie across.

@@ -1,4 +1,4 @@
-// The 3-D view: hosts the scene renderer and turns mouse and keys into movements of a hand or of
+// The 3-D view: hosts the exercise renderer and turns mouse and keys into movements of a hand or of
 // the camera. It knows no session: what a hand does with its movement is told by a signal.
 //
 // While an exercise runs the pointer is where the tool goes, and what is over the view is told by
@@ -22,7 +22,7 @@
 #include "render/clip_tools.h"
 #include "render/pick.h"
 #include "render/scene_renderer.h"
-#include "scene/landmark.h"
+#include "exercise/landmark.h"
 #include "ui/views/slice_tool.h"
 #include "ui/views/workspace_box.h"
 

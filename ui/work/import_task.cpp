@@ -25,7 +25,8 @@ bool asks(const ImportReport& report, const std::string& uid, const char* code) 
 
 }  // namespace
 
-ImportTask::ImportTask(QObject* parent) : QObject(parent) {
+ImportTask::ImportTask(std::function<double()> given_back_mb, QObject* parent)
+    : QObject(parent), given_back_mb_(std::move(given_back_mb)) {
   connect(&task_, &BackgroundTask::progressed, this, &ImportTask::progressed);
 }
 

@@ -22,7 +22,9 @@ namespace trephine {
 class ImportTask : public QObject {
   Q_OBJECT
  public:
-  explicit ImportTask(QObject* parent = nullptr);
+  // `given_back_mb`: what the case that is open leaves to the next.
+  explicit ImportTask(std::function<double()> given_back_mb = [] { return 0.0; },
+                      QObject* parent = nullptr);
   ~ImportTask() override;
 
   // Finds the series of a folder or file. The folder scanned before stays until this one is there.
@@ -31,8 +33,7 @@ class ImportTask : public QObject {
   // the open window counts it, is asked for before.
   void read(const std::string& uid, const ImportRequest& request, double needed_mb = 0.0);
   // What may be had for that, with what the case that is open leaves to the next.
-  double roomMb() const { return usableMemoryMb() + given_back_mb_; }
-  void setGivenBack(double mb) { given_back_mb_ = mb; }
+  double roomMb() const { return usableMemoryMb() + given_back_mb_(); }
   // While it scans: one of the series that were found so far is enough. scanned() follows once the
   // files of its folders are looked at; bestSeries() is then this one.
   void takeFound(const std::string& uid);
@@ -90,6 +91,7 @@ class ImportTask : public QObject {
   void readSlice(const Wanted& wanted);
   void makePicture(const Wanted& wanted);
 
+  std::function<double()> given_back_mb_;
   std::shared_ptr<CtFolder> folder_;
   ImportReport report_;
   std::optional<std::string> best_;
@@ -100,7 +102,6 @@ class ImportTask : public QObject {
   int scans_ = 0;
   std::shared_ptr<const Volume> volume_;
   SourceIdentity identity_;
-  double given_back_mb_ = 0.0;
   CouchFinding couch_;
   bool cancelled_ = false;      // even where the work came to its end first
   bool working_ = false;        // a scan or read is under way or waits for a slice to end

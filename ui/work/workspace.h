@@ -1,5 +1,5 @@
 // One of the window's workspaces: what it shows beside and under the views, and what it does. Each
-// knows its own panels and nobody else's; what all share is the bench.
+// knows its own panels and nobody else's; what all share is the shared context.
 #pragma once
 
 #include <QObject>

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "imaging/common/hu_look.h"
+#include "imaging/common/hu_sanity_check.h"
 
 namespace trephine {
 

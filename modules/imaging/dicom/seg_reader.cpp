@@ -378,18 +378,31 @@ bool isSegmentation(const std::string& sop_class) {
   return sop_class == UID_SegmentationStorage || sop_class == kLabelMapStorage;
 }
 
+namespace {
+
+Error named(Error error, const fs::path& file) {
+  if (error.where.empty()) error.where = cleanUtf8(file.filename().string());
+  return error;
+}
+
+}  // namespace
+
+Result<bool> isFractional(const fs::path& file, const Progress& progress) try {
+  const Result<SegHeader> header = readSegHeader(file, progress);
+  if (!header) return named(header.error(), file);
+  return !header->binary && !header->label_map;
+} catch (const std::bad_alloc&) {
+  return named(outOfMemory("for the segmentation", ""), file);
+}
+
 Result<DicomSegmentation> readDicomSegmentation(const fs::path& file, double threshold,
                                                 const Progress& progress) {
-  const auto named = [&](Error error) {
-    if (error.where.empty()) error.where = cleanUtf8(file.filename().string());
-    return error;
-  };
   try {
     Result<DicomSegmentation> result = read(file, threshold, progress);
-    if (!result) return named(result.error());
+    if (!result) return named(result.error(), file);
     return result;
   } catch (const std::bad_alloc&) {
-    return named(outOfMemory("for the segmentation", ""));
+    return named(outOfMemory("for the segmentation", ""), file);
   }
 }
 

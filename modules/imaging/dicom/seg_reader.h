@@ -35,6 +35,10 @@ inline bool isDicomSegmentation(const std::filesystem::path& file) {
   return isSegmentation(dicomKind(file));
 }
 
+// Whether it says how much of a voxel a structure has; reads the header alone. Errors: those of
+// readDicomSegmentation().
+Result<bool> isFractional(const std::filesystem::path& file, const Progress& progress = Progress());
+
 // A voxel of a fractional segmentation is of a segment where its share of the highest value is at
 // least `threshold`, of 0 to 1, and not 0. Errors: UNREADABLE (not there, no DICOM, cut, damaged),
 // NOT_SEGMENTATION, UNSUPPORTED_SEGMENTATION (of another kind), UNSUPPORTED_TRANSFER_SYNTAX,

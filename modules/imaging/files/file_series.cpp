@@ -149,7 +149,7 @@ SeriesReport assessFile(const std::filesystem::path& file, const std::string& na
 }
 
 Result<Volume> readFileSeries(const std::filesystem::path& file, const Answers& answers,
-                              const Progress& progress, SeriesReport& report, HuLook& look) {
+                              const Progress& progress, SeriesReport& report, HuSanityCheck& look) {
   Result<VolumeFileReading> reading =
       readVolumeFile(file, progress, answerTo(answers, "FORMS_DIFFER"));
   if (!reading) return reading.error();

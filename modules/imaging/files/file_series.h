@@ -7,7 +7,7 @@
 
 #include "base/progress.h"
 #include "base/result.h"
-#include "imaging/common/hu_look.h"
+#include "imaging/common/hu_sanity_check.h"
 #include "imaging/common/stored_values.h"
 #include "imaging/report/report.h"
 #include "volume/volume_files.h"
@@ -22,7 +22,7 @@ SeriesReport assessFile(const std::filesystem::path& file, const std::string& na
 
 // Reads the voxels, looks at them and adds what they tell to `report`. Errors: the reader's.
 Result<Volume> readFileSeries(const std::filesystem::path& file, const Answers& answers,
-                              const Progress& progress, SeriesReport& report, HuLook& look);
+                              const Progress& progress, SeriesReport& report, HuSanityCheck& look);
 
 // One slice, for a preview: the whole file is read. Errors: NO_SUCH_SLICE, the reader's.
 Result<SlicePicture> fileSlice(const std::filesystem::path& file, int index,

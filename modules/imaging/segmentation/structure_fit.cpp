@@ -178,13 +178,14 @@ std::string partWords(const VoxelBox& box, const GridGeometry& ct) {
 // What is done about a choice.
 class Asking {
  public:
-  Asking(const Answers& answers, bool ask_all, StructureFit& fit)
-      : answers_(answers), ask_all_(ask_all), fit_(fit) {}
+  Asking(const Answers& answers, bool ask_all, StructureFit& fit, std::optional<Choice>* open)
+      : answers_(answers), ask_all_(ask_all), fit_(fit), open_(open) {}
 
   // Kept only where a person says so.
   Status refuseUnless(Choice choice) {
     const auto given = answers_.find(choice.code);
     if (given == answers_.end() || given->second != "keep") {
+      if (given == answers_.end() && open_) *open_ = choice;
       return Error{choice.code, choice.question, "the segmentation",
                    "Export it again with its orientation, or answer " + choice.code + "=keep"};
     }
@@ -208,6 +209,7 @@ class Asking {
       option = choice.options.back();
     }
     if (option == "refuse") {
+      if (given == answers_.end() && open_) *open_ = choice;
       return Error{choice.code, choice.question, "the segmentation",
                    "Choose another file, or answer " + choice.code + "=" + choice.options.back()};
     }
@@ -219,6 +221,7 @@ class Asking {
   const Answers& answers_;
   bool ask_all_;
   StructureFit& fit_;
+  std::optional<Choice>* open_;  // that nobody has answered; null: nobody wants it
 };
 
 Result<std::vector<std::size_t>> orderOf(const Segmentation& of, const Answers& answers,
@@ -320,14 +323,15 @@ Status placeByItsSize(Segmentation& of, const GridGeometry& ct, Asking& asking, 
 }
 
 Result<StructureFit> fitted(Segmentation& of, const Volume& ct, const Answers& answers,
-                            bool ask_all, const Progress& progress) {
+                            bool ask_all, const Progress& progress,
+                            std::optional<Choice>* open) {
   const GridGeometry& g = ct.geometry;
   const Error cancelled{"CANCELLED", "Reading the segmentation was cancelled", "", ""};
   StructureFit fit;
   fit.format = of.format;
   for (const std::string& note : of.notes)
     fit.findings.push_back({"FILE_NOTE", "notice", note, {}, ""});
-  Asking asking(answers, ask_all, fit);
+  Asking asking(answers, ask_all, fit, open);
   if (Status placed = placeByItsSize(of, g, asking, fit); !placed) return placed.error();
   progress.at(0.0, "Placing the structures");
   const std::vector<SegmentShare> shares = sharesOf(of, g);
@@ -508,9 +512,10 @@ Json toJson(const Choice& choice) {
 }  // namespace
 
 Result<StructureFit> fitStructures(Segmentation segmentation, const Volume& ct,
-                                   const Answers& answers, bool ask_all, const Progress& progress) {
+                                   const Answers& answers, bool ask_all, const Progress& progress,
+                                   std::optional<Choice>* open) {
   try {
-    return fitted(segmentation, ct, answers, ask_all, progress);
+    return fitted(segmentation, ct, answers, ask_all, progress, open);
   } catch (const std::bad_alloc&) {
     return outOfMemory("for the segmentation", "the segmentation");
   }

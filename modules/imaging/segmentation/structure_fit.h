@@ -58,11 +58,13 @@ std::optional<HuOfKind> huOfKind(const std::string& name, const std::string& tis
 // OVERLAP (smaller, first, last, or an order of one's own as "order:vessel,liver",
 // overlap_order.h), HU_NOT_TISSUE (refuse, keep), NO_AFFINE (of a file of the CT's size that says
 // nothing of its place: refuse, ct for voxel by voxel, keep). `ask_all`: an open choice whose first option is
-// to refuse is an Error of its code, else it is taken as "keep" and said. Errors: LABELS_ELSEWHERE,
+// to refuse is an Error of its code, else it is taken as "keep" and said. `open`: the choice that
+// the Error is of, where nobody has answered it; else it is left as it is. Errors: LABELS_ELSEWHERE,
 // HALF_OUTSIDE, MIRRORED, EMPTY_SEGMENTATION, BAD_CHOICE, CANCELLED, OUT_OF_MEMORY.
 Result<StructureFit> fitStructures(Segmentation segmentation, const Volume& ct,
                                    const Answers& answers = {}, bool ask_all = true,
-                                   const Progress& progress = Progress());
+                                   const Progress& progress = Progress(),
+                                   std::optional<Choice>* open = nullptr);
 
 Json toJson(const StructureFit& fit);
 

@@ -6,7 +6,7 @@
 
 #include "base/progress.h"
 #include "base/result.h"
-#include "imaging/common/hu_look.h"
+#include "imaging/common/hu_sanity_check.h"
 #include "imaging/common/stored_values.h"
 #include "imaging/series/series.h"
 #include "volume/volume.h"
@@ -17,7 +17,7 @@ struct Assembly {
   Volume volume;
   HuCounts counts;
   bool high_bits = false;  // compressed slices have bits above the stored ones, and no overlay does
-  HuLook look;             // at the slices before anything was interpolated
+  HuSanityCheck look;      // at the slices before anything was interpolated
   struct Unreadable {
     std::size_t slice;  // in Series::slices
     std::string why;

@@ -18,7 +18,7 @@ bool hasPadding(const SeriesReport& report) {
 
 }  // namespace
 
-void checkHu(const HuLook& look, const Answers& answers, SeriesReport& report) {
+void checkHu(const HuSanityCheck& look, const Answers& answers, SeriesReport& report) {
   const std::vector<std::string> doubts =
       look.doubts(report.hu_min.value_or(0), report.hu_max.value_or(0));
   if (!doubts.empty()) {

@@ -1,7 +1,7 @@
 // What a look at the voxels says of a series, whatever kind of file it comes from.
 #pragma once
 
-#include "imaging/common/hu_look.h"
+#include "imaging/common/hu_sanity_check.h"
 #include "imaging/common/stored_values.h"
 #include "imaging/report/report.h"
 
@@ -9,7 +9,7 @@ namespace trephine {
 
 // Asks IMPLAUSIBLE_HU where the values can hardly be HU, a refusal unless answered; else notes
 // NO_AIR. `report` holds the range of the HU.
-void checkHu(const HuLook& look, const Answers& answers, SeriesReport& report);
+void checkHu(const HuSanityCheck& look, const Answers& answers, SeriesReport& report);
 // Notes PADDING_TO_AIR, where there was any.
 void sayPadding(const UnnamedPadding& padding, SeriesReport& report);
 // Whether it was asked when the series was read, and these answers do not agree.

@@ -259,7 +259,7 @@ Verdict verdictOf(const std::vector<Finding>& findings) {
   return any("refusal") ? Verdict::refused : any("repair") ? Verdict::repaired : Verdict::pass;
 }
 
-void conclude(Series& series) {
+void assignVerdict(Series& series) {
   std::vector<Finding>& findings = series.report.findings;
   series.report.verdict = verdictOf(findings);
   if (series.report.verdict != Verdict::refused) return;

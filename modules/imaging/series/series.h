@@ -46,7 +46,7 @@ const char* otherPatient(const DicomHeader& a, const DicomHeader& b);
 // The worst of the findings' severities.
 Verdict verdictOf(const std::vector<Finding>& findings);
 // Sets the verdict. In what is refused nothing was put right: its repairs say only what was found.
-void conclude(Series& series);
+void assignVerdict(Series& series);
 
 // "slice 12", by instance number, or "a slice without number".
 std::string sliceName(const DicomHeader& header);

@@ -565,7 +565,7 @@ SeriesPlan assessSeries(Series& series, const Answers& answers) {
            std::ranges::find(report.choices, finding.code, &Choice::code) != report.choices.end();
   };
   if (!std::ranges::all_of(report.findings, asked)) report.choices.clear();
-  conclude(series);
+  assignVerdict(series);
   return plan;
 }
 

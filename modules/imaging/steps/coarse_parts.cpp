@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "volume/forest.h"
 #include "volume/two_threads.h"
+#include "volume/union_find.h"
 
 namespace trephine {
 
@@ -43,7 +43,7 @@ CoarseParts coarseParts(const Index3& size, const CoarseCells& kind) {
                 std::size_t(run.first)];
   };
 
-  Forest parts(runs.size()), pieces(runs.size());
+  UnionFind parts(runs.size()), pieces(runs.size());
   const auto joinRows = [&](std::size_t row, std::size_t other, bool same_slice) {
     std::uint32_t p = row_begin[row], q = row_begin[other];
     while (p < row_begin[row + 1] && q < row_begin[other + 1]) {

@@ -56,8 +56,8 @@ std::vector<CommissionCheck> judgedArms(const std::vector<ArmAnswered>& arms) {
   for (std::size_t i = 0; i < arms.size(); ++i) {
     const ArmAnswered& arm = arms[i];
     const std::string name = (i == 0 ? "" : "; ") + std::to_string(i + 1) + ", " + arm.model + ": ";
-    const bool done = arm.phase == ArmAnswer::Phase::done;
-    const char* why = arm.phase == ArmAnswer::Phase::untouched ? "nobody held it"
+    const bool done = arm.phase == MotorEncoderCheck::Phase::done;
+    const char* why = arm.phase == MotorEncoderCheck::Phase::untouched ? "nobody held it"
                       : done ? "not pushed, as its samples scatter, or it states no mass"
                              : "it was let go of, moved too fast, or went away";
     all_heard = all_heard && done;
@@ -65,12 +65,12 @@ std::vector<CommissionCheck> judgedArms(const std::vector<ArmAnswered>& arms) {
     scatter += name + (done ? formatted("%.3f mm", 1e3 * arm.noise_m) : std::string(why));
     if (done)
       most_steps =
-          std::max(most_steps, arm.noise_m / std::max(arm.step_m, ArmAnswer::kLeastStep_m));
+          std::max(most_steps, arm.noise_m / std::max(arm.step_m, MotorEncoderCheck::kLeastStep_m));
     if (!done || !arm.pushed) {
       pushed += name + why;
       continue;
     }
-    const ArmAnswer::Response& r = arm.response;
+    const MotorEncoderCheck::Response& r = arm.response;
     pushed += name + formatted("%.2f along (%.1f, %.1f, %.1f), the weakest %.2f, each \u00b1%.2f",
                                r.least, r.along.x, r.along.y, r.along.z, r.weakest, r.error);
     const bool against = r.least < -kSurely * r.error;
@@ -130,8 +130,8 @@ std::vector<CommissionCheck> tryArms(double patience_s, const Progress& progress
     const TriedArms& tried = trial->state();
     over = true;
     for (std::size_t i = 0; i < trial->size(); ++i) {
-      const ArmAnswer::Phase phase = tried[i].answer;
-      over = over && phase != ArmAnswer::Phase::off && !ArmAnswer::runs(phase);
+      const MotorEncoderCheck::Phase phase = tried[i].answer;
+      over = over && phase != MotorEncoderCheck::Phase::off && !MotorEncoderCheck::runs(phase);
     }
     now_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
   }

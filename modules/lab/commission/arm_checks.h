@@ -6,7 +6,7 @@
 
 #include "base/progress.h"
 #include "lab/commission/commission_limits.h"
-#include "session/arm_answer.h"
+#include "session/motor_encoder_check.h"
 
 namespace trephine {
 
@@ -16,18 +16,18 @@ inline constexpr const char* kArmsAnswer = "arms.json";
 struct ArmAnswered {
   std::string model;
   double step_m = 0.0;
-  ArmAnswer::Phase phase = ArmAnswer::Phase::off;
+  MotorEncoderCheck::Phase phase = MotorEncoderCheck::Phase::off;
   double noise_m = 0.0;
   bool pushed = false;
-  ArmAnswer::Response response;
+  MotorEncoderCheck::Response response;
 };
 // `arm_encoders` and `arm_forces`, of the worst. Pure.
 std::vector<CommissionCheck> judgedArms(const std::vector<ArmAnswered>& arms);
 
 // `arms`, without opening any.
 CommissionCheck countArms();
-// All three. Opens the arms, and pushes those that somebody takes within `patience_s` (ArmAnswer);
-// 0: none is tried. Here: a driver that ends its program ends this one.
+// All three. Opens the arms, and pushes those that somebody takes within `patience_s`
+// (MotorEncoderCheck); 0: none is tried. Here: a driver that ends its program ends this one.
 std::vector<CommissionCheck> tryArms(double patience_s, const Progress& progress);
 // The same by trephine-lab in a process of its own, so that an arm's driver which ends its program,
 // or does not return, is a check that fails.

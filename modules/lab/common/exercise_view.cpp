@@ -1,17 +1,17 @@
 #include "lab/common/exercise_view.h"
 
-#include "scene/scene_outline.h"
+#include "exercise/exercise_outline.h"
 
 namespace trephine {
 
 std::vector<ToolView> toolsOf(Session& session) {
   const Vec3 steel(0.75, 0.78, 0.82);
-  const Scene& scene = session.scene();
+  const Exercise& exercise = session.exercise();
   const LoopState& state = session.state();
   std::vector<ToolView> tools;
-  for (std::size_t i = 0; i < scene.arms.size(); ++i) {
+  for (std::size_t i = 0; i < exercise.arms.size(); ++i) {
     const ArmRecord& arm = state.record.arms[i];
-    const SceneTool* tool = scene.toolOf(i, std::size_t(state.tools[i]));
+    const ExerciseTool* tool = exercise.toolOf(i, std::size_t(state.tools[i]));
     if (!tool || !isFinite(arm.proxy_position_mm)) continue;
     tools.push_back(toolView(*tool, {arm.proxy_position_mm, arm.proxy_orientation},
                              arm.tissue_class >= 0, steel));
@@ -20,7 +20,7 @@ std::vector<ToolView> toolsOf(Session& session) {
 }
 
 void lookAtExercise(SceneRenderer& renderer, const Session& session) {
-  const SceneView& view = session.scene().view;
+  const ExerciseView& view = session.exercise().view;
   for (const PlacedLandmark& landmark : session.landmarks()) {
     if (landmark.id != view.landmark) continue;
     return renderer.lookAt(landmark.frame.position_mm, landmark.frame.viewDirection(),
@@ -30,10 +30,11 @@ void lookAtExercise(SceneRenderer& renderer, const Session& session) {
 }
 
 void showOutline(SceneRenderer& renderer, Session& session, const Volume& whole) {
-  const Scene& scene = session.scene();
-  if (!scene.outline) return renderer.setOutline({}, false, 0.0);
-  renderer.setOutline(outlineOn(scene, session.landmarks(), whole, session.grid().labels().get()),
-                      scene.outline->closed, scene.outline->width_mm);
+  const Exercise& exercise = session.exercise();
+  if (!exercise.outline) return renderer.setOutline({}, false, 0.0);
+  renderer.setOutline(
+      outlineOn(exercise, session.landmarks(), whole, session.grid().labels().get()),
+      exercise.outline->closed, exercise.outline->width_mm);
 }
 
 }  // namespace trephine

@@ -11,9 +11,9 @@ namespace trephine {
 
 // Where the loop has them; what is not finite is left out.
 std::vector<ToolView> toolsOf(Session& session);
-// At the landmark that the scene names; without one, all of it from before.
+// At the landmark that the exercise names; without one, all of it from before.
 void lookAtExercise(SceneRenderer& renderer, const Session& session);
-// The outline that is to be cut, if the scene has one, on the surface of the whole volume.
+// The outline that is to be cut, if the exercise has one, on the surface of the whole volume.
 void showOutline(SceneRenderer& renderer, Session& session, const Volume& whole);
 
 }  // namespace trephine

@@ -12,9 +12,9 @@
 #include "base/child_process.h"
 #include "base/file.h"
 #include "base/system.h"
+#include "exercise/arms_file.h"
 #include "lab/common/quantile.h"
 #include "lab/devices/loop_watch.h"
-#include "scene/arms_file.h"
 #include "session/arm_devices.h"
 #include "session/session.h"
 #include "training/replay.h"
@@ -72,18 +72,18 @@ Status plugIn(Subject& subject) {
 }
 
 // The first moves the right arm.
-Result<Rig> rigOf(const Scene& scene, const std::vector<FoundArm>& arms) {
+Result<Rig> rigOf(const Exercise& exercise, const std::vector<FoundArm>& arms) {
   std::vector<NamedDevice> devices;
-  for (std::size_t i = 0; i < arms.size() && i < scene.arms.size(); ++i) {
-    const std::string side = scene.arms.size() > 1 ? kSides[i] : scene.arms[0].name;
+  for (std::size_t i = 0; i < arms.size() && i < exercise.arms.size(); ++i) {
+    const std::string side = exercise.arms.size() > 1 ? kSides[i] : exercise.arms[0].name;
     devices.push_back({side, {arms[i].plugin, arms[i].place, deviceFile(arms[i].plugin)}});
   }
-  return rigWith(scene, devices, "the arms");
+  return rigWith(exercise, devices, "the arms");
 }
 
-Result<Scene> sceneOn(const std::vector<FoundArm>& arms) {
+Result<Exercise> exerciseOn(const std::vector<FoundArm>& arms) {
   const char* name = arms.size() > 1 ? "cranium.json" : "cranium-one-arm.json";
-  return readScene(resourceFolder() / "scenes" / name);
+  return readExercise(resourceFolder() / "scenes" / name);
 }
 
 std::int64_t hostTime_ns() {
@@ -156,12 +156,12 @@ void addAnswers(const std::vector<LoopWatch::Tick>& ticks, DeviceBench& bench, s
 
 Status runClosedLoop(const Subject& subject, double seconds, DeviceRow& row,
                      const Progress& progress) {
-  Result<Scene> scene = sceneOn(subject.arms);
-  if (!scene) return scene.error();
-  const Result<Placement> of = openCase(*scene);
+  Result<Exercise> exercise = exerciseOn(subject.arms);
+  if (!exercise) return exercise.error();
+  const Result<Placement> of = openCase(*exercise);
   if (!of) return of.error();
   LoopWatch watch(std::size_t((seconds + 10.0) * kRate_hz));
-  Result<Rig> rig = rigOf(*scene, subject.arms);
+  Result<Rig> rig = rigOf(*exercise, subject.arms);
   if (!rig) return rig.error();
   SessionOptions options;
   options.probe = &watch;
@@ -416,15 +416,15 @@ Result<DeviceTrial> tryDevice(const TrialOptions& options, const fs::path& recor
   if (!bench) return bench.error();
   Subject subject{(*bench)->plugin(), *bench, {}};
   if (Status there = plugIn(subject); !there) return there.error();
-  Result<Scene> scene = sceneOn(subject.arms);
-  if (!scene) return scene.error();
-  const Result<Placement> of = openCase(*scene);
+  Result<Exercise> exercise = exerciseOn(subject.arms);
+  if (!exercise) return exercise.error();
+  const Result<Placement> of = openCase(*exercise);
   if (!of) return of.error();
   LoopWatch watch(std::size_t(40.0 * kRate_hz));
   SessionOptions session_options;
   session_options.probe = &watch;
   session_options.recording = recording;
-  Result<Rig> rig = rigOf(*scene, subject.arms);
+  Result<Rig> rig = rigOf(*exercise, subject.arms);
   if (!rig) return rig.error();
   session_options.rig = *std::move(rig);
   Result<std::unique_ptr<Session>> session = Session::create(*of, session_options);
@@ -432,12 +432,12 @@ Result<DeviceTrial> tryDevice(const TrialOptions& options, const fs::path& recor
   if (Status started = (*session)->start(30.0); !started) return started.error();
   std::this_thread::sleep_for(std::chrono::duration<double>(options.wait_s));
   const std::uint32_t arm = subject.arms[0].place;
-  const auto named = std::ranges::find(scene->arms, std::string(kSides[0]), &SceneArm::name);
-  const std::size_t of_scene =
-      named == scene->arms.end() ? 0 : std::size_t(named - scene->arms.begin());
+  const auto named = std::ranges::find(exercise->arms, std::string(kSides[0]), &ExerciseArm::name);
+  const std::size_t of_exercise =
+      named == exercise->arms.end() ? 0 : std::size_t(named - exercise->arms.begin());
   const auto force_N = [&] {
-    const std::size_t ticks = watch.ticks(of_scene);
-    return ticks == 0 ? 0.0 : glm::length(watch.tick(of_scene, ticks - 1).force_N);
+    const std::size_t ticks = watch.ticks(of_exercise);
+    return ticks == 0 ? 0.0 : glm::length(watch.tick(of_exercise, ticks - 1).force_N);
   };
   const std::int64_t deadline_ns = hostTime_ns() + 10'000'000'000;
   while (force_N() < kFelt_N && hostTime_ns() < deadline_ns) std::this_thread::sleep_for(200us);
@@ -466,15 +466,15 @@ Result<DeviceTrial> tryDevice(const TrialOptions& options, const fs::path& recor
   });
   while (hostTime_ns() < at_ns + kLook_ns) std::this_thread::sleep_for(200us);
   // A loop that stands still sends nothing, and takes nothing away.
-  const std::size_t ticks = watch.ticks(of_scene);
-  const LoopWatch::Tick& newest = watch.tick(of_scene, ticks - 1);
+  const std::size_t ticks = watch.ticks(of_exercise);
+  const LoopWatch::Tick& newest = watch.tick(of_exercise, ticks - 1);
   if (newest.sent_ns < at_ns + kLook_ns / 2 || glm::length(newest.force_N) > 0.0) {
     (void)(*session)->stop();
     looks.join();
     return Error{"NOT_MEASURED", "The loop stood still, or the force stayed", "", ""};
   }
   for (std::size_t i = ticks; i-- > 0;) {
-    const LoopWatch::Tick& tick = watch.tick(of_scene, i);
+    const LoopWatch::Tick& tick = watch.tick(of_exercise, i);
     if (tick.sent_ns < at_ns) break;
     if (glm::length(tick.force_N) <= 0.0) continue;
     last_ns = tick.sent_ns;

@@ -17,8 +17,8 @@ Status writeExercisePicture(Session& session, const std::shared_ptr<const Volume
   Result<std::unique_ptr<SceneRenderer>> made = SceneRenderer::offscreen(kWidth, kHeight);
   if (!made) return made.error();
   SceneRenderer& renderer = **made;
-  const Scene& scene = session.scene();
-  renderer.setTissues(scene.tissues, scene.view.looks);
+  const Exercise& exercise = session.exercise();
+  renderer.setTissues(exercise.tissues, exercise.view.looks);
   renderer.setVolume(session.grid(), whole);
   renderer.setTools(toolsOf(session));
   showOutline(renderer, session, *whole);

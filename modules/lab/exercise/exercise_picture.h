@@ -8,8 +8,9 @@
 
 namespace trephine {
 
-// Draws the session's volume as it is now, which began as `whole`, from the scene's point of view,
-// with its tools, and writes a PNG. Errors: NO_DISPLAY, NO_OPENGL, OUT_OF_MEMORY, CANNOT_WRITE.
+// Draws the session's volume as it is now, which began as `whole`, from the exercise's point of
+// view, with its tools, and writes a PNG. Errors: NO_DISPLAY, NO_OPENGL, OUT_OF_MEMORY,
+// CANNOT_WRITE.
 Status writeExercisePicture(Session& session, const std::shared_ptr<const Volume>& whole,
                             const std::filesystem::path& file);
 

@@ -11,11 +11,11 @@
 #include "base/memory.h"
 #include "base/utf8.h"
 #include "case/placement.h"
+#include "exercise/arm_limits.h"
+#include "exercise/names.h"
 #include "haptics/haptic_core.h"
 #include "lab/trades/trade_knobs.h"
 #include "render/scene_renderer.h"
-#include "scene/arm_limits.h"
-#include "scene/names.h"
 #include "session/arm_devices.h"
 #include "session/operator_script.h"
 #include "session/run_statistics.h"
@@ -90,15 +90,15 @@ double removalNs() {
   return medianNs([&] { journal.erase(writer, 0, voxel++, 0); });
 }
 
-// What a run of the scene's own script in its own case would warn of: of its beginning alone.
-Result<Json> warningsAtStart(Scene& scene, const Rig& rig, const Progress& progress) {
-  if (scene.case_source.empty() || scene.operator_file.empty()) return Json(nullptr);
-  Result<OperatorScript> script = readOperatorScript(scene.operator_file, scene);
+// What a run of the exercise's own script in its own case would warn of: of its beginning alone.
+Result<Json> warningsAtStart(Exercise& exercise, const Rig& rig, const Progress& progress) {
+  if (exercise.case_source.empty() || exercise.operator_file.empty()) return Json(nullptr);
+  Result<OperatorScript> script = readOperatorScript(exercise.operator_file, exercise);
   if (!script) return script.error();
-  const Result<Placement> of = openCase(scene, progress);
+  const Result<Placement> of = openCase(exercise, progress);
   if (!of) return of.error();
   if (of->error) return *of->error;
-  const Scene& fixed = of->scene;
+  const Exercise& fixed = of->exercise;
   const double needed_mb = exerciseMb(of->patient.volume->geometry.voxelCount());
   if (Status enough = enoughMemory(needed_mb, "The first tick", "the case"); !enough) {
     return enough.error();
@@ -107,9 +107,9 @@ Result<Json> warningsAtStart(Scene& scene, const Rig& rig, const Progress& progr
   HapticCore core(hapticParameters(fixed, rig), *grid.takeWriter());
   std::array<OperatorSetPoint, kMaxArms> set_points{};
   ScriptOperator(*script, fixed, armFrames(fixed, of->landmarks))
-      .setPoints(0, set_points.data(), scene.arms.size());
+      .setPoints(0, set_points.data(), exercise.arms.size());
   TickInput input;
-  for (std::size_t i = 0; i < scene.arms.size(); ++i) {
+  for (std::size_t i = 0; i < exercise.arms.size(); ++i) {
     input.arms[i].position_m = set_points[i].pose_m.position;
   }
   TickRecord record;
@@ -120,8 +120,8 @@ Result<Json> warningsAtStart(Scene& scene, const Rig& rig, const Progress& progr
   }
   for (const Event& event : core.events()) {
     if (event.kind != EventKind::starts_in_tissue) continue;
-    const Warning warning = startsInTissue(scene.arms[std::size_t(event.arm)].name,
-                                           names(scene.laws, LawKind::elastic));
+    const Warning warning = startsInTissue(exercise.arms[std::size_t(event.arm)].name,
+                                           names(exercise.laws, LawKind::elastic));
     warnings.push_back({{"code", warning.code}, {"text", warning.text}});
   }
   return warnings;
@@ -132,12 +132,12 @@ void keep(const Vec3& value) {
   asm volatile("" : : "g"(&value) : "memory");
 }
 
-// What the scene sets of the knobs that were measured, beside what is recommended. Null without a
-// recommendation.
-Json settingsOf(const Scene& scene, const std::vector<RecommendedSetting>& recommended) {
+// What the exercise sets of the knobs that were measured, beside what is recommended. Null without
+// a recommendation.
+Json settingsOf(const Exercise& exercise, const std::vector<RecommendedSetting>& recommended) {
   if (recommended.empty()) return nullptr;
   Json settings = Json::array();
-  for (const auto& [knob, setting] : sceneSettings(scene)) {
+  for (const auto& [knob, setting] : exerciseSettings(exercise)) {
     for (const RecommendedSetting& r : recommended) {
       if (r.knob != knob) continue;
       settings.push_back({{"knob", knob}, {"setting", setting}, {"recommended", r.setting}});
@@ -148,7 +148,7 @@ Json settingsOf(const Scene& scene, const std::vector<RecommendedSetting>& recom
 
 }  // namespace
 
-std::vector<std::pair<std::string, std::string>> sceneSettings(const Scene& scene) {
+std::vector<std::pair<std::string, std::string>> exerciseSettings(const Exercise& exercise) {
   std::vector<std::pair<std::string, std::string>> settings;
   const auto add = [&](const std::string& knob, const std::string& setting) {
     const std::pair entry(knob, setting);
@@ -156,51 +156,51 @@ std::vector<std::pair<std::string, std::string>> sceneSettings(const Scene& scen
       settings.push_back(entry);
     }
   };
-  for (const SceneArm& arm : scene.arms) {
-    const SceneTool* tool = scene.findTool(arm.tool);
+  for (const ExerciseArm& arm : exercise.arms) {
+    const ExerciseTool* tool = exercise.findTool(arm.tool);
     if (!tool) continue;
     const ToolDescription& made = tool->tool.made_from;
     if (made.kind == ToolKind::blade) add("points_blade", std::to_string(made.points));
     if (made.kind == ToolKind::burr) add("points_burr", std::to_string(made.points));
   }
-  add("force_at", nameOf(kForceAtNames, scene.force_at));
+  add("force_at", nameOf(kForceAtNames, exercise.force_at));
   std::ostringstream rate;
   rate.imbue(std::locale::classic());
-  rate << scene.rate_hz;
+  rate << exercise.rate_hz;
   add("rate_hz", rate.str());
-  add("ray_casting", rayCastingSetting(SceneRenderer::kSampleDistance, !RayTruth().normals));
+  add("ray_casting", rayCastingSetting(SceneRenderer::kSampleDistance, !ShadingOptions().normals));
   return settings;
 }
 
-Result<Json> explainScene(Scene scene, const std::vector<RecommendedSetting>& recommended,
-                          const Progress& progress) {
-  Rig rig = simulatedRig(scene);
-  if (Status asked = readArmDynamics(scene, rig); !asked) return asked.error();
-  for (std::size_t i = 0; i < scene.arms.size(); ++i) {
-    scene.arms[i].max_force_N = mostForce_N(scene.arms[i], rig.arms[i].dynamics);
+Result<Json> explainExercise(Exercise exercise, const std::vector<RecommendedSetting>& recommended,
+                             const Progress& progress) {
+  Rig rig = simulatedRig(exercise);
+  if (Status asked = readArmDynamics(exercise, rig); !asked) return asked.error();
+  for (std::size_t i = 0; i < exercise.arms.size(); ++i) {
+    exercise.arms[i].max_force_N = mostForce_N(exercise.arms[i], rig.arms[i].dynamics);
   }
-  const Result<Json> warnings = warningsAtStart(scene, rig, Progress(progress, 0.0, 0.5));
+  const Result<Json> warnings = warningsAtStart(exercise, rig, Progress(progress, 0.0, 0.5));
   if (!warnings) return warnings.error();
-  HapticParameters parameters = hapticParameters(scene, rig);
+  HapticParameters parameters = hapticParameters(exercise, rig);
   for (int i = 0; i < parameters.tissues.count; ++i) {
     parameters.tissues.classes[std::size_t(i)].cuttable = 0;
   }
   for (ArmParameters& arm : parameters.arms) arm.map.centre_mm = Vec3(0.0);
-  Grid grid = block(scene.tissues);
+  Grid grid = block(exercise.tissues);
 
   Json cost = Json::array(), arms = Json::array();
   // Nothing is timed any more once it was cancelled.
-  const double parts = double(scene.arms.size() * (scene.laws.size() + 5) + 2);
+  const double parts = double(exercise.arms.size() * (exercise.laws.size() + 5) + 2);
   double timed = 0.0;
   const auto time = [&](const std::string& part, const std::function<void()>& call) {
     if (progress.cancelled()) return 0.0;
     progress.at(0.5 + 0.5 * timed++ / parts, "Timing " + part);
     return medianNs(call);
   };
-  for (std::size_t i = 0; i < scene.arms.size(); ++i) {
-    const SceneArm& arm = scene.arms[i];
+  for (std::size_t i = 0; i < exercise.arms.size(); ++i) {
+    const ExerciseArm& arm = exercise.arms[i];
     const Tool& tool = parameters.arms[i].tool;
-    const Renderable most = renderableOn(arm, rig.arms[i].dynamics, scene.rate_hz);
+    const Renderable most = renderableOn(arm, rig.arms[i].dynamics, exercise.rate_hz);
     arms.push_back(
         {{"name", arm.name},
          {"plugin", rig.arms[i].device.plugin},
@@ -216,7 +216,7 @@ Result<Json> explainScene(Scene scene, const std::vector<RecommendedSetting>& re
     lookup.set(parameters.tissues);
     const TissueBricks bricks(grid, lookup);
     add("contact", [&] { contact.update(grid, bricks, lookup, parameters.tissues, Pose{}); });
-    std::vector<TouchPoint> points(scene.force_at == ForceAt::tip ? 1 : tool.points_m.size());
+    std::vector<TouchPoint> points(exercise.force_at == ForceAt::tip ? 1 : tool.points_m.size());
     for (std::size_t p = 0; p < points.size(); ++p) {
       points[p].tissue_class = contact.contact().tissue_class;
       points[p].weight = points.size() == 1 ? 1.0 : tool.weights[p];
@@ -228,7 +228,7 @@ Result<Json> explainScene(Scene scene, const std::vector<RecommendedSetting>& re
     input.touching = contact.contact().touching();
     input.tip_class = contact.classes()[0];
     input.sphere_radius_m = tool.sphere_radius_m;
-    for (LawKind kind : scene.laws) {
+    for (LawKind kind : exercise.laws) {
       Law law = makeLaw(kind, points.size());
       std::optional<ContactSphere> sphere;
       StiffnessByLabel stiffness;
@@ -246,7 +246,7 @@ Result<Json> explainScene(Scene scene, const std::vector<RecommendedSetting>& re
         keep(force.elastic_N);
       });
     }
-    if (names(scene.laws, LawKind::elastic)) {
+    if (names(exercise.laws, LawKind::elastic)) {
       // Sliding over the block's top, pressed by a millimetre. It comes from above: a tool that
       // began in the tissue would be held on all sides.
       const double resting_mm = 10.0 + 1000.0 * (tool.radius_m - tool.solid_from_m.z);
@@ -261,7 +261,7 @@ Result<Json> explainScene(Scene scene, const std::vector<RecommendedSetting>& re
         keep(proxy.pull().shift_mm);
       });
     }
-    Removal removal(tool, grid.geometry(), scene.removal, parameters.period_s);
+    Removal removal(tool, grid.geometry(), exercise.removal, parameters.period_s);
     std::vector<RemovedVoxel> removed;
     removed.reserve(Removal::kMostVoxels);
     Pose moving;
@@ -270,12 +270,12 @@ Result<Json> explainScene(Scene scene, const std::vector<RecommendedSetting>& re
       removal.sweep(grid, bricks, lookup, parameters.tissues, moving, removed);
     });
     Controller controller =
-        makeController(scene.controller, parameters.arms[i].dynamics, parameters.period_s);
+        makeController(exercise.controller, parameters.arms[i].dynamics, parameters.period_s);
     ControllerInput to_controller;
     to_controller.touching = true;
     to_controller.period_s = parameters.period_s;
     to_controller.velocity_m_s = Vec3(-0.01, 0.0, 0.0);
-    add("controller " + std::string(controllerName(scene.controller)), [&] {
+    add("controller " + std::string(controllerName(exercise.controller)), [&] {
       const Impedance limited = limitImpedance(controller, {12.0, 900.0});
       to_controller.rendered =
           springAndDamper(Vec3(1.0, 0.5, 0.2), limited.stiffness, limited.damping);
@@ -306,10 +306,10 @@ Result<Json> explainScene(Scene scene, const std::vector<RecommendedSetting>& re
   if (progress.cancelled()) return Error{"CANCELLED", "The explanation was cancelled", "", ""};
 
   Json tissues = Json::array(), laws = Json::array();
-  for (const Tissue& tissue : scene.tissues.tissues) tissues.push_back(tissue.id);
-  for (LawKind kind : scene.laws) laws.push_back(nameOf(kLawNames, kind));
+  for (const Tissue& tissue : exercise.tissues.tissues) tissues.push_back(tissue.id);
+  for (LawKind kind : exercise.laws) laws.push_back(nameOf(kLawNames, kind));
   Json bounded = Json::array();
-  for (const BoundedTissue& b : boundedTissues(scene, rig)) {
+  for (const BoundedTissue& b : boundedTissues(exercise, rig)) {
     bounded.push_back({{"arm", b.arm},
                        {"tissue", b.tissue},
                        {"damping_Ns_per_m", b.demanded.damping},
@@ -318,26 +318,26 @@ Result<Json> explainScene(Scene scene, const std::vector<RecommendedSetting>& re
                        {"stiffness_felt_N_per_m", b.felt.stiffness}});
   }
   const double journal_mb = double(core.journal().ramBytes()) / (1024.0 * 1024.0);
-  const bool named_case = phantomNamed(scene.case_source).has_value();
-  Json answer{
-      {"scene", scene.name},
-      {"goal", scene.card ? Json(scene.card->en.goal) : Json(nullptr)},
-      {"case", named_case ? Json(scene.case_source) : Json(nullptr)},
-      {"rate_hz", scene.rate_hz},
-      {"controller", controllerName(scene.controller)},
-      {"laws", laws},
-      {"force_at", nameOf(kForceAtNames, scene.force_at)},
-      {"removal", nameOf(kRemovalNames, scene.removal)},
-      {"barrier", names(scene.laws, LawKind::elastic) ? "solid tissue stops a tool until it is cut"
-                                                      : "no barrier: a tool is where its arm is"},
-      {"tissues", tissues},
-      {"arms", arms},
-      {"warnings", *warnings},
-      {"bounded", bounded},
-      {"journal_mb", journal_mb},
-      {"cost", cost},
-      {"tick_ns", tick_ns}};
-  const Json settings = settingsOf(scene, recommended);
+  const bool named_case = phantomNamed(exercise.case_source).has_value();
+  Json answer{{"scene", exercise.name},
+              {"goal", exercise.card ? Json(exercise.card->en.goal) : Json(nullptr)},
+              {"case", named_case ? Json(exercise.case_source) : Json(nullptr)},
+              {"rate_hz", exercise.rate_hz},
+              {"controller", controllerName(exercise.controller)},
+              {"laws", laws},
+              {"force_at", nameOf(kForceAtNames, exercise.force_at)},
+              {"removal", nameOf(kRemovalNames, exercise.removal)},
+              {"barrier", names(exercise.laws, LawKind::elastic)
+                              ? "solid tissue stops a tool until it is cut"
+                              : "no barrier: a tool is where its arm is"},
+              {"tissues", tissues},
+              {"arms", arms},
+              {"warnings", *warnings},
+              {"bounded", bounded},
+              {"journal_mb", journal_mb},
+              {"cost", cost},
+              {"tick_ns", tick_ns}};
+  const Json settings = settingsOf(exercise, recommended);
   if (!settings.is_null()) answer["settings"] = settings;
   return answer;
 }

@@ -337,7 +337,7 @@ Status Measuring::failures() {
   return {};
 }
 
-// What each eye sees of a scene after its first moment, side by side.
+// What each eye sees of an exercise after its first moment, side by side.
 Status savePictures(HeadsetRig& rig, const fs::path& out, const Progress& progress) {
   constexpr int kSize = 512;
   constexpr double kMoment_s = 1.0;
@@ -408,8 +408,8 @@ Result<HeadsetMeasurement> measureHeadset(const HeadsetMeasureOptions& options, 
   progress.at(0.02, "case");
   const fs::path recording = out / "headset.trephine";
   fs::remove(recording, problem);
-  const fs::path scene = resourceFolder() / "scenes" / "cranium.json";
-  if (Status opened = rig.open(scene, recording, Progress(progress, 0.02, 0.1)); !opened) {
+  const fs::path exercise = resourceFolder() / "scenes" / "cranium.json";
+  if (Status opened = rig.open(exercise, recording, Progress(progress, 0.02, 0.1)); !opened) {
     return opened.error();
   }
   std::vector<int> sizes{kSmall};

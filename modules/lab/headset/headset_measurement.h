@@ -22,7 +22,7 @@ struct HeadsetMeasureOptions {
   double seconds = 20.0;  // of the exercise with a headset, and as long without; 2 to 600
   int toggles = 50;       // 0 to 1000
   int losses = 20;        // of each of five kinds, 0 to 1000
-  bool pictures = true;   // of both eyes, for each shipped scene
+  bool pictures = true;   // of both eyes, for each shipped exercise
 };
 
 struct HeadsetRow {

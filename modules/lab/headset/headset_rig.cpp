@@ -92,23 +92,23 @@ QOpenGLExtraFunctions& HeadsetRig::gl() {
 Status HeadsetRig::open(const std::filesystem::path& file, const std::filesystem::path& recording,
                         const Progress& progress) {
   session_.reset();
-  Result<Scene> scene = readScene(file);
-  if (!scene) return scene.error();
-  Result<Placement> of = openCase(*scene, progress);
+  Result<Exercise> exercise = readExercise(file);
+  if (!exercise) return exercise.error();
+  Result<Placement> of = openCase(*exercise, progress);
   if (!of) return of.error();
   SessionOptions options;
   options.recording = recording_ = recording;
-  if (!scene->operator_file.empty()) {
-    Result<OperatorScript> script = readOperatorScript(scene->operator_file, *scene);
+  if (!exercise->operator_file.empty()) {
+    Result<OperatorScript> script = readOperatorScript(exercise->operator_file, *exercise);
     if (!script) return script.error();
     options.script = *std::move(script);
   }
   Result<std::unique_ptr<Session>> session = Session::create(*of, options);
   if (!session) return session.error();
-  scene_ = std::move(of->scene);
+  exercise_ = std::move(of->exercise);
   case_ = std::move(of->patient);
   session_ = *std::move(session);
-  renderer_->setTissues(scene_->tissues, scene_->view.looks);
+  renderer_->setTissues(exercise_->tissues, exercise_->view.looks);
   renderer_->setVolume(session_->grid(), case_->volume);
   renderer_->setTools(toolsOf(*session_));
   lookAtExercise(*renderer_, *session_);

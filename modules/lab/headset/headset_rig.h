@@ -32,8 +32,8 @@ class HeadsetRig {
   QOpenGLExtraFunctions& gl();
   const RoomPlace& place() const { return place_; }
 
-  // Shows a scene's case, and its tools where it begins. `recording`: and runs it, recorded.
-  Status open(const std::filesystem::path& scene, const std::filesystem::path& recording,
+  // Shows an exercise's case, and its tools where it begins. `recording`: and runs it, recorded.
+  Status open(const std::filesystem::path& exercise, const std::filesystem::path& recording,
               const Progress& progress);
   Session& session() { return *session_; }
   Status endExercise();
@@ -76,7 +76,7 @@ class HeadsetRig {
   std::unique_ptr<SceneRenderer> renderer_;
   PicturePainter::Panel panel_;
   unsigned int panel_texture_ = 0;
-  std::optional<Scene> scene_;
+  std::optional<Exercise> exercise_;
   std::optional<Case> case_;
   std::unique_ptr<Session> session_;
   std::filesystem::path recording_;

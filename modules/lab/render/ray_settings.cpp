@@ -48,7 +48,7 @@ Status addPictures(const RenderSubject& subject, const RaySettingOptions& option
   SceneRenderer& renderer = **made;
   show(subject, true, renderer);
   for (const bool plain : {false, true}) {
-    renderer.setTruth({!plain, !plain});
+    renderer.setShading({!plain, !plain});
     placeCamera(subject, renderer);
     addErrors(plain, renderer, figures);
     std::vector<std::vector<double>> ms(figures.size());

@@ -192,7 +192,7 @@ Result<std::unique_ptr<SceneRenderer>> rendererOf(const ClassSubject& subject, i
 
 // A picture of tissues is never VTK's own, but without our rule it holds each sample's by its HU,
 // as VTK's does.
-RayTruth byHuAsStock(bool stock) {
+ShadingOptions byHuAsStock(bool stock) {
   return {true, !stock};
 }
 
@@ -202,7 +202,7 @@ Status measureSubject(const ClassSubject& subject, const RenderOptions& options,
   if (!made) return made.error();
   (*made)->setSampleDistance(options.sample_distances.front());
   for (const bool stock : {true, false}) {
-    (*made)->setTruth(byHuAsStock(stock));
+    (*made)->setShading(byHuAsStock(stock));
     const Progress part(progress, stock ? 0.0 : 0.5, stock ? 0.5 : 1.0);
     const auto percent = percentWrong(subject, **made, options.truth_step, part);
     if (!percent) return renderCancelled();
@@ -254,7 +254,7 @@ Result<std::vector<double>> craniumWrongPercent(std::shared_ptr<const Volume> vo
   std::vector<double> percents;
   for (const RaySetting& setting : settings) {
     (*made)->setSampleDistance(setting.distance_voxels);
-    (*made)->setTruth(byHuAsStock(setting.plain));
+    (*made)->setShading(byHuAsStock(setting.plain));
     const auto percent = percentWrong(*cranium, **made, options.truth_step, progress);
     if (!percent) return renderCancelled();
     percents.push_back(*percent);

@@ -44,14 +44,14 @@ struct Delays {
 
 Status measureExercise(const char* file, const RenderSubject& subject, const RenderOptions& options,
                        const Progress& progress, Delays& delays, RenderMeasurement& result) {
-  Result<Scene> scene = readScene(resourceFolder() / "scenes" / file);
-  if (!scene) return scene.error();
+  Result<Exercise> exercise = readExercise(resourceFolder() / "scenes" / file);
+  if (!exercise) return exercise.error();
   Case known = caseOf(subject.volume);
   known.built_in = true;
   known.structures = subject.labels;
-  const Result<Placement> of = place(*scene, std::move(known), Progress(progress, 0.0, 0.2));
+  const Result<Placement> of = place(*exercise, std::move(known), Progress(progress, 0.0, 0.2));
   if (!of) return of.error();
-  Result<OperatorScript> script = readOperatorScript(scene->operator_file, *scene);
+  Result<OperatorScript> script = readOperatorScript(exercise->operator_file, *exercise);
   if (!script) return script.error();
   Result<std::unique_ptr<Session>> made = Session::create(*of, {"", *script});
   if (!made) return made.error();
@@ -63,7 +63,7 @@ Status measureExercise(const char* file, const RenderSubject& subject, const Ren
   constexpr double kFrame_ms = 20.0, kBetween_ms = 10.0;
   const double distance = options.sample_distances.front();
   renderer.setSampleDistance(distance);
-  renderer.setTissues(of->scene.tissues, scene->view.looks);
+  renderer.setTissues(of->exercise.tissues, exercise->view.looks);
   renderer.setVolume(session.grid());
   lookAtExercise(renderer, session);
   for (int n = 0; n < 2; ++n) renderer.paint(0);  // the first one sends the volume
@@ -83,7 +83,7 @@ Status measureExercise(const char* file, const RenderSubject& subject, const Ren
     const bool cut = renderer.pullChanges(session.grid());
     hands.read_ms = msSince(begin);
     const LoopState& state = session.state();
-    const std::uint64_t removed = removedVoxels(state, session.scene().arms.size());
+    const std::uint64_t removed = removedVoxels(state, session.exercise().arms.size());
     renderer.setTools(toolsOf(session));
     renderer.paint(0, kFrame_ms);
     hands.there_ms = removal.there_ms = msSince(begin);
@@ -110,7 +110,7 @@ Status measureExercise(const char* file, const RenderSubject& subject, const Ren
   delays.missed += report.missed_deadlines;
 
   RenderRow row;
-  row.of_case = scene->case_source;
+  row.of_case = exercise->case_source;
   row.preset = subject.preset;
   row.width = options.moving[0];
   row.height = options.moving[1];

@@ -12,10 +12,10 @@
 #include "base/progress.h"
 #include "base/result.h"
 #include "case/placement.h"
+#include "exercise/landmark.h"
 #include "lab/render/ray_settings.h"
 #include "lab/render/render_measurement.h"
 #include "render/scene_renderer.h"
-#include "scene/landmark.h"
 
 namespace trephine {
 

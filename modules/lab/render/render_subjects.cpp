@@ -59,7 +59,7 @@ Result<std::vector<RenderSubject>> renderSubjects(const std::string& case_source
   subjects.push_back(subjectOf(*cranium, name, ViewPreset::bone, "bone", *tissues));
   subjects.push_back(subjectOf(*cranium, name, ViewPreset::skin, "skin", *tissues));
 
-  Result<Scene> liver = readScene(resourceFolder() / "scenes" / "liver.json");
+  Result<Exercise> liver = readExercise(resourceFolder() / "scenes" / "liver.json");
   if (!liver) return liver.error();
   const Result<Placement> abdomen = openCase(*liver, Progress(progress, 0.3, 0.8));
   if (!abdomen) return abdomen.error();
@@ -68,7 +68,7 @@ Result<std::vector<RenderSubject>> renderSubjects(const std::string& case_source
                         "liver",
                         abdomen->patient.volume,
                         abdomen->labels,
-                        abdomen->scene.tissues,
+                        abdomen->exercise.tissues,
                         liver->view.looks,
                         std::nullopt,
                         liver->view.distance_mm};
@@ -104,7 +104,7 @@ void placeCamera(const RenderSubject& subject, SceneRenderer& renderer) {
 
 void setStock(SceneRenderer& renderer, bool stock) {
   UploadProbe::setLeaping(renderer, !stock);
-  renderer.setTruth({false, false});
+  renderer.setShading({false, false});
 }
 
 double medianOf(std::vector<double> values) {

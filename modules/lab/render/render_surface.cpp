@@ -45,7 +45,7 @@ Result<std::unique_ptr<SceneRenderer>> shellRenderer(int edge) {
 
 SurfaceRow surfaceOf(SceneRenderer& renderer, bool stock) {
   // A picture of normals is never VTK's own, but without our normals it holds VTK's gradient.
-  renderer.setTruth({!stock, true});
+  renderer.setShading({!stock, true});
   std::vector<double> errors_deg;
   double squares = 0.0, sum = 0.0;
   // Rings depend on how the rows of voxels lie to the eye.

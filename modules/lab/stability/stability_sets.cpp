@@ -4,8 +4,8 @@
 #include <cstdio>
 
 #include "base/range.h"
+#include "exercise/names.h"
 #include "lab/common/on_all_processors.h"
-#include "scene/names.h"
 
 namespace trephine {
 

@@ -30,7 +30,7 @@ enum class StabilitySet {
   moving,   // the hand's rest point swings by 4 mm at 1 Hz after the ramp; cells with a hand, 5 s
   hands,    // k 50 to 2000 N/m with b 1 to 10 N s/m; b 0 in rows that no total counts
   claims,   // mass 0.5, 1.5, 2, 5 times the true one; delay one more or less; encoder exact
-  rest,     // whole scenes
+  rest,     // whole exercises
 };
 inline constexpr std::array<std::pair<std::string_view, StabilitySet>, 6> kStabilitySetNames{
     {{"grid", StabilitySet::grid},

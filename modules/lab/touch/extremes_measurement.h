@@ -30,7 +30,7 @@ struct ExtremesOptions {
 };
 
 // Writes extremes.csv into the folder `out` unless that is empty. Errors: CANCELLED, CANNOT_WRITE,
-// and with `touch` those of the scenes' files and devices and of the case.
+// and with `touch` those of the exercises' files and devices and of the case.
 Result<ExtremesMeasurement> measureExtremes(const std::filesystem::path& out = {},
                                             const Progress& progress = Progress(),
                                             const ExtremesOptions& options = {});

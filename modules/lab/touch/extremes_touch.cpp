@@ -7,7 +7,7 @@
 
 #include "base/formatted.h"
 #include "lab/common/on_all_processors.h"
-#include "lab/touch/placed_scene.h"
+#include "lab/touch/placed_exercise.h"
 #include "lab/touch/rest_measurement.h"
 #include "case/case.h"
 #include "volume/phantom_file.h"
@@ -286,20 +286,20 @@ Volume bonyBlock() {
 
 // ---- what does not shake, soften or stay away
 
-ExtremeRow atRest(const PlacedScene& liver) {
-  HapticParameters parameters = withoutMotors(hapticParameters(liver.scene, liver.rig));
+ExtremeRow atRest(const PlacedExercise& liver) {
+  HapticParameters parameters = withoutMotors(hapticParameters(liver.exercise, liver.rig));
   std::vector<RigArm> arms;
   std::vector<HoldPath> paths;
-  const TissueTable tissues = tissueTable(liver.scene.tissues);
-  const Tissue* organ = liver.scene.tissues.find("liver");
-  for (std::size_t i = 0; i < liver.scene.arms.size(); ++i) {
-    const WorkspaceMap map = liver.scene.arms[i].map.fixed.value_or(WorkspaceMap{});
+  const TissueTable tissues = tissueTable(liver.exercise.tissues);
+  const Tissue* organ = liver.exercise.tissues.find("liver");
+  for (std::size_t i = 0; i < liver.exercise.arms.size(); ++i) {
+    const WorkspaceMap map = liver.exercise.arms[i].map.fixed.value_or(WorkspaceMap{});
     arms.push_back(rigArmOf(parameters.arms[i].dynamics, {4.0, 600.0}));
     const Vec3 in = liver.frames[i].rotation * Vec3(0, 0, -1);
     const Vec3 below_ribs = liver.frames[i].rotation * Vec3(0, -42, 0);  // as its script goes
     const Vec3 out_mm = map.centre_mm + below_ribs - 50.0 * in;
     const auto to_mm = depthOf(*liver.volume, tissues,
-                               int(organ - liver.scene.tissues.tissues.data()), out_mm, in, 150.0,
+                               int(organ - liver.exercise.tissues.tissues.data()), out_mm, in, 150.0,
                                liver.labels.get());
     constexpr double kIn_mm = 10.0;
     const Vec3 held_mm = out_mm + (to_mm.value_or(0.0) + kIn_mm) * in;
@@ -314,7 +314,7 @@ ExtremeRow atRest(const PlacedScene& liver) {
     row.pass = row.pass && held[i].touched && !held[i].waited &&
                !faultsOf(HoldKind::rest, held[i], arms[i].encoder_m).any();
     row.got += formatted("%s%s: %.0f um at %.0f Hz, %.3f mJ", i ? "; " : "",
-                         liver.scene.arms[i].tool.c_str(), 1e6 * held[i].cycle_m, held[i].cycle_Hz,
+                         liver.exercise.arms[i].tool.c_str(), 1e6 * held[i].cycle_m, held[i].cycle_Hz,
                          1e3 * held[i].energy_out_J);
   }
   return row;
@@ -395,19 +395,19 @@ Result<std::vector<ExtremeRow>> measureTouchExtremes(const std::string& case_sou
   // The shipped tools that are pressed, none of which can cut: bone is not cuttable, or, for a
   // burr, the motor is off.
   struct Pressed {
-    const char *name, *scene;
+    const char *name, *exercise;
     bool cuttable;
     Tool tool;
   };
   std::vector<Pressed> pressed = {{"needle", "liver", false, {}},
                                   {"blade", "cranium", false, {}},
                                   {"burr", "burr-hole", true, {}}};
-  std::optional<PlacedScene> liver;
+  std::optional<PlacedExercise> liver;
   for (Pressed& p : pressed) {
-    progress.at(0.0, p.scene);
-    Result<PlacedScene> placed = placeScene(p.scene, "", progress);
+    progress.at(0.0, p.exercise);
+    Result<PlacedExercise> placed = placeExercise(p.exercise, "", progress);
     if (!placed) return placed.error();
-    p.tool = withoutMotor(placed->scene.findTool(p.name)->tool);
+    p.tool = withoutMotor(placed->exercise.findTool(p.name)->tool);
     if (!liver) liver = *std::move(placed);
   }
   std::vector<Target> targets;

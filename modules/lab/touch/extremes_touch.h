@@ -1,5 +1,5 @@
 // Rows of `measure extremes` on touch that holds: a tool that cannot cut stays out of bone, rests,
-// keeps its stiffness and gets its force back. Real tools of the shipped scenes on TouchRig.
+// keeps its stiffness and gets its force back. Real tools of the shipped exercises on TouchRig.
 #pragma once
 
 #include <functional>
@@ -39,7 +39,7 @@ PressResult pressInto(const Tool& tool, const TissueTable& tissues, const Volume
 // and how far from it the surface is, where HU crosses the tissue's between it and its neighbours.
 double insideSolid_mm(const Tool& tool, const Pose& pose_mm, const Grid& grid, int hu_from);
 
-// `case_source`: a real skull for the barrier as well; empty: none. Errors: those of the scenes'
+// `case_source`: a real skull for the barrier as well; empty: none. Errors: those of the exercises'
 // files and devices and of the case, CANCELLED.
 Result<std::vector<ExtremeRow>> measureTouchExtremes(const std::string& case_source,
                                                      const Progress& progress);

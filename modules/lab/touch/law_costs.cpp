@@ -31,8 +31,8 @@ Volume halfFull(std::int16_t hu) {
 }
 
 // Of any voxel, so that no label map is needed, and uncut: the cost is of touch.
-HapticParameters costParameters(const Scene& scene, const Tissue& firmest) {
-  HapticParameters parameters = hapticParameters(scene);
+HapticParameters costParameters(const Exercise& exercise, const Tissue& firmest) {
+  HapticParameters parameters = hapticParameters(exercise);
   Tissue alone = firmest;
   alone.label.reset();
   alone.structure.clear();
@@ -83,17 +83,17 @@ class Variant {
 
 }  // namespace
 
-Result<LawCosts> measureLawCosts(const Scene& scene, const Progress& progress) {
-  if (scene.arms.empty() || scene.tissues.tissues.empty() || !scene.findTool(scene.arms[0].tool)) {
+Result<LawCosts> measureLawCosts(const Exercise& exercise, const Progress& progress) {
+  if (exercise.arms.empty() || exercise.tissues.tissues.empty() || !exercise.findTool(exercise.arms[0].tool)) {
     return Error{"BAD_SCENE", "The exercise has no arm, no tool or no tissue to measure with", "",
                  "Give it one of each"};
   }
   const Tissue& firmest =
-      *std::ranges::max_element(scene.tissues.tissues, {}, [](const Tissue& tissue) {
+      *std::ranges::max_element(exercise.tissues.tissues, {}, [](const Tissue& tissue) {
         return tissue.stiffness_N_per_m.value;
       });
   const auto hu = std::int16_t(std::clamp((firmest.hu_min + firmest.hu_max) / 2, -999, 3000));
-  const HapticParameters own = costParameters(scene, firmest);
+  const HapticParameters own = costParameters(exercise, firmest);
   std::vector<HapticParameters> wanted{own};
   for (const auto& [name, law] : kLawNames) {
     HapticParameters toggled = own;
@@ -131,7 +131,7 @@ Result<LawCosts> measureLawCosts(const Scene& scene, const Progress& progress) {
   for (const auto& [name, law] : kLawNames) {
     // Round by round: what slows the machine slows both.
     std::vector<double> more_ns;
-    const double sign = names(scene.laws, law) ? -1.0 : 1.0;
+    const double sign = names(exercise.laws, law) ? -1.0 : 1.0;
     for (int round = 0; round < kRounds; ++round) {
       more_ns.push_back(sign * (ns[v][std::size_t(round)] - ns[0][std::size_t(round)]));
     }

@@ -143,7 +143,7 @@ Result<RestFigures> measureRest(std::optional<double> seconds, const Progress& p
     };
     const std::vector<HoldResult> held = run(false);
     for (std::size_t i = 0; i < held.size(); ++i) {
-      RestRow row{cell.scene, cell.arms[i], cell.tools[i],        cell.place,
+      RestRow row{cell.exercise, cell.arms[i], cell.tools[i],        cell.place,
                   kind,       held[i],      cell.rig[i].encoder_m};
       row.unstable = faultsOf(kind, held[i], row.encoder_m).any();
       rows[n].push_back(std::move(row));
@@ -196,10 +196,10 @@ struct RestSum {
 };
 
 bool isBlock(const RestRow& row) {
-  return row.scene.rfind("block", 0) == 0;
+  return row.exercise.rfind("block", 0) == 0;
 }
 
-// Scenes and blocks, at rest, swung and creeping; and all.
+// Exercises and blocks, at rest, swung and creeping; and all.
 std::vector<RestSum> sumsOf(const RestFigures& figures) {
   std::vector<RestSum> sums(7);
   const std::string minute = plainNumber(figures.seconds) + " s";
@@ -244,7 +244,7 @@ Json toJson(const RestFigures& figures) {
   }
   json["rows"] = Json::array();
   for (const RestRow& row : figures.rows) {
-    json["rows"].push_back({{"scene", row.scene},
+    json["rows"].push_back({{"scene", row.exercise},
                             {"arm", row.arm},
                             {"tool", row.tool},
                             {"place", row.place},
@@ -276,7 +276,7 @@ std::string toText(const RestFigures& figures) {
   for (const RestRow& row : figures.rows) {
     if (!row.unstable) continue;
     text +=
-        formatted("    %s: %s arm, %s, %s, %s: %.0f um at %.0f Hz, %.3f mJ%s\n", row.scene.c_str(),
+        formatted("    %s: %s arm, %s, %s, %s: %.0f um at %.0f Hz, %.3f mJ%s\n", row.exercise.c_str(),
                   row.arm.c_str(), row.tool.c_str(), row.place.c_str(), kindName(row.kind).c_str(),
                   1e6 * row.result.cycle_m, row.result.cycle_Hz, 1e3 * row.result.energy_out_J,
                   row.result.removed_voxels > 0 ? ", cutting" : "");

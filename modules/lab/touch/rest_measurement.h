@@ -1,7 +1,8 @@
 // The set `rest` of the stability laboratory: tools that hands hold in tissue. Not a cell in one
 // dimension but the real core with its proxy, laws, controller and output limiter, in two kinds of
 // places:
-//   scenes   the shipped scenes that are not the seed paper's, in their built-in case, all arms at
+//   exercises   the shipped exercises that are not the seed paper's, in their built-in case, all
+//   arms at
 //            once: where the hands' devices have their origins, and pressed into each tissue that
 //            lies before the first solid one and into that, beside each other, by hands of 300, 600
 //            and 1000 N/m;
@@ -62,7 +63,7 @@ std::vector<HoldResult> hold(HapticParameters parameters, const Volume& volume,
                              const std::shared_ptr<const LabelMap>& labels = nullptr);
 
 struct RestRow {
-  std::string scene, arm, tool, place;
+  std::string exercise, arm, tool, place;
   HoldKind kind = HoldKind::rest;
   HoldResult result;
   double encoder_m = 0.0;
@@ -74,13 +75,13 @@ struct RestFigures {
 };
 
 constexpr double kRest_s = 60.0;
-// Errors: those of the shipped scenes' files and devices, CANCELLED.
+// Errors: those of the shipped exercises' files and devices, CANCELLED.
 Result<RestFigures> measureRest(std::optional<double> seconds, const Progress& progress);
 
 // {cells, unstable, also_ideal, energy_out_mJ_max, cycle_um_max, cycle_Hz, beyond_accepted,
 // cutting,
-//  kinds: [{name, ...}], rows: [{scene, arm, tool, place, kind, cycle_um, cycle_Hz, energy_out_mJ,
-//  shown, unstable, also_ideal, cuts}]}
+//  kinds: [{name, ...}], rows: [{exercise, arm, tool, place, kind, cycle_um, cycle_Hz,
+//  energy_out_mJ, shown, unstable, also_ideal, cuts}]}
 Json toJson(const RestFigures& figures);
 std::string toText(const RestFigures& figures);
 

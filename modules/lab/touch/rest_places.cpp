@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "lab/touch/placed_scene.h"
+#include "lab/touch/placed_exercise.h"
 
 namespace trephine {
 
@@ -18,24 +18,24 @@ std::string label(const char* tissue, double aside_mm, double press_mm, const Im
          plainNumber(press_mm) + " mm by " + plainNumber(hand.stiffness) + " N/m";
 }
 
-HoldCell cellOf(const std::string& name, const PlacedScene& placed,
+HoldCell cellOf(const std::string& name, const PlacedExercise& placed,
                 const std::shared_ptr<const Volume>& volume, const Impedance& hand) {
   HoldCell cell;
-  cell.scene = name;
-  cell.parameters = withoutMotors(hapticParameters(placed.scene, placed.rig));
+  cell.exercise = name;
+  cell.parameters = withoutMotors(hapticParameters(placed.exercise, placed.rig));
   cell.volume = volume;
   cell.labels = placed.labels;
-  for (std::size_t i = 0; i < placed.scene.arms.size(); ++i) {
-    cell.arms.push_back(placed.scene.arms[i].name);
-    cell.tools.push_back(placed.scene.arms[i].tool);
+  for (std::size_t i = 0; i < placed.exercise.arms.size(); ++i) {
+    cell.arms.push_back(placed.exercise.arms[i].name);
+    cell.tools.push_back(placed.exercise.arms[i].tool);
     cell.rig.push_back(rigArmOf(cell.parameters.arms[i].dynamics, hand));
   }
   return cell;
 }
 
 // From outside to `depth_mm` below the start, along the landmark's own axis, in device axes.
-HoldPath pathOf(const PlacedScene& placed, std::size_t arm, const Vec3& start_mm, double depth_mm) {
-  const WorkspaceMap map = placed.scene.arms[arm].map.fixed.value_or(WorkspaceMap{});
+HoldPath pathOf(const PlacedExercise& placed, std::size_t arm, const Vec3& start_mm, double depth_mm) {
+  const WorkspaceMap map = placed.exercise.arms[arm].map.fixed.value_or(WorkspaceMap{});
   const LandmarkFrame& frame = placed.frames[arm];
   HoldPath path;
   path.start_m = map.toDevice_m(frame.toPatient_mm(start_mm));
@@ -44,25 +44,25 @@ HoldPath pathOf(const PlacedScene& placed, std::size_t arm, const Vec3& start_mm
   return path;
 }
 
-void addScene(const std::string& name, const PlacedScene& placed, std::vector<HoldCell>& cells) {
+void addExercise(const std::string& name, const PlacedExercise& placed, std::vector<HoldCell>& cells) {
   const std::shared_ptr<const Volume>& volume = placed.volume;
-  const TissueTable table = tissueTable(placed.scene.tissues);
+  const TissueTable table = tissueTable(placed.exercise.tissues);
   // At the devices' origins, in the window's hand.
   HoldCell origins = cellOf(name, placed, volume, {4.0, 600.0});
   origins.place = "at the device's origin";
-  for (std::size_t arm = 0; arm < placed.scene.arms.size(); ++arm) {
-    const Vec3 at_mm = placed.scene.arms[arm].map.offset_mm;
+  for (std::size_t arm = 0; arm < placed.exercise.arms.size(); ++arm) {
+    const Vec3 at_mm = placed.exercise.arms[arm].map.offset_mm;
     origins.paths.push_back(pathOf(placed, arm, {at_mm.x, at_mm.y, kFrom_mm}, kFrom_mm - at_mm.z));
   }
   cells.push_back(std::move(origins));
-  for (std::size_t t = 0; t < placed.scene.tissues.tissues.size(); ++t) {
+  for (std::size_t t = 0; t < placed.exercise.tissues.tissues.size(); ++t) {
     for (double aside_mm : {0.0, 7.0}) {
       for (double press_mm : {0.5, 2.0}) {
         for (const Impedance& hand : {Impedance{2.0, 300.0}, {4.0, 600.0}, {10.0, 1000.0}}) {
           HoldCell cell = cellOf(name, placed, volume, hand);
-          cell.place = label(placed.scene.tissues.tissues[t].id.c_str(), aside_mm, press_mm, hand);
-          for (std::size_t arm = 0; arm < placed.scene.arms.size(); ++arm) {
-            const SceneMap& map = placed.scene.arms[arm].map;
+          cell.place = label(placed.exercise.tissues.tissues[t].id.c_str(), aside_mm, press_mm, hand);
+          for (std::size_t arm = 0; arm < placed.exercise.arms.size(); ++arm) {
+            const ExerciseMap& map = placed.exercise.arms[arm].map;
             const Vec3 start_mm(map.offset_mm.x + aside_mm, map.offset_mm.y - aside_mm, kFrom_mm);
             const LandmarkFrame& frame = placed.frames[arm];
             const auto depth_mm =
@@ -73,7 +73,7 @@ void addScene(const std::string& name, const PlacedScene& placed, std::vector<Ho
             cell.paths.push_back(
                 pathOf(placed, arm, start_mm, *depth_mm + press_mm * map.motion_scale));
           }
-          if (cell.paths.size() == placed.scene.arms.size()) cells.push_back(std::move(cell));
+          if (cell.paths.size() == placed.exercise.arms.size()) cells.push_back(std::move(cell));
         }
       }
     }
@@ -113,23 +113,23 @@ std::shared_ptr<const LabelMap> labelsOf(const Tissue& tissue, const GridGeometr
       std::vector<std::uint8_t>(geometry.voxelCount(), std::uint8_t(*tissue.label))});
 }
 
-// Each tissue of the scene's set under each of its tools, by each sum of laws and each arm.
-void addBlocks(const Scene& scene, const std::vector<const SceneTool*>& tools,
+// Each tissue of the exercise's set under each of its tools, by each sum of laws and each arm.
+void addBlocks(const Exercise& exercise, const std::vector<const ExerciseTool*>& tools,
                std::vector<HoldCell>& cells) {
-  for (const Tissue& tissue : scene.tissues.tissues) {
+  for (const Tissue& tissue : exercise.tissues.tissues) {
     const auto volume = blockOf(tissue);
     const auto labels = labelsOf(tissue, volume->geometry);
-    for (const SceneTool* tool : tools) {
+    for (const ExerciseTool* tool : tools) {
       for (const auto& [sum, laws] : kSums) {
         for (const NamedArm& arm : kArms) {
           HoldCell cell;
-          cell.scene = std::string("block of ") + tissue.id;
+          cell.exercise = std::string("block of ") + tissue.id;
           cell.place = sum;
           cell.arms = {arm.name};
           cell.tools = {tool->id};
           cell.volume = volume;
           cell.labels = labels;
-          cell.parameters = withoutMotors(hapticParameters(scene));
+          cell.parameters = withoutMotors(hapticParameters(exercise));
           cell.parameters.laws = laws;
           cell.parameters.arms = {{withoutMotor(tool->tool), WorkspaceMap{}, 3.3, arm.dynamics}};
           cell.rig = {rigArmOf(arm.dynamics, {4.0, 600.0})};
@@ -145,30 +145,30 @@ void addBlocks(const Scene& scene, const std::vector<const SceneTool*>& tools,
 
 Result<std::vector<HoldCell>> restPlaces(const Progress& progress) {
   std::vector<HoldCell> cells;
-  std::vector<Scene> scenes;
-  for (const std::string& name : shippedScenes()) {
-    progress.at(double(scenes.size()) / double(shippedScenes().size()), name);
-    Result<PlacedScene> placed = placeScene(name, "", progress);
+  std::vector<Exercise> exercises;
+  for (const std::string& name : shippedExercises()) {
+    progress.at(double(exercises.size()) / double(shippedExercises().size()), name);
+    Result<PlacedExercise> placed = placeExercise(name, "", progress);
     if (!placed) return placed.error();
-    addScene(name, *placed, cells);
-    scenes.push_back(placed->scene);
+    addExercise(name, *placed, cells);
+    exercises.push_back(placed->exercise);
   }
-  // Every tool that any shipped scene has, on every tissue that any has.
-  std::vector<const SceneTool*> tools;
-  std::vector<const Scene*> sets;
-  for (const Scene& scene : scenes) {
-    for (const SceneTool& tool : scene.tools) {
-      const bool known = std::any_of(tools.begin(), tools.end(), [&](const SceneTool* t) {
+  // Every tool that any shipped exercise has, on every tissue that any has.
+  std::vector<const ExerciseTool*> tools;
+  std::vector<const Exercise*> sets;
+  for (const Exercise& exercise : exercises) {
+    for (const ExerciseTool& tool : exercise.tools) {
+      const bool known = std::any_of(tools.begin(), tools.end(), [&](const ExerciseTool* t) {
         return t->tool.made_from == tool.tool.made_from;
       });
       if (!known) tools.push_back(&tool);
     }
-    const bool known = std::any_of(sets.begin(), sets.end(), [&](const Scene* s) {
-      return s->tissues.name == scene.tissues.name;
+    const bool known = std::any_of(sets.begin(), sets.end(), [&](const Exercise* s) {
+      return s->tissues.name == exercise.tissues.name;
     });
-    if (!known) sets.push_back(&scene);
+    if (!known) sets.push_back(&exercise);
   }
-  for (const Scene* scene : sets) addBlocks(*scene, tools, cells);
+  for (const Exercise* exercise : sets) addBlocks(*exercise, tools, cells);
   return cells;
 }
 

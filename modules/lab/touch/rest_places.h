@@ -1,4 +1,4 @@
-// Where the set `rest` holds its tools: the shipped scenes' places, and blocks of each tissue.
+// Where the set `rest` holds its tools: the shipped exercises' places, and blocks of each tissue.
 #pragma once
 
 #include <memory>
@@ -13,7 +13,7 @@ namespace trephine {
 
 // One run: every arm of a core on its path.
 struct HoldCell {
-  std::string scene, place;
+  std::string exercise, place;
   std::vector<std::string> arms, tools;
   HapticParameters parameters;
   std::shared_ptr<const Volume> volume;
@@ -22,7 +22,7 @@ struct HoldCell {
   std::vector<HoldPath> paths;
 };
 
-// Errors: those of the shipped scenes' files, cases and devices, CANCELLED.
+// Errors: those of the shipped exercises' files, cases and devices, CANCELLED.
 Result<std::vector<HoldCell>> restPlaces(const Progress& progress);
 
 }  // namespace trephine

@@ -26,7 +26,7 @@ HapticParameters elasticAlone() {
   parameters.controller = ControllerKind::off;
   parameters.tissues.count = 1;
   TissueClass& bone = parameters.tissues.classes[0];
-  // As the scenes' bone. Half-way from air to this shell is 0 HU, so that bone begins a little
+  // As the exercises' bone. Half-way from air to this shell is 0 HU, so that bone begins a little
   // below the true surface, by the more the coarser the grid: most of the error of depth.
   bone.hu_min = 226;
   bone.hu_max = 3071;

@@ -1,6 +1,7 @@
-// Whole scenes in the laboratory: the real core, its arms held by hands that are told where to be.
-// As `run` moves simulated arms (a force acts in the period that follows its sample), but for two
-// things: where an arm is, is known beyond its encoder, and what is claimed of it may be untrue.
+// Whole exercises in the laboratory: the real core, its arms held by hands that are told where to
+// be. As `run` moves simulated arms (a force acts in the period that follows its sample), but for
+// two things: where an arm is, is known beyond its encoder, and what is claimed of it may be
+// untrue.
 #pragma once
 
 #include <vector>

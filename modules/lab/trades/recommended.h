@@ -7,7 +7,7 @@
 
 #include "base/json.h"
 #include "base/result.h"
-#include "scene/policy.h"
+#include "exercise/policy.h"
 
 namespace trephine {
 

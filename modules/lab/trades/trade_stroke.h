@@ -12,7 +12,7 @@ namespace trephine {
 
 constexpr double kTradePeriod_s = 1e-3;  // of the knobs that are not the rate
 
-// One class from `hu_min` up, that of the scenes' bone: 12 N s/m, 900 N/m, 2 N.
+// One class from `hu_min` up, that of the exercises' bone: 12 N s/m, 900 N/m, 2 N.
 TissueTable tradeTissue(int hu_min, bool cuttable, double cutting_J_per_mm3);
 
 // One Omni, `off`, patient and device axes alike.

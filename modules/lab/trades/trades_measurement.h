@@ -1,9 +1,9 @@
 // Speed against accuracy: for every knob of touch and of the view its settings, what each gets
 // wrong and what each costs, from one run, and which one is recommended on this machine.
 //
-// A knob is what a scene or an import can set, or what the view is drawn with. Of each exactly one
-// setting is recommended: the cheapest of those that are good enough, which is what the table of
-// kKnobs says. Where none is, the one with the least error.
+// A knob is what an exercise or an import can set, or what the view is drawn with. Of each exactly
+// one setting is recommended: the cheapest of those that are good enough, which is what the table
+// of kKnobs says. Where none is, the one with the least error.
 #pragma once
 
 #include <array>

@@ -8,8 +8,8 @@
 
 #include "base/progress.h"
 #include "base/result.h"
+#include "exercise/names.h"
 #include "lab/import/import_series.h"
-#include "scene/names.h"
 #include "volume/volume.h"
 
 namespace trephine::bench {

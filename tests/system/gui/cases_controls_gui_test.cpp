@@ -400,18 +400,18 @@ class CasesControlsGuiTest : public test::WindowTest {
     QTest::mouseDClick(cards()->viewport(), Qt::LeftButton, {}, at);
     QTRY_VERIFY_WITH_TIMEOUT(workstation().currentCase()->built_in && !workstation().isOpening(),
                              kLong_ms);
-    QCOMPARE(workstation().scene()->anatomy, std::string("abdomen"));
+    QCOMPARE(workstation().exercise()->anatomy, std::string("abdomen"));
     QVERIFY(window_->place() == Place::train);
   }
 
   void anExerciseAndAFileOfVoxelsAreOpenedByTheirMenus() {
-    const std::filesystem::path scene =
-        test::sceneOn(test::coarseCranium(4), toPath(temporary_.path()), "small");
+    const std::filesystem::path exercise =
+        test::exerciseOn(test::coarseCranium(4), toPath(temporary_.path()), "small");
     QSignalSpy opened(&workstation(), &Workstation::caseOpened);
     find<QAction>("openScene")->trigger();
-    choose("sceneDialog", toQt(scene));
+    choose("sceneDialog", toQt(exercise));
     QVERIFY(opened.count() == 1 || opened.wait(kLong_ms));
-    QCOMPARE(workstation().sceneFile(), scene);
+    QCOMPARE(workstation().exerciseFile(), exercise);
     QVERIFY(window_->place() == Place::train);
     closeErrors();
     find<QAction>("openFile")->trigger();

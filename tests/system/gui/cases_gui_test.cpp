@@ -240,7 +240,7 @@ class CasesGuiTest : public test::WindowTest {
     choose(idOfMine());
     QTest::mouseClick(find<QPushButton>("prepareCase"), Qt::LeftButton);
     QTRY_VERIFY_WITH_TIMEOUT(!workstation().currentCase()->stored.empty(), kLong_ms);
-    QCOMPARE(workstation().scene()->tissues.find("bone")->damping_Ns_per_m.value, before + 1.0);
+    QCOMPARE(workstation().exercise()->tissues.find("bone")->damping_Ns_per_m.value, before + 1.0);
     QVERIFY(!workstation().tissuesEdited());
   }
 

@@ -32,13 +32,13 @@ class CopiesGuiTest : public test::WindowTest {
   Q_OBJECT
 
  private:
-  std::filesystem::path scene(const Volume& volume, const char* name) {
-    return test::sceneOn(volume, toPath(temporary_.path()), name);
+  std::filesystem::path exercise(const Volume& volume, const char* name) {
+    return test::exerciseOn(volume, toPath(temporary_.path()), name);
   }
   // Opened, drawn and everything written that comes with it.
-  void open(const std::filesystem::path& scene) {
+  void open(const std::filesystem::path& exercise) {
     QSignalSpy opened(&workstation(), &Workstation::caseOpened);
-    workstation().openPath(scene);
+    workstation().openPath(exercise);
     QVERIFY(opened.wait(kLong_ms));
     settle();
   }
@@ -86,7 +86,7 @@ class CopiesGuiTest : public test::WindowTest {
     QVERIFY(QTest::qWaitForWindowExposed(window_.get()));
     // What an exercise takes beside its voxels, once the stacks of all threads were held.
     const int small_edge = 64, edge = 400;
-    open(scene(head(small_edge, 200.0 / small_edge), "small"));
+    open(exercise(head(small_edge, 200.0 / small_edge), "small"));
     const double first_mb = exercise_mb();
     stop();
     const double beside_mb = exercise_mb();
@@ -98,7 +98,7 @@ class CopiesGuiTest : public test::WindowTest {
 
     // The same texture and no case, only a mirror, which is written in whole: whether pages that
     // were read alone count differs between kernels.
-    const auto large = scene(head(edge, 200.0 / edge), "large");
+    const auto large = exercise(head(edge, 200.0 / edge), "large");
     const std::size_t count = std::size_t(edge) * edge * edge;
     const double copy_mb = voxelsMb(count);
     Volume blank;

@@ -146,7 +146,7 @@ class DevicesGuiTest : public test::TrainTest {
     choose("leftArm", 1);
     choose("rightArm", 2);
     closeDialog();
-    openScene(resourceFolder() / "scenes" / "cranium.json");
+    openExercise(resourceFolder() / "scenes" / "cranium.json");
     startTraining();
     QVERIFY(find<QLabel>("hint")->text().contains("The arms move the tools"));
     QVERIFY(!find<QAction>("devices")->isEnabled());
@@ -192,7 +192,7 @@ class DevicesGuiTest : public test::TrainTest {
     openDialog();
     choose("leftArm", 1);
     closeDialog();
-    openScene(resourceFolder() / "scenes" / "cranium.json");
+    openExercise(resourceFolder() / "scenes" / "cranium.json");
     startTraining();
     QVERIFY(!workstation().session()->isSimulated(0));
     QVERIFY(workstation().session()->isSimulated(1));
@@ -223,7 +223,7 @@ class DevicesGuiTest : public test::TrainTest {
 
   void aChosenArmThatIsNotThereIsSaidWhenAnExerciseBegins() {
     write(settings::kRightArm, QStringList{"woodenhaptics", "usb-9-9", "1", "WoodenHaptics"});
-    openScene(resourceFolder() / "scenes" / "cranium.json");
+    openExercise(resourceFolder() / "scenes" / "cranium.json");
     QSignalSpy failed(&workstation(), &Workstation::failed);
     window_->startExercise();
     QVERIFY(failed.count() == 1 || failed.wait(kSoon_ms));

@@ -26,7 +26,7 @@ class EditsGuiTest : public test::WindowTest {
 
  private:
   ViewWidget& view() { return window_->view(); }
-  const Tissue& bone() { return *workstation().scene()->tissues.find("bone"); }
+  const Tissue& bone() { return *workstation().exercise()->tissues.find("bone"); }
 
   void activate() {
     QApplication::setActiveWindow(window_.get());
@@ -55,10 +55,10 @@ class EditsGuiTest : public test::WindowTest {
     choices->setCurrentIndex(index);
     QVERIFY(QMetaObject::invokeMethod(choices, "activated", Q_ARG(int, index)));
   }
-  void chooseScene(const char* file) {
-    auto* scenes = find<QComboBox>("scenes");
-    for (int i = 0; i < scenes->count(); ++i) {
-      if (scenes->itemData(i).toString().endsWith(file)) return choose(scenes, i);
+  void chooseExercise(const char* file) {
+    auto* exercises = find<QComboBox>("scenes");
+    for (int i = 0; i < exercises->count(); ++i) {
+      if (exercises->itemData(i).toString().endsWith(file)) return choose(exercises, i);
     }
     QFAIL(file);
   }
@@ -78,12 +78,12 @@ class EditsGuiTest : public test::WindowTest {
   }
   void wheelOverEverythingChangesNothing() {
     activate();
-    const TissueSet tissues = workstation().scene()->tissues;
-    const auto file = workstation().sceneFile();
+    const TissueSet tissues = workstation().exercise()->tissues;
+    const auto file = workstation().exerciseFile();
     const auto volume = workstation().currentCase()->volume;
     auto* controller = find<QComboBox>("controller");
-    auto* scenes = find<QComboBox>("scenes");
-    const int controller_was = controller->currentIndex(), scene_was = scenes->currentIndex();
+    auto* exercises = find<QComboBox>("scenes");
+    const int controller_was = controller->currentIndex(), exercise_was = exercises->currentIndex();
     QWidget* tabs = find<QTabWidget>("prepareTabs")->tabBar();
     const QList<QWidget*> of_prepare{find<QWidget>("huLow"),    find<QWidget>("huHigh"),
                                      find<QWidget>("damping"),  find<QWidget>("stiffness"),
@@ -94,7 +94,7 @@ class EditsGuiTest : public test::WindowTest {
       rest();
       view().setFocus();
       for (QWidget* widget :
-           place == Place::prepare ? of_prepare : QList<QWidget*>{controller, scenes}) {
+           place == Place::prepare ? of_prepare : QList<QWidget*>{controller, exercises}) {
         QVERIFY2(widget->isVisible(), qPrintable(widget->objectName()));
         wheelOver(widget, -3);
         wheelOver(widget, 1);
@@ -102,11 +102,11 @@ class EditsGuiTest : public test::WindowTest {
       }
     }
     showTissues();
-    QVERIFY(workstation().scene()->tissues == tissues);
+    QVERIFY(workstation().exercise()->tissues == tissues);
     QCOMPARE(controller->currentIndex(), controller_was);
-    QCOMPARE(scenes->currentIndex(), scene_was);
+    QCOMPARE(exercises->currentIndex(), exercise_was);
     QCOMPARE(find<QTabWidget>("prepareTabs")->currentIndex(), 0);
-    QVERIFY(workstation().sceneFile() == file);
+    QVERIFY(workstation().exerciseFile() == file);
     QVERIFY(workstation().currentCase()->volume == volume);
     QVERIFY(!workstation().isOpening());
   }
@@ -194,22 +194,22 @@ class EditsGuiTest : public test::WindowTest {
     workstation().cancelOpening();
     QTRY_VERIFY_WITH_TIMEOUT(!workstation().isOpening(), kLong_ms);
 
-    const auto file = workstation().sceneFile();
-    chooseScene("burr-hole.json");
+    const auto file = workstation().exerciseFile();
+    chooseExercise("burr-hole.json");
     answer(QMessageBox::Cancel);
     QVERIFY(!workstation().isOpening());
-    QVERIFY(workstation().sceneFile() == file);
+    QVERIFY(workstation().exerciseFile() == file);
     QCOMPARE(bone().hu_min, 300);
     QCOMPARE(find<QComboBox>("scenes")->currentData().toString(), toQt(file));
 
     QSignalSpy opened(&workstation(), &Workstation::caseOpened);
-    chooseScene("burr-hole.json");
+    chooseExercise("burr-hole.json");
     answer(QMessageBox::Discard);
     QVERIFY(opened.count() == 1 || opened.wait(kLong_ms));
     QVERIFY(!question());
-    QVERIFY(workstation().sceneFile() != file);
+    QVERIFY(workstation().exerciseFile() != file);
     QCOMPARE(bone().hu_min, 226);
-    chooseScene("cranium.json");
+    chooseExercise("cranium.json");
     QVERIFY(opened.count() == 2 || opened.wait(kLong_ms));
     QVERIFY(!question());
   }
@@ -219,7 +219,7 @@ class EditsGuiTest : public test::WindowTest {
     window_->findChild<TissuePanel*>()->select("bone");
     enter("huLow", "310");
     QSignalSpy opened(&workstation(), &Workstation::caseOpened);
-    chooseScene("burr-hole.json");
+    chooseExercise("burr-hole.json");
     answer(QMessageBox::Save);
     QTRY_VERIFY(window_->findChild<QFileDialog*>("saveDialog"));
     auto* dialog = find<QFileDialog>("saveDialog");
@@ -232,7 +232,7 @@ class EditsGuiTest : public test::WindowTest {
     QCOMPARE(saved->find("bone")->hu_min, 310);
     QCOMPARE(bone().hu_min, 226);
     QApplication::setActiveWindow(window_.get());
-    chooseScene("cranium.json");
+    chooseExercise("cranium.json");
     QVERIFY(opened.count() == 2 || opened.wait(kLong_ms));
     showTissues();
     window_->findChild<TissuePanel*>()->select("bone");

@@ -11,7 +11,7 @@
 #include <QToolButton>
 #include <utility>
 
-#include "exercise/exercise_folder.h"
+#include "exchange/exercise_folder.h"
 #include "gui_support.h"
 #include "library/case_library.h"
 
@@ -143,18 +143,18 @@ class EducatorPathTest : public test::WindowTest {
 
     // A set of its own, and three edits.
     QVERIFY(choose("setMenu", Qt::Key_N));
-    QTRY_COMPARE(work.scene()->tissues.name, std::string("My tissues"));
+    QTRY_COMPARE(work.exercise()->tissues.name, std::string("My tissues"));
     QTRY_VERIFY_WITH_TIMEOUT(!work.isOpening(), kLong_ms);
     QVERIFY(fill("setName", "Lesson one"));
-    QCOMPARE(work.scene()->tissues.name, std::string("Lesson one"));
-    const std::string first = work.scene()->tissues.tissues[0].id;
+    QCOMPARE(work.exercise()->tissues.name, std::string("Lesson one"));
+    const std::string first = work.exercise()->tissues.tissues[0].id;
     QVERIFY(fill("stiffness", "444"));
-    QCOMPARE(work.scene()->tissues.find(first)->stiffness_N_per_m.value, 444.0);
+    QCOMPARE(work.exercise()->tissues.find(first)->stiffness_N_per_m.value, 444.0);
     QVERIFY(fill("damping", "2.5"));
-    QCOMPARE(work.scene()->tissues.find(first)->damping_Ns_per_m.value, 2.5);
-    const int low = work.scene()->tissues.find(first)->hu_min;
+    QCOMPARE(work.exercise()->tissues.find(first)->damping_Ns_per_m.value, 2.5);
+    const int low = work.exercise()->tissues.find(first)->hu_min;
     QVERIFY(fill("huLow", QString::number(low + 10)));
-    QCOMPARE(work.scene()->tissues.find(first)->hu_min, low + 10);
+    QCOMPARE(work.exercise()->tissues.find(first)->hu_min, low + 10);
     QTRY_VERIFY_WITH_TIMEOUT(!work.isOpening(), kLong_ms);
 
     // Felt at once.
@@ -186,8 +186,9 @@ class EducatorPathTest : public test::WindowTest {
     QVERIFY(showTab(PrepareWorkspace::kExerciseTab));
     const QString name = way == Way::mouse ? "By mouse" : "By keys";
     QVERIFY(fill("exerciseName", name));
-    QCOMPARE(toQt(work.scene()->name), name);
-    const std::size_t points = work.scene()->outline ? work.scene()->outline->points_mm.size() : 0;
+    QCOMPARE(toQt(work.exercise()->name), name);
+    const std::size_t points =
+        work.exercise()->outline ? work.exercise()->outline->points_mm.size() : 0;
     QVERIFY(use("drawOutline"));
     for (int n = 0; n < 3; ++n) {
       if (way == Way::mouse) {
@@ -200,18 +201,18 @@ class EducatorPathTest : public test::WindowTest {
       }
       rest();
     }
-    QVERIFY(work.scene()->outline);
-    QVERIFY(work.scene()->outline->points_mm.size() >= points + 3);
+    QVERIFY(work.exercise()->outline);
+    QVERIFY(work.exercise()->outline->points_mm.size() >= points + 3);
     press(Qt::Key_Escape);
-    if (!work.scene()->card) QVERIFY(use("cardOn"));
+    if (!work.exercise()->card) QVERIFY(use("cardOn"));
     QVERIFY(fill("cardGoal", "Open the window"));
     QVERIFY(fill("cardSteps", "Look\nCut"));
-    QCOMPARE(work.scene()->card->en.goal, std::string("Open the window"));
-    QCOMPARE(work.scene()->card->en.steps, (std::vector<std::string>{"Look", "Cut"}));
+    QCOMPARE(work.exercise()->card->en.goal, std::string("Open the window"));
+    QCOMPARE(work.exercise()->card->en.steps, (std::vector<std::string>{"Look", "Cut"}));
 
     // Kept, tried, and back.
     QVERIFY(use("saveExercise"));
-    QTRY_VERIFY_WITH_TIMEOUT(!work.isSaving() && !work.sceneEdited(), kLong_ms);
+    QTRY_VERIFY_WITH_TIMEOUT(!work.isSaving() && !work.exerciseEdited(), kLong_ms);
     QCOMPARE(exercisesIn(toPath(home.path())).size(), std::size_t(1));
     QVERIFY(use("tryExercise"));
     QCOMPARE(window.place(), Place::train);
@@ -243,10 +244,10 @@ class EducatorPathTest : public test::WindowTest {
     QVERIFY(use("importExercise"));
     QVERIFY(give("importExerciseDialog", stick));
     QVERIFY(arrived.count() == 1 || arrived.wait(kLong_ms));
-    QCOMPARE(toQt(elsewhere.workstation().scene()->name), name);
+    QCOMPARE(toQt(elsewhere.workstation().exercise()->name), name);
     QCOMPARE(elsewhere.workstation().currentCase()->sha256, work.currentCase()->sha256);
-    QCOMPARE(toQt(toJson(*elsewhere.workstation().scene()).dump()),
-             toQt(toJson(*work.scene()).dump()));
+    QCOMPARE(toQt(toJson(*elsewhere.workstation().exercise()).dump()),
+             toQt(toJson(*work.exercise()).dump()));
     run(elsewhere);
     at_ = nullptr;
     window_.reset();

@@ -96,7 +96,7 @@ class EntryGuiTest : public test::WindowTest {
     QSignalSpy started(&workstation(), &Workstation::sessionStarted);
     window_->findChild<QAction*>("start")->trigger();
     QVERIFY(started.count() == 1 || started.wait(kLong_ms));
-    const SceneArm& right = workstation().session()->scene().arms.back();
+    const ExerciseArm& right = workstation().session()->exercise().arms.back();
     QVERIFY(right.map.fixed);
     QVERIFY(glm::length(right.map.fixed->centre_mm - place) < 30.0);
     views().setTool(SliceTool::entry);

@@ -1,5 +1,5 @@
 // An exercise is made in Prepare: tools, arms, what is felt, its card, its outline; it is saved,
-// tried, exported and imported elsewhere. By the effect on scene, disk and picture.
+// tried, exported and imported elsewhere. By the effect on exercise, disk and picture.
 #include <QFileDialog>
 #include <QMenu>
 #include <QMessageBox>
@@ -7,7 +7,7 @@
 #include <QRegularExpression>
 
 #include "case/placement.h"
-#include "exercise/exercise_folder.h"
+#include "exchange/exercise_folder.h"
 #include "gui_support.h"
 #include "library/case_library.h"
 #include "session/arm_devices.h"
@@ -25,7 +25,7 @@ class ExerciseGuiTest : public test::WindowTest {
   Q_OBJECT
 
  private:
-  const Scene& scene() { return *workstation().scene(); }
+  const Exercise& exercise() { return *workstation().exercise(); }
   void key(QWidget* widget, Qt::Key of, Qt::KeyboardModifiers with = {}) {
     QTest::keyClick(widget, of, with);
   }
@@ -159,17 +159,17 @@ class ExerciseGuiTest : public test::WindowTest {
     for (QAction* action : menu->actions()) {
       if (action->text() == "needle") action->trigger();
     }
-    const SceneTool* needle = scene().findTool("needle");
+    const ExerciseTool* needle = exercise().findTool("needle");
     QVERIFY(needle);
     QCOMPARE(needle->tool.made_from.kind, ToolKind::needle);
     type("toolName", "probe");
-    QVERIFY(scene().findTool("probe"));
-    const auto made = [&] { return scene().findTool("probe")->tool.made_from; };
+    QVERIFY(exercise().findTool("probe"));
+    const auto made = [&] { return exercise().findTool("probe")->tool.made_from; };
     enter("tool:length_mm", "33");
     QCOMPARE(made().length_mm, 33.0);
     enter("tool:points", "5");
     QCOMPARE(made().points, 5);
-    QCOMPARE(scene().findTool("probe")->tool.points_m.size(), std::size_t(5));
+    QCOMPARE(exercise().findTool("probe")->tool.points_m.size(), std::size_t(5));
     enter("tool:radius_mm", "0.8");
     QCOMPARE(made().radius_mm, 0.8);
     enter("tool:motor_W", "2");
@@ -189,59 +189,59 @@ class ExerciseGuiTest : public test::WindowTest {
     find<QToolButton>("chooseMesh")->click();
     const std::filesystem::path mesh = resourceFolder() / "tools" / "burr4.stl";
     give("meshDialog", toQt(mesh));
-    QVERIFY(scene().findTool("probe")->look.mesh == mesh);
+    QVERIFY(exercise().findTool("probe")->look.mesh == mesh);
     enter("tool:tip_mmX", "-2");
-    QCOMPARE(scene().findTool("probe")->look.tip_mm.x, -2.0);
+    QCOMPARE(exercise().findTool("probe")->look.tip_mm.x, -2.0);
     find<QToolButton>("noMesh")->click();
-    QVERIFY(scene().findTool("probe")->look.mesh.empty());
+    QVERIFY(exercise().findTool("probe")->look.mesh.empty());
     find<QToolButton>("removeTool")->click();
-    QVERIFY(!scene().findTool("probe"));
+    QVERIFY(!exercise().findTool("probe"));
     // One that an arm holds stays, and it is said.
     find<QListWidget>("toolList")->setCurrentRow(0);
-    const std::size_t count = scene().tools.size();
+    const std::size_t count = exercise().tools.size();
     find<QToolButton>("removeTool")->click();
-    QCOMPARE(scene().tools.size(), count);
+    QCOMPARE(exercise().tools.size(), count);
     QVERIFY(find<QLabel>("toolProblem")->text().contains("arm has it"));
   }
 
-  void anArmsToolsScalesAndForceReachTheScene() {
+  void anArmsToolsScalesAndForceReachTheExercise() {
     showTab(PrepareWorkspace::kToolTab);
     choose("armTool", QString("burr"));
-    QCOMPARE(scene().arms[0].tool, std::string("burr"));
-    QVERIFY(names(scene().arms[0].other_tools, "blade"));  // it stays at hand
+    QCOMPARE(exercise().arms[0].tool, std::string("burr"));
+    QVERIFY(names(exercise().arms[0].other_tools, "blade"));  // it stays at hand
     tick("otherTools", "craniotome", false);
-    QVERIFY(!names(scene().arms[0].other_tools, "craniotome"));
+    QVERIFY(!names(exercise().arms[0].other_tools, "craniotome"));
     tick("otherTools", "blade", false);
-    QVERIFY(!names(scene().arms[0].other_tools, "blade"));
+    QVERIFY(!names(exercise().arms[0].other_tools, "blade"));
     tick("otherTools", "blade", true);
-    QVERIFY(names(scene().arms[0].other_tools, "blade"));
+    QVERIFY(names(exercise().arms[0].other_tools, "blade"));
     enter("arm:motion_scale", "0.5");
-    QCOMPARE(scene().arms[0].map.motion_scale, 0.5);
+    QCOMPARE(exercise().arms[0].map.motion_scale, 0.5);
     enter("arm:force_scale", "2");
-    QCOMPARE(scene().arms[0].map.force_scale, 2.0);
+    QCOMPARE(exercise().arms[0].map.force_scale, 2.0);
     enter("arm:offset_mmZ", "30");
-    QCOMPARE(scene().arms[0].map.offset_mm.z, 30.0);
+    QCOMPARE(exercise().arms[0].map.offset_mm.z, 30.0);
     enter("arm:max_force_N", "1.5");
-    QCOMPARE(scene().arms[0].max_force_N, 1.5);
+    QCOMPARE(exercise().arms[0].max_force_N, 1.5);
     // What the arms show of the tissues follows.
     QCOMPARE(*find<LimitBar>("frictionLimit")->limit(), 0.75);
     // What is asked for stays as it is asked for; what the device gives is said.
     enter("arm:max_force_N", "50");
-    QCOMPARE(scene().arms[0].max_force_N, 50.0);
+    QCOMPARE(exercise().arms[0].max_force_N, 50.0);
     QCOMPARE(*find<LimitBar>("frictionLimit")->limit(), 1.65);
-    const Json before = sceneFile(scene());
+    const Json before = exerciseFile(exercise());
     find<QToolButton>("removeArm")->click();
-    QCOMPARE(scene().arms.size(), std::size_t(1));
+    QCOMPARE(exercise().arms.size(), std::size_t(1));
     workstation().undoEdit();
-    QCOMPARE(toQt(sceneFile(scene()).dump()), toQt(before.dump()));
+    QCOMPARE(toQt(exerciseFile(exercise()).dump()), toQt(before.dump()));
     choose("armChoice", QString("right"));
     enter("arm:motion_scale", "0.8");
-    QCOMPARE(scene().arms[1].map.motion_scale, 0.8);
-    QCOMPARE(scene().arms[0].map.motion_scale, 0.5);
+    QCOMPARE(exercise().arms[1].map.motion_scale, 0.8);
+    QCOMPARE(exercise().arms[0].map.motion_scale, 0.5);
     choose("armLandmark", QString("vault"));
-    QCOMPARE(scene().arms[1].map.landmark, std::string("vault"));
+    QCOMPARE(exercise().arms[1].map.landmark, std::string("vault"));
     enter("arm:force_scale", "500");
-    QCOMPARE(scene().arms[1].map.force_scale, 1.0);
+    QCOMPARE(exercise().arms[1].map.force_scale, 1.0);
     QVERIFY(find<QLabel>("arm:force_scaleRefused")->isVisible());
   }
 
@@ -249,43 +249,45 @@ class ExerciseGuiTest : public test::WindowTest {
     showTab(PrepareWorkspace::kToolTab);
     choose("armChoice", QString("left"));
     type("armName", "first");
-    QCOMPARE(scene().arms[0].name, std::string("first"));
+    QCOMPARE(exercise().arms[0].name, std::string("first"));
     find<QToolButton>("addArm")->click();
-    QCOMPARE(scene().arms.size(), std::size_t(3));
-    QCOMPARE(scene().arms[2].name, std::string("left"));
+    QCOMPARE(exercise().arms.size(), std::size_t(3));
+    QCOMPARE(exercise().arms[2].name, std::string("left"));
     QCOMPARE(workstation().rig().arms.size(), std::size_t(3));
     QCOMPARE(workstation().rig().arms[2].device.place, 2u);
     QVERIFY2(!find<QLabel>("armProblem")->isVisible(),
              qPrintable(find<QLabel>("armProblem")->text()));
     find<QToolButton>("removeArm")->click();
-    QCOMPARE(scene().arms.size(), std::size_t(2));
+    QCOMPARE(exercise().arms.size(), std::size_t(2));
 
     showTab(PrepareWorkspace::kExerciseTab);
     find<QToolButton>("addLandmark")->click();
-    QCOMPARE(scene().landmarks.size(), std::size_t(2));
+    QCOMPARE(exercise().landmarks.size(), std::size_t(2));
     untilPlaced();
     type("landmarkName", "side");
-    QCOMPARE(scene().landmarks[1].id, std::string("side"));
+    QCOMPARE(exercise().landmarks[1].id, std::string("side"));
     untilPlaced();
     enter("landmark:towardsX", "0.3");
-    QCOMPARE(scene().landmarks[1].towards.x, 0.3);
+    QCOMPARE(exercise().landmarks[1].towards.x, 0.3);
     untilPlaced();
     choose("landmark", QString("vault"));
     find<QToolButton>("removeLandmark")->click();
-    QCOMPARE(scene().landmarks.size(), std::size_t(2));
+    QCOMPARE(exercise().landmarks.size(), std::size_t(2));
     QVERIFY(find<QLabel>("placeProblem")->text().contains("vault"));  // arms are at it
     choose("landmark", QString("side"));
     find<QToolButton>("removeLandmark")->click();
-    QCOMPARE(scene().landmarks.size(), std::size_t(1));
+    QCOMPARE(exercise().landmarks.size(), std::size_t(1));
     untilPlaced();
   }
 
   void theBoxOfAnArmIsDraggedInASliceAndIsOneStepBack() {
     showTab(PrepareWorkspace::kToolTab);
     choose("armChoice", QString("left"));
-    const Vec3 before = scene().arms[0].map.offset_mm;
+    const Vec3 before = exercise().arms[0].map.offset_mm;
     const auto centre = [&] {
-      return withFixedMaps(scene(), workstation().placed()->landmarks).arms[0].map.fixed->centre_mm;
+      return withFixedMaps(exercise(), workstation().placed()->landmarks)
+          .arms[0]
+          .map.fixed->centre_mm;
     };
     SliceView& coronal = slice(SliceAxis::coronal);
     const Vec3 from_mm = centre();
@@ -299,10 +301,10 @@ class ExerciseGuiTest : public test::WindowTest {
     const Vec3 moved = centre() - from_mm;
     const Vec3 expected = coronal.toPatient_mm(from + by) - coronal.toPatient_mm(from);
     QVERIFY2(glm::length(moved - expected) < 1.0, qPrintable(QString::number(moved.x)));
-    QVERIFY(glm::length(scene().arms[0].map.offset_mm - before) > 5.0);
+    QVERIFY(glm::length(exercise().arms[0].map.offset_mm - before) > 5.0);
     keepGrab("prepare-arms.png");
     // In a slice before the box its edges are dotted.
-    const QColor colour = colours::ofArm(scene().arms[0], 0);
+    const QColor colour = colours::ofArm(exercise().arms[0], 0);
     const auto solid = [&] {
       const QImage image = coronal.grab().toImage();
       int of_the_arm = 0;
@@ -323,17 +325,17 @@ class ExerciseGuiTest : public test::WindowTest {
     QVERIFY2(cut > 100 && beyond < cut / 2,
              qPrintable(QString("%1 and %2 pixels").arg(cut).arg(beyond)));
     workstation().undoEdit();
-    QVERIFY(scene().arms[0].map.offset_mm == before);
+    QVERIFY(exercise().arms[0].map.offset_mm == before);
     // By an edge of it as well.
     const WorkspaceMap map =
-        *withFixedMaps(scene(), workstation().placed()->landmarks).arms[0].map.fixed;
+        *withFixedMaps(exercise(), workstation().placed()->landmarks).arms[0].map.fixed;
     const double half_mm = 500.0 * workstation().workspaces_mm()[0].z * 1e-3;
     const Vec3 edge_mm = map.centre_mm - map.rotation * Vec3(0.0, 0.0, half_mm);
     const QPoint at = coronal.fromPatient(edge_mm).toPoint();
     QTest::mousePress(&coronal, Qt::LeftButton, {}, at);
     moveTo(coronal, at + QPoint(12, 0), Qt::LeftButton);
     QTest::mouseRelease(&coronal, Qt::LeftButton, {}, at + QPoint(12, 0));
-    QVERIFY(glm::length(scene().arms[0].map.offset_mm - before) > 2.0);
+    QVERIFY(glm::length(exercise().arms[0].map.offset_mm - before) > 2.0);
   }
 
   void whatIsFeltIsChosenLawByLaw() {
@@ -341,20 +343,20 @@ class ExerciseGuiTest : public test::WindowTest {
     auto* rupture = find<QCheckBox>("law:rupture");
     QVERIFY(!rupture->isChecked());
     rupture->click();
-    QVERIFY(names(scene().laws, LawKind::rupture));
+    QVERIFY(names(exercise().laws, LawKind::rupture));
     for (const char* law : {"viscous", "coulomb", "elastic"}) {
       find<QCheckBox>(QString("law:") + law)->click();
     }
-    QCOMPARE(scene().laws, std::vector<LawKind>{LawKind::rupture});
+    QCOMPARE(exercise().laws, std::vector<LawKind>{LawKind::rupture});
     choose("sceneController", int(ControllerKind::off));
-    QCOMPARE(scene().controller, ControllerKind::off);
+    QCOMPARE(exercise().controller, ControllerKind::off);
     QCOMPARE(workstation().controllerInForce(), ControllerKind::off);
     choose("forceAt", int(ForceAt::tip));
-    QCOMPARE(scene().force_at, ForceAt::tip);
+    QCOMPARE(exercise().force_at, ForceAt::tip);
     choose("removal", int(RemovalKind::instant));
-    QCOMPARE(scene().removal, RemovalKind::instant);
+    QCOMPARE(exercise().removal, RemovalKind::instant);
     enter("scene:rate_hz", "2000");
-    QCOMPARE(scene().rate_hz, 2000.0);
+    QCOMPARE(exercise().rate_hz, 2000.0);
   }
 
   void anArmIsFixedInThePatientAndGoesBackToItsLandmark() {
@@ -362,21 +364,21 @@ class ExerciseGuiTest : public test::WindowTest {
     choose("armChoice", QString("left"));
     const auto& landmarks = workstation().placed()->landmarks;
     const auto centre = [&] {
-      return withFixedMaps(scene(), landmarks).arms[0].map.fixed->centre_mm;
+      return withFixedMaps(exercise(), landmarks).arms[0].map.fixed->centre_mm;
     };
     const Vec3 before = centre();
     choose("armLandmark", QString(""));
-    QVERIFY(scene().arms[0].map.fixed && scene().arms[0].map.landmark.empty());
+    QVERIFY(exercise().arms[0].map.fixed && exercise().arms[0].map.landmark.empty());
     QCOMPARE(glm::length(centre() - before) < 1e-9, true);
     enter("fixed:centre_mmX", "5");
-    QCOMPARE(scene().arms[0].map.fixed->centre_mm.x, 5.0);
+    QCOMPARE(exercise().arms[0].map.fixed->centre_mm.x, 5.0);
     enter("fixed:motion_scale", "0.5");
-    QCOMPARE(scene().arms[0].map.fixed->motion_scale, 0.5);
+    QCOMPARE(exercise().arms[0].map.fixed->motion_scale, 0.5);
     enter("fixed:force_scale", "2");
-    QCOMPARE(scene().arms[0].map.force_scale, 2.0);
+    QCOMPARE(exercise().arms[0].map.force_scale, 2.0);
     const Pose ahead{Vec3(0.0, 0.0, 0.01), Quat(1, 0, 0, 0)};
     const auto points = [&] {
-      const WorkspaceMap& map = *scene().arms[0].map.fixed;
+      const WorkspaceMap& map = *exercise().arms[0].map.fixed;
       return glm::normalize(map.toPatient_mm(ahead).position - map.centre_mm);
     };
     for (const char* axis : {"X", "Y", "Z"}) {
@@ -389,9 +391,9 @@ class ExerciseGuiTest : public test::WindowTest {
     QVERIFY(glm::length(points() - Vec3(1, 0, 0)) < 1e-6);
     const Vec3 moved = centre();
     choose("armLandmark", QString("vault"));
-    QVERIFY(!scene().arms[0].map.fixed);
+    QVERIFY(!exercise().arms[0].map.fixed);
     QVERIFY(glm::length(centre() - moved) < 1e-6);
-    QCOMPARE(scene().arms[0].map.motion_scale, 0.5);
+    QCOMPARE(exercise().arms[0].map.motion_scale, 0.5);
   }
 
   // What another part of the window has changed meanwhile stays.
@@ -399,14 +401,14 @@ class ExerciseGuiTest : public test::WindowTest {
     showTab(PrepareWorkspace::kToolTab);
     workstation().setController(ControllerKind::off);
     enter("arm:motion_scale", "0.5");
-    QCOMPARE(scene().arms[0].map.motion_scale, 0.5);
-    QCOMPARE(scene().controller, ControllerKind::off);
+    QCOMPARE(exercise().arms[0].map.motion_scale, 0.5);
+    QCOMPARE(exercise().controller, ControllerKind::off);
   }
 
   void whatIsNoScriptSetOrMeshIsSaidAndNotTaken() {
     const QString text = temporary_.filePath("shopping.json");
     QVERIFY(writeTextFile(toPath(text), "{\"milk\": 2}").ok());
-    const Scene before = scene();
+    const Exercise before = exercise();
     QSignalSpy failed(window_.get(), &MainWindow::failed);
     const auto refused = [&](int tab, const char* button, const char* dialog, const QString& file) {
       showTab(tab);
@@ -424,7 +426,7 @@ class ExerciseGuiTest : public test::WindowTest {
     refused(PrepareWorkspace::kExerciseTab, "chooseElsewhere", "elsewhereDialog", text);
     find<QListWidget>("toolList")->setCurrentRow(0);
     refused(PrepareWorkspace::kToolTab, "chooseMesh", "meshDialog", text);
-    QVERIFY(scene() == before);
+    QVERIFY(exercise() == before);
     // Each kind of file is asked for where it was last.
     const auto opensIn = [&](const char* button, const char* dialog) {
       find<QToolButton>(button)->click();
@@ -466,44 +468,44 @@ class ExerciseGuiTest : public test::WindowTest {
     QVERIFY(find<QLabel>("rateTrade")->text().contains("<b>500</b>"));
   }
 
-  void whatItIsWhereItEntersAndWhatStaysReachTheScene() {
+  void whatItIsWhereItEntersAndWhatStaysReachTheExercise() {
     showTab(PrepareWorkspace::kExerciseTab);
     type("exerciseName", "A window of mine");
-    QCOMPARE(scene().name, std::string("A window of mine"));
+    QCOMPARE(exercise().name, std::string("A window of mine"));
     choose("anatomy", QString("abdomen"));
-    QCOMPARE(scene().anatomy, std::string("abdomen"));
+    QCOMPARE(exercise().anatomy, std::string("abdomen"));
     choose("landmarkTissue", QString("scalp"));
-    QCOMPARE(scene().landmarks[0].tissue, std::string("scalp"));
+    QCOMPARE(exercise().landmarks[0].tissue, std::string("scalp"));
     untilPlaced();
     enter("landmark:run_mm", "2");
-    QCOMPARE(scene().landmarks[0].run_mm, 2.0);
+    QCOMPARE(exercise().landmarks[0].run_mm, 2.0);
     untilPlaced();
     enter("landmark:fromX", "0.6");
-    QCOMPARE(scene().landmarks[0].from.x, 0.6);
+    QCOMPARE(exercise().landmarks[0].from.x, 0.6);
     untilPlaced();
     choose("landmarkFound", QString("bulk"));
-    QCOMPARE(scene().landmarks[0].bulk_radius_mm, 20.0);
+    QCOMPARE(exercise().landmarks[0].bulk_radius_mm, 20.0);
     untilPlaced();
     enter("landmark:bulk_radius_mm", "12");
-    QCOMPARE(scene().landmarks[0].bulk_radius_mm, 12.0);
+    QCOMPARE(exercise().landmarks[0].bulk_radius_mm, 12.0);
     untilPlaced();
     choose("landmarkFound", QString("ray"));
-    QCOMPARE(scene().landmarks[0].bulk_radius_mm, 0.0);
-    QCOMPARE(scene().landmarks[0].from.x, 0.6);
+    QCOMPARE(exercise().landmarks[0].bulk_radius_mm, 0.0);
+    QCOMPARE(exercise().landmarks[0].from.x, 0.6);
     untilPlaced();
     choose("viewLandmark", QString(""));
-    QVERIFY(scene().view.landmark.empty());
+    QVERIFY(exercise().view.landmark.empty());
     enter("view:distance_mm", "200");
-    QCOMPARE(scene().view.distance_mm, 200.0);
+    QCOMPARE(exercise().view.distance_mm, 200.0);
     workstation().setLooks({{"bone", TissueLook::ghosted}});
     find<QToolButton>("keepLooks")->click();
-    QCOMPARE(scene().view.looks.at("bone"), TissueLook::ghosted);
+    QCOMPARE(exercise().view.looks.at("bone"), TissueLook::ghosted);
     find<QToolButton>("noOperator")->click();
-    QVERIFY(scene().operator_file.empty());
+    QVERIFY(exercise().operator_file.empty());
     find<QToolButton>("chooseOperator")->click();
     const auto script = resourceFolder() / "operators" / "burr-hole.json";
     give("operatorDialog", toQt(script));
-    QCOMPARE(scene().operator_file, script.string());
+    QCOMPARE(exercise().operator_file, script.string());
     find<QToolButton>("placeEntry")->click();
     QCOMPARE(window_->views().tool(), SliceTool::entry);
     QTest::mouseClick(&window_->view(), Qt::LeftButton, {}, window_->view().rect().center());
@@ -520,30 +522,30 @@ class ExerciseGuiTest : public test::WindowTest {
   void theCaseAndTheSetForOtherCasesStandInTheForm() {
     showTab(PrepareWorkspace::kExerciseTab);
     QVERIFY(find<QLabel>("exerciseCase")->text().contains("no structures"));
-    QVERIFY(!scene().tissues_elsewhere);
+    QVERIFY(!exercise().tissues_elsewhere);
     const auto sets = resourceFolder() / "tissues";
     const QString cranium = shownName(readTissueSet(sets / "cranium.json")->name);
     chooseElsewhere(cranium);
-    QVERIFY(scene().tissues_elsewhere);
-    QVERIFY(workstation().sceneEdited());
-    QCOMPARE(find<QLabel>("elsewhereSet")->text(), toQt(scene().tissues_elsewhere->name));
+    QVERIFY(exercise().tissues_elsewhere);
+    QVERIFY(workstation().exerciseEdited());
+    QCOMPARE(find<QLabel>("elsewhereSet")->text(), toQt(exercise().tissues_elsewhere->name));
     // It lacks the tissue of the landmark: beside the field, and what was there stays.
     TissueSet without = *readTissueSet(sets / "cranium.json");
     for (Tissue& tissue : without.tissues) {
-      if (tissue.id == scene().landmarks[0].tissue) tissue.id = "stone";
+      if (tissue.id == exercise().landmarks[0].tissue) tissue.id = "stone";
     }
     const QString file = temporary_.filePath("without.json");
     QVERIFY(writeTextFile(toPath(file), toJson(without).dump()).ok());
     chooseElsewhere("From a &file\u2026");
     give("elsewhereDialog", file);
     QVERIFY(find<QLabel>("whatProblem")->text().contains("set for other cases"));
-    QCOMPARE(scene().tissues_elsewhere->name, readTissueSet(sets / "cranium.json")->name);
+    QCOMPARE(exercise().tissues_elsewhere->name, readTissueSet(sets / "cranium.json")->name);
     // It is still there once the case has been placed anew, and after a save.
     enter("landmark:run_mm", "2");
     untilPlaced();
-    QVERIFY(scene().tissues_elsewhere);
+    QVERIFY(exercise().tissues_elsewhere);
     find<QToolButton>("noElsewhere")->click();
-    QVERIFY(!scene().tissues_elsewhere);
+    QVERIFY(!exercise().tissues_elsewhere);
     // Structures of a file.
     find<QToolButton>("chooseLabels")->click();
     QVERIFY(find<QFileDialog>("labelsDialog")->isVisible());
@@ -554,7 +556,7 @@ class ExerciseGuiTest : public test::WindowTest {
   void aStormOfEditsOfAPlaceIsNeverRefused() {
     QSignalSpy failed(window_.get(), &MainWindow::failed);
     for (int n = 1; n <= 30; ++n) {
-      Scene moved = scene();
+      Exercise moved = exercise();
       moved.landmarks[0].from.x = 0.4 + 0.005 * n;
       QVERIFY(workstation().edit(moved, "landmark").ok());
       workstation().closeEdit();
@@ -576,9 +578,9 @@ class ExerciseGuiTest : public test::WindowTest {
     goal->setFocus();
     goal->selectAll();
     QTest::keyClicks(goal, "Half a sentence");
-    QVERIFY(scene().card->en.goal != "Half a sentence");
+    QVERIFY(exercise().card->en.goal != "Half a sentence");
     window_->close();
-    QCOMPARE(scene().card->en.goal, std::string("Half a sentence"));
+    QCOMPARE(exercise().card->en.goal, std::string("Half a sentence"));
     QTRY_VERIFY(window_->findChild<QMessageBox*>("unsavedTissues"));
     find<QMessageBox>("unsavedTissues")->button(QMessageBox::Cancel)->click();
     QVERIFY(window_->isVisible());
@@ -588,35 +590,35 @@ class ExerciseGuiTest : public test::WindowTest {
   void theCardIsWrittenInBothLanguagesAndKeepsItsLimits() {
     showTab(PrepareWorkspace::kExerciseTab);
     type("cardGoal", "Cut it out");
-    QCOMPARE(scene().card->en.goal, std::string("Cut it out"));
+    QCOMPARE(exercise().card->en.goal, std::string("Cut it out"));
     write("cardSteps", "Do this\nThen that");
-    QCOMPARE(scene().card->en.steps, (std::vector<std::string>{"Do this", "Then that"}));
+    QCOMPARE(exercise().card->en.steps, (std::vector<std::string>{"Do this", "Then that"}));
     type("cardHands", "Both");
-    QCOMPARE(scene().card->en.hands, std::string("Both"));
+    QCOMPARE(exercise().card->en.hands, std::string("Both"));
     auto* chinese = find<QLineEdit>("cardGoalChinese");
     chinese->setFocus();
     chinese->setText(QString::fromUtf8("切開"));
     key(chinese, Qt::Key_Return);
-    QCOMPARE(scene().card->zh_TW->goal, std::string("切開"));
+    QCOMPARE(exercise().card->zh_TW->goal, std::string("切開"));
     auto* goal = find<QLineEdit>("cardGoal");
     goal->setFocus();
     goal->setText(QString(500, 'x'));
     key(goal, Qt::Key_Return);
     QVERIFY(find<QLabel>("cardProblem")->text().contains("500"));
-    QCOMPARE(scene().card->en.goal, std::string("Cut it out"));
+    QCOMPARE(exercise().card->en.goal, std::string("Cut it out"));
     find<QCheckBox>("cardChineseOn")->click();
-    QVERIFY(!scene().card->zh_TW);
+    QVERIFY(!exercise().card->zh_TW);
     find<QCheckBox>("cardChineseOn")->click();  // nothing of it was lost
-    QCOMPARE(scene().card->zh_TW->goal, std::string("切開"));
+    QCOMPARE(exercise().card->zh_TW->goal, std::string("切開"));
     find<QCheckBox>("cardChineseOn")->click();
     find<QCheckBox>("cardOn")->click();
-    QVERIFY(!scene().card);
+    QVERIFY(!exercise().card);
   }
 
   void anOutlineIsDrawnByClicksOnTheSurface() {
     showTab(PrepareWorkspace::kExerciseTab);
     find<QToolButton>("clearOutline")->click();
-    QVERIFY(!scene().outline);
+    QVERIFY(!exercise().outline);
     ViewWidget& view = window_->view();
     restRefined();
     const QImage before = view.grabFramebuffer();
@@ -627,15 +629,15 @@ class ExerciseGuiTest : public test::WindowTest {
       QTest::mouseClick(&view, Qt::LeftButton, {}, middle + by);
       rest();
     }
-    QVERIFY(scene().outline);
-    QCOMPARE(scene().outline->points_mm.size(), std::size_t(4));
-    QCOMPARE(scene().outline->frame->landmark, std::string("vault"));
+    QVERIFY(exercise().outline);
+    QCOMPARE(exercise().outline->points_mm.size(), std::size_t(4));
+    QCOMPARE(exercise().outline->frame->landmark, std::string("vault"));
     const auto seen = view.pickAt(middle + QPoint(30, 20));
-    QVERIFY(seen && glm::length(seen->at_mm - scene().outline->points_mm[2]) < 3.0);
+    QVERIFY(seen && glm::length(seen->at_mm - exercise().outline->points_mm[2]) < 3.0);
     find<QCheckBox>("outlineClosed")->click();
-    QVERIFY(scene().outline->closed);
+    QVERIFY(exercise().outline->closed);
     enter("outline:width_mm", "2.5");
-    QCOMPARE(scene().outline->width_mm, 2.5);
+    QCOMPARE(exercise().outline->width_mm, 2.5);
     restRefined();
     keepGrab("prepare-outline.png");
     const QImage with = view.grabFramebuffer();
@@ -649,30 +651,30 @@ class ExerciseGuiTest : public test::WindowTest {
     QVERIFY2(changed > 150, qPrintable(QString::number(changed)));
     // A point by itself, and the landmark that all go with.
     find<QSpinBox>("outlinePoint")->setValue(2);
-    const auto points = scene().outline->points_mm;
+    const auto points = exercise().outline->points_mm;
     auto* z = find<QDoubleSpinBox>("outlinePoint:at_mmZ");
     QVERIFY(std::abs(z->value() - points[1].z) < 0.06);
     z->setValue(points[1].z + 4.0);
-    QVERIFY(std::abs(scene().outline->points_mm[1].z - points[1].z - 4.0) < 0.06);
-    QCOMPARE(scene().outline->points_mm[0], points[0]);
+    QVERIFY(std::abs(exercise().outline->points_mm[1].z - points[1].z - 4.0) < 0.06);
+    QCOMPARE(exercise().outline->points_mm[0], points[0]);
     choose("outlineLandmark", QString(""));
-    QVERIFY(scene().outline && !scene().outline->frame);
+    QVERIFY(exercise().outline && !exercise().outline->frame);
     choose("outlineLandmark", QString("vault"));
-    QCOMPARE(scene().outline->frame->landmark, std::string("vault"));
-    const Vec3 at_mm = scene().outline->frame->at.position_mm;
+    QCOMPARE(exercise().outline->frame->landmark, std::string("vault"));
+    const Vec3 at_mm = exercise().outline->frame->at.position_mm;
     choose("outlineLandmark", QString("vault"));  // once more: nothing changes
-    QCOMPARE(scene().outline->frame->landmark, std::string("vault"));
-    QCOMPARE(scene().outline->frame->at.position_mm, at_mm);
+    QCOMPARE(exercise().outline->frame->landmark, std::string("vault"));
+    QCOMPARE(exercise().outline->frame->at.position_mm, at_mm);
     find<QSpinBox>("outlinePoint")->setValue(1);
     auto* number = find<QSpinBox>("outlinePoint");
     number->setFocus();
     number->selectAll();
     QTest::keyClicks(number, "2");  // as a click leaves it
     find<QToolButton>("outlinePointOff")->click();
-    QCOMPARE(scene().outline->points_mm.size(), std::size_t(3));
-    QVERIFY(glm::length(scene().outline->points_mm[1] - points[2]) < 1e-6);
+    QCOMPARE(exercise().outline->points_mm.size(), std::size_t(3));
+    QVERIFY(glm::length(exercise().outline->points_mm[1] - points[2]) < 1e-6);
     find<QToolButton>("outlineBack")->click();
-    QCOMPARE(scene().outline->points_mm.size(), std::size_t(2));
+    QCOMPARE(exercise().outline->points_mm.size(), std::size_t(2));
     key(&slice(SliceAxis::axial), Qt::Key_Escape);
     QCOMPARE(window_->views().tool(), SliceTool::window);
     QVERIFY(!find<QToolButton>("drawOutline")->isChecked());
@@ -690,11 +692,11 @@ class ExerciseGuiTest : public test::WindowTest {
     find<QPushButton>("saveExercise")->click();
     untilSaved();
     const std::filesystem::path file = storage() / "exercises" / "mine" / "scene.json";
-    QVERIFY(workstation().sceneFile() == file);
-    QVERIFY(!workstation().sceneEdited() && !workstation().tissuesEdited());
+    QVERIFY(workstation().exerciseFile() == file);
+    QVERIFY(!workstation().exerciseEdited() && !workstation().tissuesEdited());
     QVERIFY(find<QLabel>("exerciseSaved")->text().contains("Saved"));
     QVERIFY(find<QComboBox>("scenes")->findText("Mine") >= 0);
-    const Scene saved = *readScene(file);
+    const Exercise saved = *readExercise(file);
     QCOMPARE(saved.tissues.find("bone")->stiffness_N_per_m.value, 555.0);
     QCOMPARE(saved.arms[0].map.motion_scale, 0.5);
     QVERIFY(saved.case_source.find(workstation().currentCase()->stored) != std::string::npos);
@@ -703,14 +705,14 @@ class ExerciseGuiTest : public test::WindowTest {
     QVERIFY(find<QLabel>("exerciseSaved")->text().contains("Changed"));
     find<QPushButton>("saveExercise")->click();
     untilSaved();
-    QCOMPARE(readScene(file)->view.distance_mm, 222.0);
+    QCOMPARE(readExercise(file)->view.distance_mm, 222.0);
     QCOMPARE(exercisesIn(storage()).size(), std::size_t(1));
     // Tried, and back.
     find<QPushButton>("tryExercise")->click();
     QCOMPARE(window_->place(), Place::train);
     find<QAction>("start")->trigger();
     QTRY_VERIFY_WITH_TIMEOUT(workstation().phase() == Workstation::Phase::running, kLong_ms);
-    QCOMPARE(workstation().session()->scene().arms[0].map.motion_scale, 0.5);
+    QCOMPARE(workstation().session()->exercise().arms[0].map.motion_scale, 0.5);
     QTest::mouseClick(find<QPushButton>("backToPrepare"), Qt::LeftButton);
     QTRY_VERIFY_WITH_TIMEOUT(workstation().phase() == Workstation::Phase::ready, kLong_ms);
     QCOMPARE(window_->place(), Place::prepare);
@@ -739,9 +741,9 @@ class ExerciseGuiTest : public test::WindowTest {
     emit dialog->fileSelected(folder);
     dialog->close();
     QVERIFY(opened.count() == 1 || opened.wait(kLong_ms));
-    QVERIFY(another.workstation().scene()->name == "Mine");
+    QVERIFY(another.workstation().exercise()->name == "Mine");
     QCOMPARE(another.workstation().currentCase()->sha256, workstation().currentCase()->sha256);
-    Scene here = scene(), there = *another.workstation().scene();
+    Exercise here = exercise(), there = *another.workstation().exercise();
     QCOMPARE(QString::fromStdString(toJson(there).dump()),
              QString::fromStdString(toJson(here).dump()));
   }
@@ -773,7 +775,7 @@ class ExerciseGuiTest : public test::WindowTest {
 
   void anExerciseThatAnotherProgramHasChangedIsAskedAboutBeforeItIsReplaced() {
     showTab(PrepareWorkspace::kExerciseTab);
-    const std::filesystem::path file = workstation().sceneFile();
+    const std::filesystem::path file = workstation().exerciseFile();
     Json other = *readJsonFile(file);
     other["name"] = "Of somebody else";
     QVERIFY(writeTextFile(file, other.dump(1) + '\n').ok());
@@ -781,13 +783,13 @@ class ExerciseGuiTest : public test::WindowTest {
     enter("view:distance_mm", "244");
     find<QPushButton>("saveExercise")->click();
     QTRY_VERIFY(window_->findChild<QMessageBox*>("changedOnDisk"));
-    QCOMPARE(readScene(file)->name, std::string("Of somebody else"));
+    QCOMPARE(readExercise(file)->name, std::string("Of somebody else"));
     QTest::mouseClick(find<QPushButton>("saveBeside"), Qt::LeftButton);
     QTRY_COMPARE(exercisesIn(storage()).size(), before + 1);
     untilSaved();
-    QVERIFY(workstation().sceneFile() != file);
-    QCOMPARE(readScene(file)->name, std::string("Of somebody else"));
-    QCOMPARE(readScene(workstation().sceneFile())->view.distance_mm, 244.0);
+    QVERIFY(workstation().exerciseFile() != file);
+    QCOMPARE(readExercise(file)->name, std::string("Of somebody else"));
+    QCOMPARE(readExercise(workstation().exerciseFile())->view.distance_mm, 244.0);
   }
 
   void ofTwoOfOneNameEachCanBeToldAndOneThatCannotBeReadIsListed() {
@@ -843,7 +845,7 @@ class ExerciseGuiTest : public test::WindowTest {
 
   void aCaseThatIsGoneIsSaidAndWhatIsOpenStays() {
     showTab(PrepareWorkspace::kExerciseTab);
-    const std::filesystem::path file = workstation().sceneFile();
+    const std::filesystem::path file = workstation().exerciseFile();
     const std::string id = workstation().currentCase()->stored;
     const std::filesystem::path folder = storage() / "cases" / id;
     std::filesystem::rename(folder, storage() / "away");
@@ -860,20 +862,20 @@ class ExerciseGuiTest : public test::WindowTest {
     showTab(PrepareWorkspace::kExerciseTab);
     enter("view:distance_mm", "333");
     const std::filesystem::path folder = storage() / "exercises";
-    const std::filesystem::path file = workstation().sceneFile();
+    const std::filesystem::path file = workstation().exerciseFile();
     std::filesystem::rename(folder, storage() / "kept");
     QVERIFY(writeTextFile(folder, "no folder").ok());
     QSignalSpy failed(window_.get(), &MainWindow::failed);
     find<QPushButton>("saveExercise")->click();
     QTRY_COMPARE_WITH_TIMEOUT(failed.count(), 1, kLong_ms);
-    QVERIFY(workstation().sceneEdited());
-    QCOMPARE(scene().view.distance_mm, 333.0);
+    QVERIFY(workstation().exerciseEdited());
+    QCOMPARE(exercise().view.distance_mm, 333.0);
     std::filesystem::remove(folder);
     std::filesystem::rename(storage() / "kept", folder);
     closeDialogs();
     find<QPushButton>("saveExercise")->click();
     untilSaved();
-    QCOMPARE(readScene(file)->view.distance_mm, 333.0);
+    QCOMPARE(readExercise(file)->view.distance_mm, 333.0);
   }
 
   void onAnotherCaseItIsAskedWhetherItIsReplacedAndAFixedArmIsNotTakenAlong() {
@@ -884,37 +886,38 @@ class ExerciseGuiTest : public test::WindowTest {
     find<QPushButton>("saveExercise")->click();
     untilSaved();
     choose("viewLandmark", QString(""));
-    const std::filesystem::path file = workstation().sceneFile();
-    const std::string before = readScene(file)->case_source;
+    const std::filesystem::path file = workstation().exerciseFile();
+    const std::string before = readExercise(file)->case_source;
     QSignalSpy opened(&workstation(), &Workstation::caseOpened);
     workstation().openPhantom("cranium");
     QVERIFY(opened.count() == 1 || opened.wait(kLong_ms));
-    QVERIFY(workstation().sceneFile() == file);
+    QVERIFY(workstation().exerciseFile() == file);
     showTab(PrepareWorkspace::kExerciseTab);
     find<QPushButton>("saveExercise")->click();
     QTRY_VERIFY(window_->findChild<QMessageBox*>("madeOnAnotherCase"));
-    QCOMPARE(readScene(file)->case_source, before);
+    QCOMPARE(readExercise(file)->case_source, before);
     QTest::mouseClick(find<QPushButton>("saveBeside"), Qt::LeftButton);
-    QTRY_VERIFY_WITH_TIMEOUT(workstation().sceneFile() != file, kLong_ms);
+    QTRY_VERIFY_WITH_TIMEOUT(workstation().exerciseFile() != file, kLong_ms);
     untilSaved();
-    QCOMPARE(readScene(file)->case_source, before);
-    QCOMPARE(readScene(workstation().sceneFile())->case_source, std::string("phantom:cranium"));
+    QCOMPARE(readExercise(file)->case_source, before);
+    QCOMPARE(readExercise(workstation().exerciseFile())->case_source,
+             std::string("phantom:cranium"));
   }
 
   void whatIsLockedIsNotEdited() {
     showTab(PrepareWorkspace::kExerciseTab);
     find<QCheckBox>("lock:rate")->click();
-    QVERIFY(scene().locks.contains(Lock::rate));
+    QVERIFY(exercise().locks.contains(Lock::rate));
     QVERIFY(workstation().isLocked(Lock::rate));
     QVERIFY(find<QLabel>("formLocked")->isVisible());
     QVERIFY(!find<QLineEdit>("exerciseName")->isEnabled());
-    Scene other = scene();
+    Exercise other = exercise();
     other.name = "x";
     QCOMPARE(workstation().edit(other, "name").error().code, std::string("LOCKED"));
     workstation().setUnlocked(true);
     QVERIFY(find<QLineEdit>("exerciseName")->isEnabled());
     find<QCheckBox>("lock:rate")->click();
-    QVERIFY(!scene().locks.contains(Lock::rate));
+    QVERIFY(!exercise().locks.contains(Lock::rate));
     workstation().setUnlocked(false);
   }
 };

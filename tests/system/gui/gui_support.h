@@ -46,20 +46,21 @@ inline Volume coarseCranium(int factor) {
   return coarse;
 }
 
-// A scene of the built-in cranium's kind on that case; both are written into the folder.
-inline std::filesystem::path sceneOn(const Volume& volume, const std::filesystem::path& folder,
-                                     const std::string& name) {
-  const std::filesystem::path scenes = resourceFolder() / "scenes", of = folder / (name + ".mha");
-  Json scene = *readJsonFile(scenes / "cranium.json");
+// An exercise of the built-in cranium's kind on that case; both are written into the folder.
+inline std::filesystem::path exerciseOn(const Volume& volume, const std::filesystem::path& folder,
+                                        const std::string& name) {
+  const std::filesystem::path exercises = resourceFolder() / "scenes",
+                              of = folder / (name + ".mha");
+  Json exercise = *readJsonFile(exercises / "cranium.json");
   const auto makeAbsolute = [&](Json& path) {
-    path = (scenes / path.get<std::string>()).lexically_normal().string();
+    path = (exercises / path.get<std::string>()).lexically_normal().string();
   };
-  scene["case"] = of.string();
-  makeAbsolute(scene["tissues"]);
-  makeAbsolute(scene["operator"]);
-  for (Json& tool : scene["tools"]) makeAbsolute(tool["file"]);
+  exercise["case"] = of.string();
+  makeAbsolute(exercise["tissues"]);
+  makeAbsolute(exercise["operator"]);
+  for (Json& tool : exercise["tools"]) makeAbsolute(tool["file"]);
   const std::filesystem::path file = folder / (name + ".json");
-  if (!writeVolume(volume, of) || !writeTextFile(file, scene.dump())) {
+  if (!writeVolume(volume, of) || !writeTextFile(file, exercise.dump())) {
     qFatal("%s cannot be written", file.c_str());
   }
   return file;

@@ -165,7 +165,7 @@ class GuiTest : public test::WindowTest {
     QTRY_VERIFY(!window_->findChild<QMessageBox*>("errorDialog"));
   }
 
-  void aFileThatIsNoSceneIsSaidInWords() {
+  void aFileThatIsNoExerciseIsSaidInWords() {
     const QString file = temporary_.filePath("scene.json");
     QFile out(file);
     QVERIFY(out.open(QIODevice::WriteOnly) && out.write("{") == 1);
@@ -192,16 +192,16 @@ class GuiTest : public test::WindowTest {
   }
 
   void whileAnExerciseIsOpenedItIsTheOneThatIsShown() {
-    auto *scenes = find<QComboBox>("scenes"), *controller = find<QComboBox>("controller");
-    const QString before = scenes->currentText();
+    auto *exercises = find<QComboBox>("scenes"), *controller = find<QComboBox>("controller");
+    const QString before = exercises->currentText();
     QCOMPARE(controller->currentText(), QString());
     workstation().openPath(resourceFolder() / "scenes" / "seed-liver.json");
     QVERIFY(workstation().isOpening());
-    QVERIFY2(scenes->currentText().contains("liver"), qPrintable(scenes->currentText()));
+    QVERIFY2(exercises->currentText().contains("liver"), qPrintable(exercises->currentText()));
     QCOMPARE(controller->currentText(), controllerWord(ControllerKind::seed));
     workstation().cancelOpening();
     QTRY_VERIFY_WITH_TIMEOUT(!workstation().isOpening(), kLong_ms);
-    QCOMPARE(scenes->currentText(), before);
+    QCOMPARE(exercises->currentText(), before);
     QCOMPARE(controller->currentText(), QString());
   }
 
@@ -291,7 +291,7 @@ class GuiTest : public test::WindowTest {
     window_->findChild<TissuePanel*>()->select("bone");
     QCOMPARE(find<QSpinBox>("huLow")->value(), 226);
     enter("huLow", "900");
-    QCOMPARE(workstation().scene()->tissues.find("bone")->hu_min, 900);
+    QCOMPARE(workstation().exercise()->tissues.find("bone")->hu_min, 900);
     const Picture denser = casePicture();
     QVERIFY2(differentPixels(denser, opened_) > 1000, "the picture did not follow the threshold");
     enter("huLow", "226");
@@ -304,7 +304,7 @@ class GuiTest : public test::WindowTest {
     enter("huLow", "100");  // into the dura
     QVERIFY(problem->isVisible());
     QVERIFY2(problem->text().contains("overlap"), qPrintable(problem->text()));
-    QCOMPARE(workstation().scene()->tissues.find("bone")->hu_min, 226);
+    QCOMPARE(workstation().exercise()->tissues.find("bone")->hu_min, 226);
     enter("huLow", "226");
     QVERIFY(!problem->isVisible());
   }
@@ -312,16 +312,17 @@ class GuiTest : public test::WindowTest {
   void whatTheArmsCannotShowIsSaidWithWhatWillBeFelt() {
     auto* felt = find<QLabel>("tissueFelt");
     QVERIFY(!felt->isVisible());
-    const std::optional<Scene>& scene = workstation().scene();
+    const std::optional<Exercise>& exercise = workstation().exercise();
     const Rig& rig = workstation().rig();
     QVERIFY(rig.arms[0].dynamics.has_value());
-    const double most = renderableOn(scene->arms[0], rig.arms[0].dynamics, scene->rate_hz).k_max;
+    const double most =
+        renderableOn(exercise->arms[0], rig.arms[0].dynamics, exercise->rate_hz).k_max;
     auto* box = find<QDoubleSpinBox>("stiffness");
     const double before = box->value();
     box->setValue(1e6);
     QVERIFY(felt->isVisible());
     QVERIFY2(felt->text().contains(QString::number(std::lround(most))), qPrintable(felt->text()));
-    QCOMPARE(scene->tissues.find("bone")->stiffness_N_per_m.value, 1e6);
+    QCOMPARE(exercise->tissues.find("bone")->stiffness_N_per_m.value, 1e6);
     keepGrab("felt-1280x800.png");
     box->setValue(before);
     QVERIFY(!felt->isVisible());
@@ -521,8 +522,8 @@ class GuiTest : public test::WindowTest {
     window_->show(Place::cases);
     prepareBuiltIn("abdomen");
     keepAll("cutsQuestion");
-    auto* scenes = find<QComboBox>("scenes");
-    emit scenes->activated((scenes->currentIndex() + 1) % scenes->count());
+    auto* exercises = find<QComboBox>("scenes");
+    emit exercises->activated((exercises->currentIndex() + 1) % exercises->count());
     keepAll("cutsQuestion");
     window_->close();
     keepAll("cutsQuestion");

@@ -53,7 +53,7 @@ int seen(int eye) {
 class HeadsetGuiTest : public test::TrainTest {
   Q_OBJECT
 
-  std::filesystem::path scene_;
+  std::filesystem::path exercise_;
 
   QString said() { return window_->statusBar()->currentMessage(); }
   QString words() { return find<QLabel>("eyes")->text(); }
@@ -84,7 +84,7 @@ class HeadsetGuiTest : public test::TrainTest {
   void initTestCase() {
     QVERIFY(QDir().mkpath(TREPHINE_ARTEFACTS));
     runtime();
-    scene_ = test::sceneOn(test::coarseCranium(2), toPath(temporary_.path()), "coarse");
+    exercise_ = test::exerciseOn(test::coarseCranium(2), toPath(temporary_.path()), "coarse");
   }
   void init() {
     runtime().reset();
@@ -95,7 +95,7 @@ class HeadsetGuiTest : public test::TrainTest {
   void cleanup() { window_.reset(); }
 
   void theKeySwitchesItOnAndOffWhileTheExerciseGoesOn() {
-    openScene(scene_);
+    openExercise(exercise_);
     QTRY_VERIFY(view().canDraw().ok());
     startTraining();
     key(Qt::Key_F9);
@@ -119,7 +119,7 @@ class HeadsetGuiTest : public test::TrainTest {
   }
 
   void oneThatIsLostLeavesTheExerciseSaysSoAndIsOfferedAgain() {
-    openScene(scene_);
+    openExercise(exercise_);
     startTraining();
     using Loss = TestRuntime::Loss;
     for (const Loss loss : {Loss::instance, Loss::session, Loss::pending, Loss::event}) {
@@ -163,7 +163,7 @@ class HeadsetGuiTest : public test::TrainTest {
   }
 
   void aScreenForBothEyesTakesItsPlace() {
-    openScene(scene_);
+    openExercise(exercise_);
     QTRY_VERIFY(view().canDraw().ok());
     putOn();
     QTRY_VERIFY(words().contains("both eyes"));
@@ -179,7 +179,7 @@ class HeadsetGuiTest : public test::TrainTest {
   }
 
   void oneThatCannotBeHadInAnExerciseIsSaidInALineThatFits() {
-    openScene(scene_);
+    openExercise(exercise_);
     startTraining();
     ::setenv("XR_RUNTIME_JSON", "/nowhere/runtime.json", 1);
     find<QAction>("headset")->trigger();
@@ -192,7 +192,7 @@ class HeadsetGuiTest : public test::TrainTest {
   }
 
   void oneWhoseSoftwareHangsHoldsUpNothing() {
-    openScene(scene_);
+    openExercise(exercise_);
     startTraining();
     putOn();
     runtime().hang(2.0);
@@ -210,7 +210,7 @@ class HeadsetGuiTest : public test::TrainTest {
   }
 
   void oneThatIsTakenOffIsSaidAndGoesOnWhenItIsPutOnAgain() {
-    openScene(scene_);
+    openExercise(exercise_);
     startTraining();
     putOn();
     runtime().setWorn(false);
@@ -225,7 +225,7 @@ class HeadsetGuiTest : public test::TrainTest {
   }
 
   void withoutAHeadsetOrItsSoftwareOneSentenceSaysWhatToDo() {
-    openScene(scene_);
+    openExercise(exercise_);
     QTRY_VERIFY(view().canDraw().ok());
     const auto refused = [&](const char* words) {
       find<QAction>("headset")->trigger();
@@ -248,7 +248,7 @@ class HeadsetGuiTest : public test::TrainTest {
   }
 
   void thePatientStandsBeforeTheHeadWhenThePersonAsksForIt() {
-    openScene(scene_);
+    openExercise(exercise_);
     QTRY_VERIFY(view().canDraw().ok());
     putOn();
     QTRY_VERIFY(seen(0) > 500);
@@ -273,7 +273,7 @@ class HeadsetGuiTest : public test::TrainTest {
   }
 
   void theWindowShowsTheLeftEyeIfItIsToldTo() {
-    openScene(scene_);
+    openExercise(exercise_);
     QTRY_VERIFY(view().canDraw().ok());
     QTRY_VERIFY_WITH_TIMEOUT(view().isComplete(), kLong_ms);
     find<QAction>("headsetSettings")->trigger();
@@ -295,7 +295,7 @@ class HeadsetGuiTest : public test::TrainTest {
   }
 
   void forceTimeAndCardAreReadInside() {
-    openScene(scene_);
+    openExercise(exercise_);
     startTraining();
     // A headset of 15 pixels a degree that looks at the card on the left, then at the forces.
     constexpr int kWide = 330;
@@ -327,7 +327,7 @@ class HeadsetGuiTest : public test::TrainTest {
   }
 
   void threeMarksThatAreTouchedSayWhereAnArmStands() {
-    openScene(scene_);
+    openExercise(exercise_);
     QTRY_VERIFY(view().canDraw().ok());
     putOn();
     const FoundArm device{"openhaptics", "1-2", "17", "Touch"};
@@ -395,7 +395,7 @@ class HeadsetGuiTest : public test::TrainTest {
   }
 
   void whatIsRegisteredWhereNoRoomIsKnownHoldsUntilTheHeadsetIsOff() {
-    openScene(scene_);
+    openExercise(exercise_);
     QTRY_VERIFY(view().canDraw().ok());
     runtime().setStage(false);
     putOn();

@@ -157,7 +157,7 @@ class HourGuiTest : public test::WindowTest {
 
   void train(double seconds, After& after) {
     const Result<OperatorScript> script =
-        readOperatorScript(workstation().scene()->operator_file, *workstation().scene());
+        readOperatorScript(workstation().exercise()->operator_file, *workstation().exercise());
     QVERIFY(script.ok());
     QSignalSpy started(&workstation(), &Workstation::sessionStarted);
     RunReport report;

@@ -111,7 +111,7 @@ class ImportGuiTest : public test::WindowTest {
     const Status written = writeCtSeries(volume, {text, "HEAD"}, toPath(folder));
     QVERIFY2(written.ok(), written.ok() ? "" : written.error().sentence().c_str());
   }
-  // A case that lacks what the scene looks for is said; that is not what is tested here.
+  // A case that lacks what the exercise looks for is said; that is not what is tested here.
   void closeError() {
     if (auto* error = window_->findChild<QMessageBox*>("errorDialog")) error->close();
   }

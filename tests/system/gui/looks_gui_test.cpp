@@ -33,7 +33,7 @@ class LooksGuiTest : public test::WindowTest {
   Q_OBJECT
 
  private:
-  const Tissue& tissue(const char* id) { return *workstation().scene()->tissues.find(id); }
+  const Tissue& tissue(const char* id) { return *workstation().exercise()->tissues.find(id); }
   Picture picture() { return *window_->view().picture(); }
   int shown(const char* id) { return pixelsLike(picture(), tissue(id).colour); }
   void press(const char* preset) { QTest::mouseClick(find<QToolButton>(preset), Qt::LeftButton); }
@@ -104,14 +104,14 @@ class LooksGuiTest : public test::WindowTest {
 
   void looksAreNoEditsOfTissuesAndAnotherExerciseBringsItsOwn() {
     QVERIFY(!workstation().tissuesEdited());
-    QVERIFY(workstation().scene()->view.looks.empty());
+    QVERIFY(workstation().exercise()->view.looks.empty());
     press("presetBone");
-    QSignalSpy changed(&workstation(), &Workstation::sceneChanged);
-    auto* scenes = find<QComboBox>("scenes");
-    for (int i = 0; i < scenes->count(); ++i) {
-      if (!scenes->itemData(i).toString().endsWith("burr-hole.json")) continue;
-      scenes->setCurrentIndex(i);
-      QVERIFY(QMetaObject::invokeMethod(scenes, "activated", Q_ARG(int, i)));
+    QSignalSpy changed(&workstation(), &Workstation::exerciseChanged);
+    auto* exercises = find<QComboBox>("scenes");
+    for (int i = 0; i < exercises->count(); ++i) {
+      if (!exercises->itemData(i).toString().endsWith("burr-hole.json")) continue;
+      exercises->setCurrentIndex(i);
+      QVERIFY(QMetaObject::invokeMethod(exercises, "activated", Q_ARG(int, i)));
     }
     QVERIFY(changed.count() > 0 || changed.wait(kLong_ms));
     QCOMPARE(find<QComboBox>("look:brain")->currentIndex(), int(TissueLook::shown));

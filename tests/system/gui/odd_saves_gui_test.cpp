@@ -25,7 +25,7 @@ constexpr double kMore = 1.0;  // N s/m that an edit adds
 const char* const kChild = "--child";
 
 void setDamping(MainWindow& window, double add) {
-  TissueSet set = window.workstation().scene()->tissues;
+  TissueSet set = window.workstation().exercise()->tissues;
   for (Tissue& tissue : set.tissues) {
     if (tissue.id == "bone") tissue.damping_Ns_per_m.value += add;
   }
@@ -114,7 +114,7 @@ class OddSavesGuiTest : public test::WindowTest {
     QVERIFY(opened.count() == 1 || opened.wait(kLong_ms));
   }
   static double damping(const TissueSet& set) { return set.find("bone")->damping_Ns_per_m.value; }
-  double dampingNow() { return damping(workstation().scene()->tissues); }
+  double dampingNow() { return damping(workstation().exercise()->tissues); }
   static std::map<QString, QByteArray> filesOf(const QString& folder) {
     std::map<QString, QByteArray> files;
     QDirIterator it(folder, QDir::Files | QDir::Hidden, QDirIterator::Subdirectories);
@@ -303,7 +303,8 @@ class OddSavesGuiTest : public test::WindowTest {
 
   void anArmThatGoesAwayIsSaidWithWhatToDoAndNothingIsLost() {
     const std::filesystem::path folder = toPath(temporary_.path());
-    const std::filesystem::path file = test::sceneOn(test::coarseCranium(2), folder, "vanishing");
+    const std::filesystem::path file =
+        test::exerciseOn(test::coarseCranium(2), folder, "vanishing");
     Json device = *readJsonFile(resourceFolder() / "devices" / "omni.json");
     device["vanish_after_s"] = 1.5;
     QVERIFY(writeTextFile(folder / "vanishing-arm.json", device.dump()));

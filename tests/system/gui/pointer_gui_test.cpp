@@ -69,7 +69,7 @@ class PointerGuiTest : public test::WindowTest {
     const LandmarkFrame frame = session.landmarks()[0].frame;
     const std::optional<QPoint> begin = pixelOf(frame, at(path, 0.0));
     QVERIFY(begin);
-    takeHandOf(session.scene().arms[arm].name == "left" ? Hand::left : Hand::right, *begin);
+    takeHandOf(session.exercise().arms[arm].name == "left" ? Hand::left : Hand::right, *begin);
     const auto now_s = [&, begin_ns = session.now_ns()] {
       return 1e-9 * double(session.now_ns() - begin_ns);
     };
@@ -77,7 +77,7 @@ class PointerGuiTest : public test::WindowTest {
     int notches = 0;
     double seen_s = 0.0;
     QPoint place = *begin;
-    run.cut.deepest_mm.resize(session.scene().arms.size(), 1e9);
+    run.cut.deepest_mm.resize(session.exercise().arms.size(), 1e9);
     while (now_s() < path.back().t_s + 0.5) {
       while (turned < path.size() && path[turned].t_s <= now_s()) {
         const int wanted = qRound(path[turned++].push_N / kNotch_N);
@@ -134,7 +134,7 @@ class PointerGuiTest : public test::WindowTest {
     }
   }
 
-  void practise(const test::Exercise& exercise, double rate_hz, Run& run) {
+  void practise(const test::PointerTask& task, double rate_hz, Run& run) {
     QSignalSpy started(&workstation(), &Workstation::sessionStarted);
     RunReport report;
     QObject ears;
@@ -145,11 +145,11 @@ class PointerGuiTest : public test::WindowTest {
     pass(0.3);
     Session& session = *workstation().session();
     run.cut.frame = session.landmarks()[0].frame;
-    run.cut.parameters = hapticParameters(session.scene(), session.rig());
-    const std::vector<SceneArm>& arms = session.scene().arms;
-    QCOMPARE(arms.size(), exercise.arms.size());
+    run.cut.parameters = hapticParameters(session.exercise(), session.rig());
+    const std::vector<ExerciseArm>& arms = session.exercise().arms;
+    QCOMPARE(arms.size(), task.arms.size());
     for (std::size_t arm = 0; arm < arms.size(); ++arm) {
-      follow(arm, exercise.arms[arm], rate_hz, run);
+      follow(arm, task.arms[arm], rate_hz, run);
       if (QTest::currentTestFailed()) return;
     }
     workstation().stop();
@@ -166,32 +166,30 @@ class PointerGuiTest : public test::WindowTest {
     lookInside(*workstation().currentCase(), report.recording, run);
   }
 
-  void finishAtAnyRate(const test::Exercise& exercise) {
+  void finishAtAnyRate(const test::PointerTask& task) {
     QSignalSpy opened(&workstation(), &Workstation::caseOpened);
-    window_->open(resourceFolder() / "scenes" / (exercise.name + ".json"));
+    window_->open(resourceFolder() / "scenes" / (task.name + ".json"));
     QVERIFY(opened.count() > 0 || opened.wait(kLong_ms));
     restRefined();
     std::vector<double> removed_mm3;
     for (const double rate_hz : kRates_hz) {
-      finish(exercise, rate_hz, removed_mm3);
+      finish(task, rate_hz, removed_mm3);
       if (QTest::currentTestFailed()) return;
     }
     const auto [least_mm3, most_mm3] = std::ranges::minmax(removed_mm3);
-    std::printf("%-16s within %.1f %%\n", exercise.name.c_str(),
-                100.0 * (most_mm3 / least_mm3 - 1.0));
+    std::printf("%-16s within %.1f %%\n", task.name.c_str(), 100.0 * (most_mm3 / least_mm3 - 1.0));
     QVERIFY2(most_mm3 < 1.05 * least_mm3, "not the same at any rate");
   }
 
-  void finish(const test::Exercise& exercise, double rate_hz, std::vector<double>& removed_mm3) {
+  void finish(const test::PointerTask& task, double rate_hz, std::vector<double>& removed_mm3) {
     Run run;
-    practise(exercise, rate_hz, run);
+    practise(task, rate_hz, run);
     if (QTest::currentTestFailed()) return;
     std::printf("%-16s %4.0f/s %7.1f mm3, uncut bone in a tool %.2f mm deep at most\n",
-                exercise.name.c_str(), rate_hz, run.removed_mm3,
-                std::max(0.0, run.inside.deepest_mm));
+                task.name.c_str(), rate_hz, run.removed_mm3, std::max(0.0, run.inside.deepest_mm));
     std::fflush(stdout);
-    for (const std::string& what : test::missing(exercise, run.cut)) qWarning("%s", what.c_str());
-    QVERIFY2(test::missing(exercise, run.cut).empty(), "the exercise is not finished");
+    for (const std::string& what : test::missing(task, run.cut)) qWarning("%s", what.c_str());
+    QVERIFY2(test::missing(task, run.cut).empty(), "the exercise is not finished");
     QCOMPARE(run.inside.voxels, 0);
     removed_mm3.push_back(run.removed_mm3);
   }

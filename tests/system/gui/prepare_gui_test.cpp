@@ -1,5 +1,5 @@
-// Prepare in the real window: what an educator sets of tissues, by its effect on scene, force and
-// picture.
+// Prepare in the real window: what an educator sets of tissues, by its effect on exercise, force
+// and picture.
 #include <QFileDialog>
 #include <QMenu>
 #include <QMessageBox>
@@ -19,7 +19,7 @@ class PrepareGuiTest : public test::WindowTest {
  private:
   HistogramView& histogram() { return *find<HistogramView>("histogram"); }
   TissuePanel& panel() { return *window_->findChild<TissuePanel*>(); }
-  const TissueSet& tissues() { return workstation().scene()->tissues; }
+  const TissueSet& tissues() { return workstation().exercise()->tissues; }
   const Tissue& tissue(const char* id) { return *tissues().find(id); }
   std::size_t placeOf(const char* id) {
     return std::size_t(tissues().find(id) - tissues().tissues.data());
@@ -99,7 +99,7 @@ class PrepareGuiTest : public test::WindowTest {
     QVERIFY(!find<QToolButton>("addTissue")->isEnabled() &&
             !find<QToolButton>("setMenu")->isEnabled());
     emit panel().tissuesChanged(startingSet("none"), "set");
-    QVERIFY(!workstation().scene());
+    QVERIFY(!workstation().exercise());
     QApplication::setActiveWindow(window_.get());
     QSignalSpy opened(&workstation(), &Workstation::caseOpened);
     workstation().openImported(caseOf(std::make_shared<const Volume>(test::coarseCranium(2))));
@@ -258,7 +258,7 @@ class PrepareGuiTest : public test::WindowTest {
     QVERIFY(tissues() == before);
   }
 
-  void everyNumberOfTheMechanicsReachesTheScene() {
+  void everyNumberOfTheMechanicsReachesTheExercise() {
     panel().select("dura");
     enter("damping", "7.5");
     QCOMPARE(tissue("dura").damping_Ns_per_m.value, 7.5);
@@ -418,7 +418,8 @@ class PrepareGuiTest : public test::WindowTest {
     enter("stiffness", "250");
     pass(0.8);
     QVERIFY2(depth() > firm_mm + 1.0, qPrintable(QString("%1 %2").arg(firm_mm).arg(depth())));
-    QCOMPARE(workstation().session()->scene().tissues.tissues[bone].stiffness_N_per_m.value, 250.0);
+    QCOMPARE(workstation().session()->exercise().tissues.tissues[bone].stiffness_N_per_m.value,
+             250.0);
     pushHand(-12);
     pass(0.9);
     for (int n = 0; n < 5; ++n) pokeOnce();

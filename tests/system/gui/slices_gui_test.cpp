@@ -42,7 +42,7 @@ class SlicesGuiTest : public test::WindowTest {
   Q_OBJECT
 
  private:
-  std::filesystem::path scene_;
+  std::filesystem::path exercise_;
 
   FourUp& views() { return window_->views(); }
   SliceView& axial() { return views().slice(SliceAxis::axial); }
@@ -55,7 +55,7 @@ class SlicesGuiTest : public test::WindowTest {
     window_->show();
     QVERIFY(QTest::qWaitForWindowExposed(window_.get()));
     QSignalSpy opened(&workstation(), &Workstation::caseOpened);
-    workstation().openPath(scene_);
+    workstation().openPath(exercise_);
     QVERIFY(opened.wait(kLong_ms));
     QApplication::setActiveWindow(window_.get());
   }
@@ -128,7 +128,7 @@ class SlicesGuiTest : public test::WindowTest {
     QApplication::setApplicationName("trephine-test-slices");
     QFile::remove(windowSettings().fileName());
     QVERIFY(QDir().mkpath(TREPHINE_ARTEFACTS));
-    scene_ = test::sceneOn(head(), toPath(temporary_.path()), "head");
+    exercise_ = test::exerciseOn(head(), toPath(temporary_.path()), "head");
     open();
   }
   void cleanupTestCase() {
@@ -436,8 +436,8 @@ class SlicesGuiTest : public test::WindowTest {
   }
 
   void anExerciseShowsItsToolsAndItsCutsInTheSlices() {
-    const Scene& scene = *workstation().scene();
-    window_->startExercise(*readOperatorScript(scene.operator_file, scene));
+    const Exercise& exercise = *workstation().exercise();
+    window_->startExercise(*readOperatorScript(exercise.operator_file, exercise));
     QTRY_VERIFY_WITH_TIMEOUT(workstation().session(), kLong_ms);
     // The views follow the tool until its mark is seen; from there on nobody touches them.
     constexpr double kLook_s = 0.04, kLongest_s = 60.0;
@@ -462,7 +462,7 @@ class SlicesGuiTest : public test::WindowTest {
         for (int x = -30; x <= 30; ++x) {
           const QPoint p = at + QPoint(x, y);
           if (!image.valid(p)) continue;
-          coloured += near(image.pixelColor(p), colours::ofArm(scene.arms[0], 0), 30);
+          coloured += near(image.pixelColor(p), colours::ofArm(exercise.arms[0], 0), 30);
         }
       }
       marked = coloured > 15 && removed > 0;

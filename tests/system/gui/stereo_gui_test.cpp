@@ -29,7 +29,7 @@ void split() {
 class StereoGuiTest : public test::TrainTest {
   Q_OBJECT
 
-  std::filesystem::path scene_;
+  std::filesystem::path exercise_;
 
   StereoWindow* shown() {
     for (QWidget* each : QApplication::topLevelWidgets()) {
@@ -64,12 +64,12 @@ class StereoGuiTest : public test::TrainTest {
   void initTestCase() {
     QVERIFY(QDir().mkpath(TREPHINE_ARTEFACTS));
     QCOMPARE(QGuiApplication::screens().size(), 2);
-    scene_ = test::sceneOn(test::coarseCranium(2), toPath(temporary_.path()), "coarse");
+    exercise_ = test::exerciseOn(test::coarseCranium(2), toPath(temporary_.path()), "coarse");
   }
   void init() {
     open();
     window_->move(0, 0);
-    openScene(scene_);
+    openExercise(exercise_);
     QTRY_VERIFY(view().canDraw().ok());
     QTRY_VERIFY_WITH_TIMEOUT(view().isComplete(), kLong_ms);
   }

@@ -66,7 +66,7 @@ class StrangersGuiTest : public test::TrainTest {
 
   void theNameGoalAndStepsOfAnExerciseAreShownAsTheyAre() {
     const std::filesystem::path file =
-        test::sceneOn(test::coarseCranium(2), toPath(temporary_.path()), "strange");
+        test::exerciseOn(test::coarseCranium(2), toPath(temporary_.path()), "strange");
     Json json = *readJsonFile(file);
     json["name"] = name();
     for (auto& [language, card] : json["card"].items()) {
@@ -74,7 +74,7 @@ class StrangersGuiTest : public test::TrainTest {
       card["steps"] = {name(), name()};
     }
     QVERIFY(writeTextFile(file, json.dump()).ok());
-    openScene(file);
+    openExercise(file);
     QTRY_VERIFY(find<QWidget>("startCard")->isVisible());
     rest();
     QCOMPARE(find<QLabel>("startCardGoal")->text(), toQt(name()));

@@ -238,7 +238,7 @@ class StructureFilesGuiTest : public test::WindowTest {
     question->accept();
     QVERIFY(changed.count() == 1 || changed.wait(kLong_ms));
     const double half = ml("liver");
-    workstation().useLabels(file, {{Workstation::kThreshold, "0.4"}});
+    workstation().useLabels(file, {{"THRESHOLD", "0.4"}});
     QVERIFY(changed.wait(kLong_ms));
     QVERIFY2(half > 0.4 * ml("liver") && half < 0.6 * ml("liver"),
              qPrintable(QString::number(half)));
@@ -403,8 +403,8 @@ class StructureFilesGuiTest : public test::WindowTest {
   }
 
   void whatAnExerciseCutOfEachStructureIsSaidAtItsEnd() {
-    const Scene& scene = *workstation().scene();
-    const auto script = readOperatorScript(scene.operator_file, scene);
+    const Exercise& exercise = *workstation().exercise();
+    const auto script = readOperatorScript(exercise.operator_file, exercise);
     QVERIFY(script.ok());
     std::optional<std::vector<CutStructure>> ended;
     connect(&workstation(), &Workstation::sessionEnded, window_.get(),

@@ -106,7 +106,7 @@ class Structures3dGuiTest : public test::WindowTest {
     const Structure* liver = nullptr;
     QTRY_VERIFY_WITH_TIMEOUT(workstation().currentCase()->structures, kLong_ms);
     liver = workstation().currentCase()->structures->find("liver");
-    QCOMPARE(liver->colour.x, workstation().scene()->tissues.find("liver")->colour.x);
+    QCOMPARE(liver->colour.x, workstation().exercise()->tissues.find("liver")->colour.x);
   }
 
   // The skin hides the liver, shows it as a ghost, and is gone.
@@ -135,7 +135,7 @@ class Structures3dGuiTest : public test::WindowTest {
     wholePicture();
     QCOMPARE(seenAt(at), liver);
     QVERIFY(!workstation().tissuesEdited());
-    for (const Tissue& tissue : workstation().scene()->tissues.tissues) {
+    for (const Tissue& tissue : workstation().exercise()->tissues.tissues) {
       QVERIFY2(!tissue.id.starts_with("structure:"), tissue.id.c_str());
     }
     list()->setCurrentItem(row("liver"));
@@ -238,13 +238,13 @@ class Structures3dGuiTest : public test::WindowTest {
   void theOpacityOfTheChosenOneIsOfTheViewAlone() {
     wholePicture();
     const QImage shown = view().grabFramebuffer();
-    const double own = workstation().scene()->tissues.find("liver")->opacity;
+    const double own = workstation().exercise()->tissues.find("liver")->opacity;
     auto* opacity = find<QSlider>("structureOpacity");
     opacity->setFocus();
     for (int n = 0; n < 8; ++n) QTest::keyClick(opacity, Qt::Key_PageDown);
     wholePicture();
     QVERIFY(view().grabFramebuffer() != shown);
-    QCOMPARE(workstation().scene()->tissues.find("liver")->opacity, own);
+    QCOMPARE(workstation().exercise()->tissues.find("liver")->opacity, own);
     QVERIFY(!workstation().tissuesEdited());
     keepGrab("structures-3d-opacity.png");
   }
@@ -254,7 +254,7 @@ class Structures3dGuiTest : public test::WindowTest {
     window_->startExercise();
     QVERIFY(started.count() == 1 || started.wait(kLong_ms));
     QVERIFY(views().mirror().labels() == workstation().placed()->labels);
-    for (const Tissue& tissue : workstation().session()->scene().tissues.tissues) {
+    for (const Tissue& tissue : workstation().session()->exercise().tissues.tissues) {
       QVERIFY2(!tissue.id.starts_with("structure:"), tissue.id.c_str());
     }
     // A hand's, not a tool's.

@@ -111,7 +111,7 @@ class StructuresGuiTest : public test::WindowTest {
       QVERIFY(opened.count() == 1 || opened.wait(kLong_ms));
     }
     computing_ms_ += clock.elapsed();
-    QCOMPARE(QString::fromStdString(workstation().scene()->anatomy), QString("abdomen"));
+    QCOMPARE(QString::fromStdString(workstation().exercise()->anatomy), QString("abdomen"));
     const QString about = find<QLabel>("caseLabel")->text();
     QVERIFY2(about.contains("abdomen"), qPrintable(about));
     QVERIFY(!workstation().currentCase()->structures);
@@ -237,7 +237,7 @@ class StructuresGuiTest : public test::WindowTest {
     QVERIFY(of.warnings.empty());
     QVERIFY(of.labels->find("capsule"));
     QVERIFY(!of.patient.structures->find("capsule"));
-    QCOMPARE(int(*of.scene.tissues.find("liver")->label), of.labels->find("liver")->label);
+    QCOMPARE(int(*of.exercise.tissues.find("liver")->label), of.labels->find("liver")->label);
   }
 
   // A wheel into the liver and one stroke.

@@ -17,7 +17,7 @@ using namespace trephine;
 class TrainControlsGuiTest : public test::TrainTest {
   Q_OBJECT
 
-  std::filesystem::path scene_;
+  std::filesystem::path exercise_;
 
   void answer(const char* question, const char* button) {
     QTRY_VERIFY_WITH_TIMEOUT(window_->findChild<QMessageBox*>(question), kLong_ms);
@@ -36,7 +36,7 @@ class TrainControlsGuiTest : public test::TrainTest {
 
  private slots:
   void initTestCase() {
-    scene_ = test::sceneOn(test::coarseCranium(2), toPath(temporary_.path()), "coarse");
+    exercise_ = test::exerciseOn(test::coarseCranium(2), toPath(temporary_.path()), "coarse");
   }
   void init() { open(); }
   void cleanup() { window_.reset(); }
@@ -49,7 +49,7 @@ class TrainControlsGuiTest : public test::TrainTest {
   }
 
   void theCardStartsTheExercise() {
-    openScene(scene_);
+    openExercise(exercise_);
     QTRY_VERIFY_WITH_TIMEOUT(find<QPushButton>("startCardStart")->isEnabled(), kLong_ms);
     QSignalSpy started(&workstation(), &Workstation::sessionStarted);
     QTest::mouseClick(find<QPushButton>("startCardStart"), Qt::LeftButton);
@@ -61,7 +61,7 @@ class TrainControlsGuiTest : public test::TrainTest {
 
   // The 3-D view is drawn anew for each size that it is given.
   void aWorkspaceGivesTheViewsTheirPlacesOnce() {
-    openScene(scene_);
+    openExercise(exercise_);
     window_->show(Place::prepare);
     restRefined();
     int sizes = 0;
@@ -77,7 +77,7 @@ class TrainControlsGuiTest : public test::TrainTest {
   }
 
   void shiftAndHomeStraightenTheTool() {
-    openScene(scene_);
+    openExercise(exercise_);
     startTraining();
     takeHand(Hand::right);
     pass(0.5);
@@ -92,7 +92,7 @@ class TrainControlsGuiTest : public test::TrainTest {
   }
 
   void anotherSizeOfTheViewLiftsTheToolWhereItIs() {
-    openScene(scene_);
+    openExercise(exercise_);
     startTraining();
     takeHand(Hand::right);
     pushHand(6);
@@ -120,7 +120,7 @@ class TrainControlsGuiTest : public test::TrainTest {
   }
 
   void resetPutsAllTissueBackOnceItIsAgreed() {
-    openScene(scene_);
+    openExercise(exercise_);
     startTraining();
     cut({30, 0});
     QVERIFY(removedVoxels(*workstation().session()) > 0);
@@ -133,7 +133,7 @@ class TrainControlsGuiTest : public test::TrainTest {
   }
 
   void backTakesTheLastSecondsAway() {
-    openScene(scene_);
+    openExercise(exercise_);
     startTraining();
     cut({30, 0});
     QVERIFY(removedVoxels(*workstation().session()) > 0);
@@ -147,7 +147,7 @@ class TrainControlsGuiTest : public test::TrainTest {
   }
 
   void inAPauseNoPushIsSetThatWouldComeAsAStab() {
-    openScene(scene_);
+    openExercise(exercise_);
     startTraining();
     takeHand(Hand::right);
     pushHand(4);
@@ -163,7 +163,7 @@ class TrainControlsGuiTest : public test::TrainTest {
   }
 
   void afterAPauseTheToolGoesOnWhereItIsAndComesOutBeforeItFollowsThePointer() {
-    openScene(scene_);
+    openExercise(exercise_);
     startTraining();
     takeHand(Hand::right);
     pushHand(5);
@@ -190,7 +190,7 @@ class TrainControlsGuiTest : public test::TrainTest {
 
   // Its arm's workspace has an end: Ctrl+L from there, and all of it is there again.
   void reCentredAHandReachesWhereItBegan() {
-    openScene(scene_);
+    openExercise(exercise_);
     startTraining();
     takeHand(Hand::right);
     key(Qt::Key_Right, Qt::NoModifier, 120);
@@ -205,7 +205,7 @@ class TrainControlsGuiTest : public test::TrainTest {
   }
 
   void aListThatIsOpenedByMouseLeavesTheKeysWithTheHands() {
-    openScene(scene_);
+    openExercise(exercise_);
     startTraining();
     view().setFocus();
     for (const char* name : {"rightTool", "controller"}) {
@@ -230,17 +230,17 @@ class TrainControlsGuiTest : public test::TrainTest {
   }
 
   void anotherExerciseStaysInTrainAndBeginsWithNothing() {
-    openScene(scene_);
+    openExercise(exercise_);
     startTraining();
     cut({30, 0});
     stop();
     QVERIFY(!find<QLabel>("exerciseRemoved")->text().contains("nothing"));
-    auto* scenes = find<QComboBox>("scenes");
-    const int other = scenes->findText("Burr hole in the vault");
+    auto* exercises = find<QComboBox>("scenes");
+    const int other = exercises->findText("Burr hole in the vault");
     QVERIFY(other >= 0);
     QSignalSpy opened(&workstation(), &Workstation::caseOpened);
-    scenes->setCurrentIndex(other);
-    emit scenes->activated(other);
+    exercises->setCurrentIndex(other);
+    emit exercises->activated(other);
     answer("cutsQuestion", "goOnAnyway");
     QVERIFY(opened.count() == 1 || opened.wait(kLong_ms));
     QVERIFY(window_->place() == Place::train);
@@ -249,7 +249,7 @@ class TrainControlsGuiTest : public test::TrainTest {
   }
 
   void tryAgainStartsOnWholeTissue() {
-    showResultOf(scene_);
+    showResultOf(exercise_);
     QSignalSpy started(&workstation(), &Workstation::sessionStarted);
     // The button says so itself: of what is recorded nothing is asked.
     QTest::mouseClick(find<QPushButton>("resultAgain"), Qt::LeftButton);
@@ -261,7 +261,7 @@ class TrainControlsGuiTest : public test::TrainTest {
   }
 
   void theCardIsPutAsideAndBroughtBack() {
-    openScene(scene_);
+    openExercise(exercise_);
     window_->show(Place::train);
     auto* card = find<QWidget>("startCard");
     QTRY_VERIFY(card->isVisible());
@@ -293,7 +293,7 @@ class TrainControlsGuiTest : public test::TrainTest {
   }
 
   void theResultIsPutAsideAndBroughtBackAndIsThereAfterAWayElsewhere() {
-    showResultOf(scene_);
+    showResultOf(exercise_);
     auto* result = find<QWidget>("resultPage");
     view().setFocus();
     QTest::keyClick(&view(), Qt::Key_Tab);
@@ -324,22 +324,22 @@ class TrainControlsGuiTest : public test::TrainTest {
     // A head that came from a file: nobody said which exercise is for it.
     const auto head = toPath(temporary_.filePath("head.mha"));
     QVERIFY(writeVolume(test::coarseCranium(3), head));
-    Json scene =
-        *readJsonFile(test::sceneOn(test::coarseCranium(3), toPath(temporary_.path()), "third"));
-    scene["anatomy"] = "abdomen";
+    Json exercise =
+        *readJsonFile(test::exerciseOn(test::coarseCranium(3), toPath(temporary_.path()), "third"));
+    exercise["anatomy"] = "abdomen";
     const auto file = toPath(temporary_.filePath("abdomen.json"));
-    QVERIFY(writeTextFile(file, scene.dump()));
-    openScene(file);
-    QVERIFY(workstation().scene()->anatomy == "abdomen");
+    QVERIFY(writeTextFile(file, exercise.dump()));
+    openExercise(file);
+    QVERIFY(workstation().exercise()->anatomy == "abdomen");
     find<QAction>("start")->trigger();
     answer("misfitQuestion", "changeExercise");
-    QTRY_VERIFY_WITH_TIMEOUT(workstation().scene()->anatomy == "cranium", kLong_ms);
+    QTRY_VERIFY_WITH_TIMEOUT(workstation().exercise()->anatomy == "cranium", kLong_ms);
     QVERIFY(workstation().phase() != Workstation::Phase::running);
   }
 
   void aDiskThatIsFullAsksOnceAndTheExerciseGoesOnOrStops() {
     for (const char* button : {"Go on unrecorded", "Stop"}) {
-      openScene(scene_);
+      openExercise(exercise_);
       startTraining();
       Session& session = *workstation().session();
       {

@@ -26,21 +26,21 @@ using namespace trephine;
 class TrainGuiTest : public test::TrainTest {
   Q_OBJECT
 
-  std::filesystem::path scene_;
+  std::filesystem::path exercise_;
 
  private slots:
   void initTestCase() {
     QVERIFY(QDir().mkpath(TREPHINE_ARTEFACTS));
-    scene_ = test::sceneOn(test::coarseCranium(2), toPath(temporary_.path()), "coarse");
+    exercise_ = test::exerciseOn(test::coarseCranium(2), toPath(temporary_.path()), "coarse");
   }
   void init() { open(); }
   void cleanup() { window_.reset(); }
 
   void beforeTheStartTheCardSaysWhatToDoWithWhichHand() {
-    openScene(scene_);
+    openExercise(exercise_);
     QVERIFY(window_->place() == Place::train);
     QTRY_VERIFY(find<QWidget>("startCard")->isVisible());
-    const CardText* card = cardFor(*workstation().scene(), "en");
+    const CardText* card = cardFor(*workstation().exercise(), "en");
     QVERIFY(card);
     QCOMPARE(find<QLabel>("startCardGoal")->text(), toQt(card->goal));
     QVERIFY(find<QLabel>("startCardSteps")->text().contains(toQt(card->steps.front())));
@@ -55,7 +55,7 @@ class TrainGuiTest : public test::TrainTest {
     QVERIFY(!find<QWidget>("startCard")->isVisible());
     window_->show(Place::train);
     QCOMPARE(find<QLabel>("startCardGoal")->text(),
-             toQt(cardFor(*workstation().scene(), "zh_TW")->goal));
+             toQt(cardFor(*workstation().exercise(), "zh_TW")->goal));
     QVERIFY2(!QFontDatabase::families(QFontDatabase::TraditionalChinese).isEmpty(),
              "its characters would be boxes: fonts-droid-fallback");
     QVERIFY(window_->grab().save(TREPHINE_ARTEFACTS "/train-card-zh.png"));
@@ -117,7 +117,7 @@ class TrainGuiTest : public test::TrainTest {
   }
 
   void whileItRunsForceAndEnergyAreTraced() {
-    openScene(scene_);
+    openExercise(exercise_);
     startTraining();
     takeHand(Hand::right);
     pushHand(8);
@@ -142,7 +142,7 @@ class TrainGuiTest : public test::TrainTest {
   }
 
   void aHandsToolIsChangedSeenAndCutsItsOwnHole() {
-    openScene(scene_);
+    openExercise(exercise_);
     auto* change = find<QAction>("changeTool");
     QVERIFY(!change->isEnabled());
     startTraining();
@@ -225,7 +225,7 @@ class TrainGuiTest : public test::TrainTest {
   }
 
   void tabGivesTheMouseTheOtherHandAndTheFirstStaysInTheTissueWithoutForce() {
-    openScene(scene_);
+    openExercise(exercise_);
     startTraining();
     const auto force_N = [&](std::size_t hand) { return glm::length(arm(hand).sent_N); };
     takeHand(Hand::right);
@@ -257,7 +257,7 @@ class TrainGuiTest : public test::TrainTest {
   }
 
   void shiftAndArrowsTiltTheTool() {
-    openScene(scene_);
+    openExercise(exercise_);
     startTraining();
     takeHand(Hand::right);
     pass(0.5);
@@ -273,7 +273,7 @@ class TrainGuiTest : public test::TrainTest {
   }
 
   void aClutchTakesTheForceAwayAndLeavesTheToolsAsTheyAreHeld() {
-    openScene(scene_);
+    openExercise(exercise_);
     startTraining();
     Session& session = *workstation().session();
     auto* clutch = find<QAction>("clutch");
@@ -336,18 +336,18 @@ class TrainGuiTest : public test::TrainTest {
   }
 
   void theChosenControllerIsInForceAndInTheRecording() {
-    openScene(scene_);
+    openExercise(exercise_);
     startTraining();
     auto* controller = find<QComboBox>("controller");
     controller->setCurrentIndex(controller->findData(int(ControllerKind::seed)));
     emit controller->activated(controller->currentIndex());
     QTRY_VERIFY(workstation().session()->state().controller == ControllerKind::seed);
     stop();
-    QVERIFY(workstation().scene()->controller == ControllerKind::seed);
+    QVERIFY(workstation().exercise()->controller == ControllerKind::seed);
   }
 
   void theBarOfSecondsMarksStrokesAndSaysWhereOneIsAfterGoingBack() {
-    openScene(scene_);
+    openExercise(exercise_);
     startTraining();
     QTRY_VERIFY_WITH_TIMEOUT(workstation().session()->state().seconds >= 2, 20000);
     cut({40, 0});
@@ -379,7 +379,7 @@ class TrainGuiTest : public test::TrainTest {
   }
 
   void fromTheResultOneLooksAtItTriesAgainOrSeesItReplayed() {
-    showResultOf(scene_);
+    showResultOf(exercise_);
     auto* result = find<QWidget>("resultPage");
     QTest::mouseClick(find<QPushButton>("resultLook"), Qt::LeftButton);
     QVERIFY(!result->isVisible());
@@ -401,10 +401,11 @@ class TrainGuiTest : public test::TrainTest {
   }
 
   void theArmsOfThisPlaceGiveNoMoreThanTheSettingsSay() {
-    openScene(scene_);
+    openExercise(exercise_);
     write(settings::kArmsLimit_N, 1.0);
     startTraining();
-    for (const SceneArm& of : workstation().session()->scene().arms) QCOMPARE(of.max_force_N, 1.0);
+    for (const ExerciseArm& of : workstation().session()->exercise().arms)
+      QCOMPARE(of.max_force_N, 1.0);
     takeHand(Hand::right);
     pushHand(15);
     double most = 0.0;
@@ -414,8 +415,8 @@ class TrainGuiTest : public test::TrainTest {
     }
     QVERIFY2(most > 0.2 && most <= 1.0001, qPrintable(QString::number(most)));
     stop();
-    const Scene& scene = *workstation().scene();
-    QCOMPARE(scene.arms[0].max_force_N, 3.3);  // the exercise itself is as it was
+    const Exercise& exercise = *workstation().exercise();
+    QCOMPARE(exercise.arms[0].max_force_N, 3.3);  // the exercise itself is as it was
     write(settings::kArmsLimit_N, settings::kArmsMost_N);
   }
 
@@ -428,16 +429,16 @@ class TrainGuiTest : public test::TrainTest {
     policy.pin = *pin;
     open(policy);
     QVERIFY(find<QLabel>("locked")->isVisible());
-    // A scene of one's own, by path: refused.
+    // An exercise of one's own, by path: refused.
     QSignalSpy failed(window_.get(), &MainWindow::failed);
-    window_->open(scene_);
+    window_->open(exercise_);
     QTRY_COMPARE(failed.count(), 1);
     QVERIFY(!workstation().currentCase());
     window_->findChild<QMessageBox*>("errorDialog")->close();
     rest();
     // The product's own is open to all, but not to change.
-    openScene(resourceFolder() / "scenes" / "cranium.json");
-    const TissueSet tissues = workstation().scene()->tissues;
+    openExercise(resourceFolder() / "scenes" / "cranium.json");
+    const TissueSet tissues = workstation().exercise()->tissues;
     QVERIFY(!find<QComboBox>("controller")->isEnabled());
     showTissues();
     window_->findChild<TissuePanel*>()->select("bone");
@@ -447,8 +448,8 @@ class TrainGuiTest : public test::TrainTest {
     others.tissues.back().hu_max += 10;
     workstation().setTissues(others);
     workstation().setController(ControllerKind::off);
-    QVERIFY(workstation().scene()->tissues == tissues);
-    QVERIFY(workstation().scene()->controller == ControllerKind::bounded);
+    QVERIFY(workstation().exercise()->tissues == tissues);
+    QVERIFY(workstation().exercise()->controller == ControllerKind::bounded);
     for (QMessageBox* box : window_->findChildren<QMessageBox*>("errorDialog")) box->close();
     rest();
     // The PIN: a wrong one changes nothing.
@@ -467,7 +468,7 @@ class TrainGuiTest : public test::TrainTest {
     QVERIFY(find<QLabel>("locked")->isVisible());
     QVERIFY(find<QComboBox>("controller")->isEnabled());
     workstation().setController(ControllerKind::off);
-    QVERIFY(workstation().scene()->controller == ControllerKind::off);
+    QVERIFY(workstation().exercise()->controller == ControllerKind::off);
     workstation().setTissues(others);
     QVERIFY(workstation().tissuesEdited());
     // And back, with what was changed: nothing is lost without a question.
@@ -476,26 +477,26 @@ class TrainGuiTest : public test::TrainTest {
     QTRY_VERIFY(window_->findChild<QMessageBox*>("unsavedTissues"));
     find<QMessageBox>("unsavedTissues")->button(QMessageBox::Discard)->click();
     QTRY_VERIFY(workstation().anyLocked());
-    QVERIFY(workstation().scene()->tissues == tissues);
-    QVERIFY(workstation().scene()->controller == ControllerKind::bounded);
+    QVERIFY(workstation().exercise()->tissues == tissues);
+    QVERIFY(workstation().exercise()->controller == ControllerKind::bounded);
     QCOMPARE(find<QLabel>("locked")->text(), "Locked");
     QVERIFY(!find<QComboBox>("controller")->isEnabled());
     workstation().setController(ControllerKind::off);
-    QVERIFY(workstation().scene()->controller == ControllerKind::bounded);
+    QVERIFY(workstation().exercise()->controller == ControllerKind::bounded);
     for (QMessageBox* box : window_->findChildren<QMessageBox*>("errorDialog")) {
       QVERIFY2(box->informativeText().contains("PIN"), qPrintable(box->informativeText()));
       box->close();
     }
   }
 
-  void aSceneThatCameInWhileItWasUnlockedIsNotStartedOnceItIsLockedAgain() {
+  void aExerciseThatCameInWhileItWasUnlockedIsNotStartedOnceItIsLockedAgain() {
     window_.reset();
     Policy policy;
     policy.locks = {Lock::rate};
     policy.rate_hz = 2000.0;
     open(policy);
     workstation().setUnlocked(true);
-    openScene(scene_);
+    openExercise(exercise_);
     workstation().setUnlocked(false);
     QSignalSpy failed(window_.get(), &MainWindow::failed);
     window_->startExercise();
@@ -517,9 +518,9 @@ class TrainGuiTest : public test::TrainTest {
     QVERIFY(rows);
     int kept_out = 0;
     for (int i = 0; i < exercises->count(); ++i) {
-      const Result<Scene> scene = readScene(toPath(exercises->itemData(i).toString()));
-      QVERIFY(scene.ok());
-      QCOMPARE(rows->item(i)->isEnabled(), scene->controller == ControllerKind::bounded);
+      const Result<Exercise> exercise = readExercise(toPath(exercises->itemData(i).toString()));
+      QVERIFY(exercise.ok());
+      QCOMPARE(rows->item(i)->isEnabled(), exercise->controller == ControllerKind::bounded);
       if (rows->item(i)->isEnabled()) continue;
       ++kept_out;
       QVERIFY(rows->item(i)->toolTip().contains("'bounded' alone"));
@@ -544,7 +545,7 @@ class TrainGuiTest : public test::TrainTest {
     QVERIFY(!find<QAction>("unlockTeaching")->isEnabled());
     // Nobody is sent to an educator who has no PIN.
     QVERIFY(find<QLabel>("locked")->toolTip().contains("administrator"));
-    openScene(resourceFolder() / "scenes" / "cranium.json");
+    openExercise(resourceFolder() / "scenes" / "cranium.json");
     QVERIFY(find<QComboBox>("controller")->toolTip().contains("administrator"));
   }
 
@@ -594,7 +595,7 @@ class TrainGuiTest : public test::TrainTest {
       if (button->text().contains("Save")) QTest::mouseClick(button, Qt::LeftButton);
     }
     QCOMPARE(read(settings::kMainHand), QString("left"));
-    openScene(scene_);
+    openExercise(exercise_);
     startTraining();
     pointAt(view().rect().center());
     QTRY_COMPARE(find<QLabel>("activeHand")->text(), QString("Left hand"));
@@ -604,7 +605,7 @@ class TrainGuiTest : public test::TrainTest {
   }
 
   void thePlaceAndTheWorkspaceComeBack() {
-    openScene(scene_);
+    openExercise(exercise_);
     window_->resize(1100, 700);
     find<QAction>("rightPanel")->trigger();
     window_->close();

@@ -18,7 +18,7 @@ class TrainTest : public WindowTest {
     QVERIFY(QTest::qWaitForWindowExposed(window_.get()));
     QApplication::setActiveWindow(window_.get());
   }
-  void openScene(const std::filesystem::path& file) {
+  void openExercise(const std::filesystem::path& file) {
     QSignalSpy opened(&workstation(), &Workstation::caseOpened);
     window_->open(file);
     QVERIFY(opened.count() == 1 || opened.wait(kLong_ms));
@@ -42,8 +42,8 @@ class TrainTest : public WindowTest {
     QTRY_VERIFY_WITH_TIMEOUT(workstation().phase() == Workstation::Phase::ready, kLong_ms);
   }
   // An exercise in which something was cut has ended, and its result is shown.
-  void showResultOf(const std::filesystem::path& scene) {
-    openScene(scene);
+  void showResultOf(const std::filesystem::path& exercise) {
+    openExercise(exercise);
     startTraining();
     cut({30, 0});
     stop();

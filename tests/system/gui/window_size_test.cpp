@@ -173,7 +173,7 @@ class WindowSizeTest : public test::WindowTest {
     window_->show();
     QVERIFY(QTest::qWaitForWindowExposed(window_.get()));
     QSignalSpy opened(&window_->workstation(), &Workstation::caseOpened);
-    window_->workstation().openPath(defaultScene("cranium"));
+    window_->workstation().openPath(defaultExercise("cranium"));
     QVERIFY(opened.wait(kLong_ms));
     QSignalSpy started(&window_->workstation(), &Workstation::sessionStarted);
     window_->startExercise();

@@ -177,7 +177,7 @@ TEST(Clutch, WhatNobodyCanMeanDoesNothing) {
   EXPECT_EQ(arm.now().faults, 0u);
 }
 
-TEST(Recentre, PutsTheToolWhereTheSceneStartsItWithTheArmWhereItIs) {
+TEST(Recentre, PutsTheToolWhereTheExerciseStartsItWithTheArmWhereItIs) {
   HapticParameters p = burrOnBone();
   p.arms[0].map.centre_mm = Vec3(0, 0, 6);
   Held arm(p);
@@ -192,7 +192,7 @@ TEST(Recentre, PutsTheToolWhereTheSceneStartsItWithTheArmWhereItIs) {
   EXPECT_FALSE(arm.now().tool_state & kToolWaits) << "it is in air there";
 }
 
-TEST(Recentre, OfAHandThatGoesBackByItselfTheMapIsTheScenesAgain) {
+TEST(Recentre, OfAHandThatGoesBackByItselfTheMapIsTheExercisesAgain) {
   HapticParameters p = burrOnBone();
   p.arms[0].map.centre_mm = Vec3(0, 0, 6);
   Held arm(p);

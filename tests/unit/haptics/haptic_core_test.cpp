@@ -242,7 +242,7 @@ TEST(HapticCore, ATissueEditThatMovesNoVoxelChangesNothingThatIsCut) {
       std::vector<Command> commands;
       if (edited && i % 20 == 0) {
         TissueTable same_voxels = p.tissues;
-        same_voxels.classes[0].rupture_N = i;  // no law of this scene reads it
+        same_voxels.classes[0].rupture_N = i;  // no law of this exercise reads it
         commands.push_back({CommandKind::tissues, 0, same_voxels});
       }
       bench.at({0.001 * i, 0, 1 - 0.002 * i}, commands);

@@ -104,7 +104,8 @@ TEST(Laws, GiveNoForceWithoutContact) {
   }
 }
 
-// A capsule pushes by the law of rupture where the scene has it, and else as elastic tissue does.
+// A capsule pushes by the law of rupture where the exercise has it, and else as elastic tissue
+// does.
 TEST(Laws, OfWhichOneStandsInForAnotherDemandATissuesStiffnessOnce) {
   using enum LawKind;
   TissueClass capsule{{3.0, 200.0, 0.3, 0.5, 0.05}, 0, 100, 1, 0}, liver = capsule;

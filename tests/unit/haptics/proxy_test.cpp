@@ -266,11 +266,11 @@ TEST(Barrier, AHookedToolIsLetGoOnceItsArmHasLongBeenFree) {
 
 TEST(HandWork, WhatASpringGivesBackIsNotPaidTwice) {
   HandWork work;
-  double paid = work.hold(0.0, 1.0);
+  double paid = work.endTick(0.0, 1.0);
   const auto move = [&](double force_N, double by_m, double stored_J) {
-    work.move(Vec3(0, 0, force_N), Vec3(0, 0, by_m), 1.0);
-    work.take(-force_N * by_m);
-    paid += work.hold(stored_J, 1.0);
+    work.addDeviceWork(Vec3(0, 0, force_N), Vec3(0, 0, by_m), 1.0);
+    work.addModelWork(-force_N * by_m);
+    paid += work.endTick(stored_J, 1.0);
   };
   move(1.0, -0.002, 0.002);  // pressed: all of it is stored
   EXPECT_NEAR(paid, 0.0, 1e-15);
@@ -287,20 +287,20 @@ TEST(HandWork, WhatASpringGivesBackIsNotPaidTwice) {
 TEST(HandWork, DoesNotDependOnTheArm) {
   // Half the impedance shown over a map of g / s = 2: half the force, doubled.
   HandWork work, weak;
-  work.hold(0.0, 1.0);
-  weak.hold(0.0, 0.5);
-  work.move(Vec3(0, 0, 1.0), Vec3(0, 0, -0.001), 1.0);
-  weak.move(Vec3(0, 0, 1.0), Vec3(0, 0, -0.001), 2.0);
+  work.endTick(0.0, 1.0);
+  weak.endTick(0.0, 0.5);
+  work.addDeviceWork(Vec3(0, 0, 1.0), Vec3(0, 0, -0.001), 1.0);
+  weak.addDeviceWork(Vec3(0, 0, 1.0), Vec3(0, 0, -0.001), 2.0);
   EXPECT_DOUBLE_EQ(work.done_J(), weak.done_J());
 }
 
 TEST(HandWork, WhatAControllerDampsAwayIsNoWorkOnTissue) {
   HandWork work;
-  double paid = work.hold(0.0, 0.1);
+  double paid = work.endTick(0.0, 0.1);
   for (int n = 0; n < 10; ++n) {
-    work.move(Vec3(0, 0, 0.2), Vec3(0, 0, -0.001), 1.0);  // ten times what the model does
-    work.take(0.0002);
-    paid += work.hold(0.0, 0.1);
+    work.addDeviceWork(Vec3(0, 0, 0.2), Vec3(0, 0, -0.001), 1.0);  // ten times what the model does
+    work.addModelWork(0.0002);
+    paid += work.endTick(0.0, 0.1);
   }
   EXPECT_NEAR(work.done_J(), 0.02, 1e-15);
   EXPECT_NEAR(paid, 0.002, 1e-15);

@@ -20,7 +20,7 @@ TEST(Strokes, TakeTheSameByAnyArm) {
   }
 }
 
-// At 250 Hz too, below which a scene may be refused.
+// At 250 Hz too, below which an exercise may be refused.
 TEST(Strokes, TakeTheSameAtAnyRate) {
   for (double spacing_mm : {0.25, 0.5, 0.8}) {
     for (const test::Tried& tried : test::triedTools()) {

@@ -6,7 +6,7 @@
 #include <glm/gtc/quaternion.hpp>
 #include <random>
 
-#include "imaging/common/hu_look.h"
+#include "imaging/common/hu_sanity_check.h"
 #include "imaging/series/series_geometry.h"
 #include "imaging/structure_importer.h"
 #include "series_fixture.h"
@@ -198,7 +198,7 @@ TEST(ValuesThatLookStored, CtOfLittleAirIsCt) {
       const double mean = kind < 35 ? fat : kind < 85 ? organ : kind < 97 ? 50.0 : 600.0;
       hu.push_back(std::int16_t(std::lround(mean + noise(random))));
     }
-    HuLook look;
+    HuSanityCheck look;
     look.add(hu);
     const auto [low, high] = std::ranges::minmax(hu);
     EXPECT_TRUE(look.doubts(low, high).empty()) << look.doubts(low, high).front();
@@ -222,7 +222,7 @@ std::vector<std::int16_t> patientLike(std::mt19937& random, double air, int coun
 }
 
 std::vector<std::string> doubtsOf(const std::vector<std::int16_t>& hu) {
-  HuLook look;
+  HuSanityCheck look;
   look.add(hu);
   const auto [low, high] = std::ranges::minmax(hu);
   return look.doubts(low, high);

@@ -2,7 +2,7 @@
 #include <limits>
 #include <type_traits>
 
-#include "imaging/common/hu_look.h"
+#include "imaging/common/hu_sanity_check.h"
 #include "painted.h"
 #include "series_fixture.h"
 
@@ -227,23 +227,23 @@ TEST_F(HuValues, OfAVolumeFileAreJudgedWithoutWhatIsNoNumber) {
 }
 
 // `count` values, spread evenly over a range.
-void spread(HuLook& look, int count, int from, int to) {
+void spread(HuSanityCheck& look, int count, int from, int to) {
   std::vector<std::int16_t> hu;
   for (int n = 0; n < count; ++n) hu.push_back(std::int16_t(from + n * (to - from + 1) / count));
   look.add(hu);
 }
 
-TEST(HuLook, FindsAModeBesideCornersOfOneValue) {
-  HuLook look;
+TEST(HuSanityCheck, FindsAModeBesideCornersOfOneValue) {
+  HuSanityCheck look;
   spread(look, 200, 0, 0);
   spread(look, 320, 10, 49);  // a third of what the corners leave, not of all
   spread(look, 480, 950, 1400);
   EXPECT_EQ(look.doubts(0, 1400).size(), 1u);
 }
 
-TEST(HuLook, KnowsStoredAirByTheCutAtZero) {
+TEST(HuSanityCheck, KnowsStoredAirByTheCutAtZero) {
   for (const bool cut : {true, false}) {
-    HuLook look;
+    HuSanityCheck look;
     spread(look, 500, 10, 49);
     spread(look, 490, 1500, 3000);
     if (cut) spread(look, 10, 0, 0);
@@ -251,15 +251,15 @@ TEST(HuLook, KnowsStoredAirByTheCutAtZero) {
   }
 }
 
-TEST(HuLook, TakesBrainAndBoneForWhatTheyAre) {
-  HuLook look;
+TEST(HuSanityCheck, TakesBrainAndBoneForWhatTheyAre) {
+  HuSanityCheck look;
   spread(look, 500, -2, 49);
   spread(look, 500, 600, 1700);
   EXPECT_TRUE(look.doubts(-2, 1700).empty());
   EXPECT_FALSE(look.hasAir());
 }
 
-TEST(HuLook, SeesEveryVoxelOfASmallBlockAndAFewOfALargeOne) {
+TEST(HuSanityCheck, SeesEveryVoxelOfASmallBlockAndAFewOfALargeOne) {
   std::vector<int> seen(16000);
   visitSample(seen.size(), [&](std::size_t n) { ++seen[n]; });
   EXPECT_EQ(std::ranges::count(seen, 1), 16000);

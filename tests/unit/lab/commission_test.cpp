@@ -163,7 +163,7 @@ TEST(Commissioning, ThePageNamesEachCheckItsLimitAndTheNextStepInPlainWords) {
 }
 
 ArmAnswered held(double noise_m, double least, double weakest = 0.4, double error = 0.005) {
-  return {"an arm", 5.5e-5, ArmAnswer::Phase::done,
+  return {"an arm", 5.5e-5, MotorEncoderCheck::Phase::done,
           noise_m,  true,   {least, Vec3(0.0, 1.0, 0.0), weakest, error}};
 }
 
@@ -196,7 +196,7 @@ TEST(ArmChecks, WhatPushesDoNotTellForSureNeitherFailsNorPasses) {
 }
 
 TEST(ArmChecks, AnArmThatNobodyHeldIsNotPassed) {
-  ArmAnswered untouched{"an arm", 5.5e-5, ArmAnswer::Phase::untouched, 0.0, false, {}};
+  ArmAnswered untouched{"an arm", 5.5e-5, MotorEncoderCheck::Phase::untouched, 0.0, false, {}};
   const auto checks = judgedArms({held(2e-5, 0.5), untouched});
   for (const CommissionCheck& check : checks) {
     EXPECT_EQ(check.verdict, Fitness::warn) << check.name;

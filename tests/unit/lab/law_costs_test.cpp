@@ -7,8 +7,8 @@
 namespace trephine {
 namespace {
 
-Scene cranium() {
-  return *readScene(resourceFolder() / "scenes" / "cranium.json");
+Exercise cranium() {
+  return *readExercise(resourceFolder() / "scenes" / "cranium.json");
 }
 
 // Which law costs how much is the machine's; that each is measured where tissue is touched, and
@@ -30,7 +30,7 @@ TEST(LawCosts, IsCancelledAndSaysWhatIsMissing) {
   Progress progress;
   progress.cancel();
   EXPECT_EQ(measureLawCosts(cranium(), progress).error().code, "CANCELLED");
-  Scene none = cranium();
+  Exercise none = cranium();
   none.arms.clear();
   EXPECT_EQ(measureLawCosts(none).error().code, "BAD_SCENE");
 }

@@ -98,31 +98,31 @@ TEST_F(RecommendedHere, NeverTouchWhatTheWorkstationLocks) {
   EXPECT_EQ(here("points_blade"), "64;") << "what is not locked";
 }
 
-TEST(SceneSettings, AreThoseOfItsToolsForceAndRateEachOnce) {
-  Scene scene;
-  scene.rate_hz = 2000.0;
-  scene.force_at = ForceAt::distributed;
-  scene.tools = {{"knife", makeBlade(0.016, 33), {}},
-                 {"drill", makeBurr(0.003, 64, 8, 0.06), {}},
-                 {"needle", makeNeedle(0.08), {}},
-                 {"spare", makeBlade(0.016, 17), {}}};
+TEST(ExerciseSettings, AreThoseOfItsToolsForceAndRateEachOnce) {
+  Exercise exercise;
+  exercise.rate_hz = 2000.0;
+  exercise.force_at = ForceAt::distributed;
+  exercise.tools = {{"knife", makeBlade(0.016, 33), {}},
+                    {"drill", makeBurr(0.003, 64, 8, 0.06), {}},
+                    {"needle", makeNeedle(0.08), {}},
+                    {"spare", makeBlade(0.016, 17), {}}};
   for (const char* tool : {"knife", "drill", "needle", "knife"}) {
-    SceneArm arm;
+    ExerciseArm arm;
     arm.tool = tool;
-    scene.arms.push_back(arm);
+    exercise.arms.push_back(arm);
   }
   const std::vector<std::pair<std::string, std::string>> expected{{"points_blade", "33"},
                                                                   {"points_burr", "64"},
                                                                   {"force_at", "distributed"},
                                                                   {"rate_hz", "2000"},
                                                                   {"ray_casting", "0.5 voxels"}};
-  EXPECT_EQ(sceneSettings(scene), expected);
+  EXPECT_EQ(exerciseSettings(exercise), expected);
 }
 
 TEST(Recommended, IsWhatTheViewIsDrawnWith) {
   const auto shipped = readRecommended(resourceFolder() / "recommended.json");
   ASSERT_TRUE(shipped) << shipped.error().sentence();
-  const std::pair<std::string, std::string> view = sceneSettings(Scene()).back();
+  const std::pair<std::string, std::string> view = exerciseSettings(Exercise()).back();
   ASSERT_EQ(view.first, "ray_casting");
   for (const RecommendedSetting& knob : *shipped) {
     if (knob.knob != view.first) continue;

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "lab/touch/placed_scene.h"
+#include "lab/touch/placed_exercise.h"
 
 namespace trephine {
 namespace {
@@ -121,7 +121,7 @@ TEST(TheRowsOfRest, AreCountedByKindAndTheIdealLawsApart) {
   bad.result.energy_out_J = 0.031;
   ideal.also_ideal = true;
   ideal.result.cycle_m = 1.0;
-  block.scene = "block of bone";
+  block.exercise = "block of bone";
   block.kind = HoldKind::swing;
   figures.rows = {still, bad, ideal, block};
   const Json json = toJson(figures);

@@ -14,8 +14,8 @@ namespace {
 const Vec3 kFront(0.0, 1.0, 0.0), kUp(0.0, 0.0, 1.0), kPlace(-3.0, -24.0, 2.0);
 constexpr double kRadius_mm = 4.5, kEye_mm = 200.0;
 
-struct Exercise {
-  explicit Exercise(const Volume& of = ball())
+struct CutBall {
+  explicit CutBall(const Volume& of = ball())
       : whole(std::make_shared<const Volume>(of)), grid(of) {}
   std::shared_ptr<const Volume> whole;
   Grid grid;
@@ -62,21 +62,21 @@ TEST(CutMarks, VoxelsThatWereCutAreMarkedForAMomentAndAirThatWasThereIsNot) {
   mirror.pull(grid);
   const Volume before = mirror.volume();
   {
-    const CutMarks marks(mirror.lent(), {{0, 0, 0}, volume.geometry.size}, mirror, {1, 1, 1},
-                         -1001);
+    const CutMarks marks(mirror.mutableVolume(), {{0, 0, 0}, volume.geometry.size}, mirror,
+                         {1, 1, 1}, -1001);
     EXPECT_EQ(mirror.volume().at(5, 5, 5), kAirHu);
     EXPECT_EQ(mirror.volume().at(6, 5, 5), -1001);
     EXPECT_EQ(mirror.volume().at(7, 5, 5), 300);
   }
   EXPECT_EQ(mirror.volume().hu, before.hu);
-  const CutMarks elsewhere(mirror.lent(), {{0, 0, 6}, volume.geometry.size}, mirror, {1, 1, 1},
-                           -1001);
+  const CutMarks elsewhere(mirror.mutableVolume(), {{0, 0, 6}, volume.geometry.size}, mirror,
+                           {1, 1, 1}, -1001);
   EXPECT_EQ(mirror.volume().hu, before.hu) << "beyond the box";
 }
 
 TEST(CutFaces, ACutWallHasAnotherColourAndAllElseKeepsIts) {
   RENDERER_OR_SKIP(renderer);
-  Exercise exercise;
+  CutBall exercise;
   exercise.show(renderer);
   const Picture whole = renderer.picture();
   exercise.cutAndTell(renderer);
@@ -99,7 +99,7 @@ TEST(CutFaces, ACutWallHasAnotherColourAndAllElseKeepsIts) {
 
 TEST(CutFaces, TissuePutBackGivesTheOldPictureToTheBit) {
   RENDERER_OR_SKIP(renderer);
-  Exercise exercise;
+  CutBall exercise;
   exercise.show(renderer);
   const Picture before = renderer.picture();
   exercise.cutAndTell(renderer);
@@ -115,14 +115,14 @@ TEST(CutFaces, TissuePutBackGivesTheOldPictureToTheBit) {
 
 TEST(CutFaces, TheyAreShownTooWhereTheGridWasCutBeforeAndAfterAFullUpload) {
   RENDERER_OR_SKIP(renderer);
-  Exercise exercise;
+  CutBall exercise;
   exercise.show(renderer);
   exercise.cutAndTell(renderer);
   const Picture told = renderer.picture();
   UploadProbe::fullUpload_ms(renderer);
   EXPECT_EQ(renderer.picture(), told);
 
-  Exercise later;
+  CutBall later;
   carve(later.grid, kPlace, kRadius_mm);
   later.show(renderer);
   EXPECT_EQ(renderer.picture(), told);
@@ -131,7 +131,7 @@ TEST(CutFaces, TheyAreShownTooWhereTheGridWasCutBeforeAndAfterAFullUpload) {
 TEST(CutFaces, AVolumeShownWithFewerVoxelsHasThemToo) {
   RENDERER_OR_SKIP(renderer);
   UploadProbe::limitEdges(renderer, 32);
-  Exercise exercise;
+  CutBall exercise;
   exercise.show(renderer);
   renderer.picture();
   ASSERT_NE(renderer.reduction(), (Index3{1, 1, 1}));
@@ -144,7 +144,7 @@ TEST(CutFaces, WhereASeenTissueHoldsAllLowHuWhatWasCutIsGoneAllTheSame) {
   RENDERER_OR_SKIP(renderer);
   Volume noisy = ball();
   noisy.hu[0] = -1040;
-  Exercise exercise(noisy);
+  CutBall exercise(noisy);
   exercise.show(renderer);
   TissueSet set = tissues();
   set.tissues[0].hu_min = -1100;
@@ -154,14 +154,14 @@ TEST(CutFaces, WhereASeenTissueHoldsAllLowHuWhatWasCutIsGoneAllTheSame) {
   const Picture told = renderer.picture();
   EXPECT_EQ(told, exercise.untold(renderer));
   // And back, where the mark is free again.
-  Exercise cut_before(noisy);
+  CutBall cut_before(noisy);
   carve(cut_before.grid, kPlace, kRadius_mm);
   cut_before.show(renderer);
   renderer.setTissues(set);
   renderer.picture();
   renderer.setTissues(tissues());
   const Picture again = renderer.picture();
-  Exercise other(noisy);
+  CutBall other(noisy);
   carve(other.grid, kPlace, kRadius_mm);
   other.show(renderer);
   EXPECT_EQ(again, renderer.picture());

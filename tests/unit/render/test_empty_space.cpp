@@ -72,21 +72,21 @@ TEST(EmptySpace, DistancesAreThoseOfTheDefinition) {
   }
   const BrickRanges bricks(volume);
   EXPECT_EQ(bricks.size(), (Index3{10, 8, 7}));
-  const LeapMap map(bricks, kBone, 0.0);
+  const EmptySpaceDistance map(bricks, kBone, 0.0);
   const std::vector<int> expected = distancesByDefinition(volume);
   ASSERT_EQ(map.distances().size(), expected.size());
   for (std::size_t i = 0; i < expected.size(); ++i) EXPECT_EQ(map.distances()[i], expected[i]) << i;
 }
 
 TEST(EmptySpace, AVolumeOfAirIsLeaptOverWhole) {
-  const LeapMap map(BrickRanges(air({40, 40, 40})), kBone, 0.0);
+  const EmptySpaceDistance map(BrickRanges(air({40, 40, 40})), kBone, 0.0);
   for (std::uint8_t d : map.distances()) EXPECT_EQ(d, 255);
 }
 
 TEST(EmptySpace, AVoxelAtABricksRimCountsBesideItToo) {
   Volume volume = air({32, 8, 8});
   set(volume, 8, 4, 4, 900);
-  const LeapMap map(BrickRanges(volume), kBone, 0.0);
+  const EmptySpaceDistance map(BrickRanges(volume), kBone, 0.0);
   EXPECT_EQ(map.distances(), (std::vector<std::uint8_t>{0, 0, 1, 2}));
 }
 
@@ -95,9 +95,9 @@ TEST(EmptySpace, ValuesBetweenTwoVoxelsCount) {
   Volume volume = air({8, 8, 8});
   set(volume, 4, 4, 4, 2000);
   const BrickRanges bricks(volume);
-  EXPECT_EQ(LeapMap(bricks, {{300.0, 700.0}}, 0.0).distances()[0], 0);
-  EXPECT_EQ(LeapMap(bricks, {{2100.0, 3000.0}}, 0.0).distances()[0], 255);
-  EXPECT_EQ(LeapMap(bricks, {{2100.0, 3000.0}}, 101.0).distances()[0], 0);
+  EXPECT_EQ(EmptySpaceDistance(bricks, {{300.0, 700.0}}, 0.0).distances()[0], 0);
+  EXPECT_EQ(EmptySpaceDistance(bricks, {{2100.0, 3000.0}}, 0.0).distances()[0], 255);
+  EXPECT_EQ(EmptySpaceDistance(bricks, {{2100.0, 3000.0}}, 101.0).distances()[0], 0);
 }
 
 TEST(EmptySpace, WhatIsVisibleUnderALabelCountsInBricksThatHaveIt) {
@@ -115,11 +115,11 @@ TEST(EmptySpace, WhatIsVisibleUnderALabelCountsInBricksThatHaveIt) {
   EXPECT_EQ(of_bricks, (std::vector<std::uint32_t>{1, 1, 1, 1, 1, 3, 1, 1}));
   const BrickRanges bricks(volume);
   const std::vector<HuInterval> air_too{{-1000.0, 1000.0}};
-  EXPECT_EQ(LeapMap(bricks, {kBone, air_too}, of_bricks, 0.0).distances(),
+  EXPECT_EQ(EmptySpaceDistance(bricks, {kBone, air_too}, of_bricks, 0.0).distances(),
             (std::vector<std::uint8_t>{1, 1, 1, 2, 1, 0, 1, 2}));
-  EXPECT_EQ(LeapMap(bricks, {kBone, kBone}, of_bricks, 0.0).distances()[5], 255);
+  EXPECT_EQ(EmptySpaceDistance(bricks, {kBone, kBone}, of_bricks, 0.0).distances()[5], 255);
   // The label moves to another brick.
-  LeapMap leaps(bricks, {kBone, air_too}, of_bricks, 0.0);
+  EmptySpaceDistance leaps(bricks, {kBone, air_too}, of_bricks, 0.0);
   labels.labels[volume.geometry.indexOf(9, 3, 8)] = 0;
   labels.labels[volume.geometry.indexOf(17, 3, 8)] = 5;
   known.update(labels, {{9, 3, 8}, {18, 4, 9}});
@@ -161,7 +161,7 @@ TEST(EmptySpace, CutsAndUndosNeverMakeALeapTooLong) {
     }
   }
   BrickRanges bricks(volume);
-  LeapMap map(bricks, kBone, 0.0);
+  EmptySpaceDistance map(bricks, kBone, 0.0);
   for (int n = 0; n < 60; ++n) {
     VoxelBox box;
     for (std::size_t axis = 0; axis < 3; ++axis) {

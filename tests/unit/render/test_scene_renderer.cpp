@@ -45,7 +45,7 @@ TEST(SceneRenderer, TheSameStateGivesTheSamePicture) {
 
 TEST(SceneRenderer, LeapingOverEmptySpaceChangesNothingVisible) {
   RENDERER_OR_SKIP(renderer);
-  renderer.setTruth({false, false});
+  renderer.setShading({false, false});
   renderer.setVolume(Grid(ball()));
   for (double soft : {0.0, 0.03, 0.4}) {
     renderer.setTissues(tissues(soft));
@@ -61,7 +61,7 @@ TEST(SceneRenderer, LeapingOverEmptySpaceChangesNothingVisible) {
 
 TEST(SceneRenderer, LeapingHoldsWithTheEyeInsideTheVolumeToo) {
   RENDERER_OR_SKIP(renderer);
-  renderer.setTruth({false, false});
+  renderer.setShading({false, false});
   renderer.setVolume(Grid(ball()));
   renderer.setTissues(tissues());
   renderer.lookAt(Vec3(0, 10, 0), Vec3(0.2, 1, 0), Vec3(0, 0, 1), 12.0);
@@ -252,7 +252,7 @@ TEST(SceneRenderer, ALabelThatAllVoxelsHaveChangesNothingVisible) {
   EXPECT_EQ(renderer.picture(), plain) << "no tissue asks for a label";
   renderer.setTissues(boneOf(5));
   EXPECT_GE(psnr_dB(renderer.picture(), plain), 30.0) << "shaded by the label's own border";
-  renderer.setTruth({false, false});
+  renderer.setShading({false, false});
   UploadProbe::setLeaping(renderer, false);
   const Picture stock = renderer.picture();
   UploadProbe::setLeaping(renderer, true);

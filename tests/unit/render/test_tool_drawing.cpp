@@ -194,11 +194,11 @@ TEST(ToolDrawing, ABuiltInToolHasTheRadiusThatIsAskedFor) {
 }
 
 TEST(ToolDrawing, ABurrIsDrawnAsTheRodWithRoundEndsThatItsDescriptionSays) {
-  SceneTool tool;
+  ExerciseTool tool;
   const ToolDescription cylinder{ToolKind::burr, 40.0, 100, 2.0, 0, BurrShape::cylinder, 12.0, 0.0};
   tool.tool = *makeTool(cylinder);
   // How far back from the tip the head is as thick as it cuts; the handle begins at 40 mm.
-  const auto thickUpTo_mm = [](const SceneTool& drawn) {
+  const auto thickUpTo_mm = [](const ExerciseTool& drawn) {
     vtkNew<vtkRenderer> renderer;
     ToolDrawing drawing;
     drawing.show({toolView(drawn, {}, false, Vec3(0.8))}, *renderer);

@@ -60,7 +60,7 @@ TEST(Truth, NormalsFollowASphereMoreCloselyThanCentralDifferences) {
   renderer.setVolume(Grid(round([](double r) { return -1000.0 + 2200.0 * edge(r, 24.0); })));
   renderer.lookAt(Vec3(0.0), Vec3(0.5, 0.7, -0.4), Vec3(0, 0, 1), kEye_mm);
   const double ours = medianNormalError_deg(renderer, 24.0);
-  renderer.setTruth({false, false});
+  renderer.setShading({false, false});
   const double differences = medianNormalError_deg(renderer, 24.0);
   EXPECT_LT(ours, 2.5);
   EXPECT_GT(differences, 1.25 * ours);
@@ -106,7 +106,7 @@ TEST(Truth, AnEdgeBetweenBoneAndAirShowsNoSoftTissue) {
   const auto [soft, bone] = count();
   EXPECT_GT(bone, 2000);
   EXPECT_LT(soft, bone / 50);
-  renderer.setTruth({true, false});
+  renderer.setShading({true, false});
   EXPECT_GT(count()[0], bone / 2) << "by HU alone a skin of soft tissue lies around it";
 }
 

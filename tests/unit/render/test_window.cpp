@@ -234,7 +234,7 @@ TEST_F(Window, ACutDoesNotComeBackWithAFinerPictureThatWasBegunBeforeIt) {
     EXPECT_GT(psnr_dB(last, now), 22.0);
     last = now;
   }
-  hosted_.setTruth({});
+  hosted_.setShading({});
   hosted_.paint(screen_->id());
   EXPECT_EQ(screen_->read(), last);
 }
@@ -247,7 +247,7 @@ TEST_F(Window, ACutMendsItsPartOfAPictureThatIsWhole) {
   finish(hosted_, screen_->id());
   EXPECT_EQ(hosted_.shareOfRays(), 1.0);
   const Picture mended = screen_->read();
-  hosted_.setTruth({});  // starts anew
+  hosted_.setShading({});  // starts anew
   hosted_.paint(screen_->id());
   EXPECT_EQ(screen_->read(), mended);
   // A second one, while a picture is on its way, is in that one too.
@@ -258,7 +258,7 @@ TEST_F(Window, ACutMendsItsPartOfAPictureThatIsWhole) {
   ASSERT_TRUE(hosted_.pullChanges(grid_));
   finish(hosted_, screen_->id());
   const Picture late = screen_->read();
-  hosted_.setTruth({});
+  hosted_.setShading({});
   hosted_.paint(screen_->id());
   EXPECT_EQ(screen_->read(), late);
 }

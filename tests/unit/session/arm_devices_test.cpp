@@ -1,4 +1,4 @@
-// The devices that a scene names, and their files.
+// The devices that an exercise names, and their files.
 #include <sys/stat.h>
 
 #include <functional>
@@ -14,18 +14,18 @@ namespace {
 using test::cranium;
 using test::smallHead;
 
-// The one-arm scene with a device file of its own.
+// The one-arm exercise with a device file of its own.
 Error errorWithDeviceFile(const std::function<void(Json&)>& change, double rate_hz = 1000.0) {
   test::TemporaryFolder folder;
   Json device = *readJsonFile(resourceFolder() / "devices" / "omni.json");
   change(device);
   EXPECT_TRUE(writeTextFile(folder / "device.json", device.dump()));
-  Scene scene = *readScene(resourceFolder() / "scenes" / "cranium-one-arm.json");
-  scene.rate_hz = rate_hz;
+  Exercise exercise = *readExercise(resourceFolder() / "scenes" / "cranium-one-arm.json");
+  exercise.rate_hz = rate_hz;
   SessionOptions options;
-  options.rig = simulatedRig(scene);
+  options.rig = simulatedRig(exercise);
   options.rig.arms[0].device.config = (folder / "device.json").string();
-  const auto session = Session::create(test::placed(scene, smallHead()), options);
+  const auto session = Session::create(test::placed(exercise, smallHead()), options);
   return session ? Error{} : session.error();
 }
 
@@ -40,16 +40,16 @@ TEST(Session, NamesFileFieldAndValueOfAWrongDeviceFile) {
 
 TEST(Session, RefusesADeviceFileNestedWithoutEndAndOneThatIsAPipe) {
   test::TemporaryFolder folder;
-  const Scene scene = *readScene(resourceFolder() / "scenes" / "cranium-one-arm.json");
+  const Exercise exercise = *readExercise(resourceFolder() / "scenes" / "cranium-one-arm.json");
   SessionOptions options;
-  options.rig = simulatedRig(scene);
+  options.rig = simulatedRig(exercise);
   const std::size_t depth = 100'000;
   ASSERT_TRUE(writeTextFile(folder / "deep.json", R"({"format": )" + std::string(depth, '[') +
                                                       std::string(depth, ']') + "}"));
   ASSERT_EQ(::mkfifo((folder / "pipe.json").c_str(), 0600), 0);
   for (const char* name : {"deep.json", "pipe.json"}) {
     options.rig.arms[0].device.config = (folder / name).string();
-    const auto session = Session::create(test::placed(scene, smallHead()), options);
+    const auto session = Session::create(test::placed(exercise, smallHead()), options);
     ASSERT_FALSE(session.ok()) << name;
     EXPECT_NE(session.error().where.find(name), std::string::npos) << session.error().sentence();
   }
@@ -66,11 +66,11 @@ TEST(Session, RefusesARateThatTheDeviceCannotKeep) {
 }
 
 TEST(Session, SaysWhenAPluginIsMissing) {
-  const Scene scene = cranium();
+  const Exercise exercise = cranium();
   SessionOptions options;
-  options.rig = simulatedRig(scene);
+  options.rig = simulatedRig(exercise);
   for (Rig::Arm& arm : options.rig.arms) arm.device.plugin = "nosuch";
-  auto session = Session::create(test::placed(scene, smallHead()), options);
+  auto session = Session::create(test::placed(exercise, smallHead()), options);
   ASSERT_FALSE(session.ok());
   EXPECT_EQ(session.error().code, "NO_PLUGIN");
 }

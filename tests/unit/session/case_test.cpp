@@ -1,4 +1,4 @@
-// A case in a scene: its voxels, its label map, and what is said where it does not fit.
+// A case in an exercise: its voxels, its label map, and what is said where it does not fit.
 #include <algorithm>
 
 #include "cases.h"
@@ -19,8 +19,8 @@ TEST(Case, CanBeCancelledWhileItsLandmarksAreFound) {
   Progress progress([&](double, const std::string&) { running->cancel(); });
   running = &progress;
   const Case of = caseOf(std::make_shared<const Volume>(smallHead()));
-  Scene scene = cranium();
-  const auto placed = place(scene, of, progress);
+  Exercise exercise = cranium();
+  const auto placed = place(exercise, of, progress);
   ASSERT_FALSE(placed.ok());
   EXPECT_EQ(placed.error().code, "CANCELLED");
 }
@@ -35,10 +35,10 @@ std::shared_ptr<const LabelMap> strips() {
   return std::make_shared<const LabelMap>(std::move(map));
 }
 
-Scene craniumOfLabels() {
-  Scene scene = cranium();
-  scene.tissues.tissues.back().label = 7;
-  return scene;
+Exercise craniumOfLabels() {
+  Exercise exercise = cranium();
+  exercise.tissues.tissues.back().label = 7;
+  return exercise;
 }
 
 TEST(Session, CutsATissueOnlyWhereItsLabelIsAndReplaysWithThatLabelMapAlone) {
@@ -94,8 +94,8 @@ TEST(Case, FitsALabelMapToItsVoxels) {
   const auto labelled = withLabels(head, file("turned.mha"));
   ASSERT_TRUE(labelled.ok()) << labelled.error().sentence();
   EXPECT_EQ(labelled->structures->labels, straight->labels);
-  Scene scene = craniumOfLabels();
-  const Placement of = *place(scene, *labelled);
+  Exercise exercise = craniumOfLabels();
+  const Placement of = *place(exercise, *labelled);
   auto session = Session::create(of, scripted(folder / "s.h5"));
   ASSERT_TRUE(session.ok()) << session.error().sentence();
   ASSERT_TRUE((*session)->freewheel(0.5).ok());
@@ -114,7 +114,7 @@ TEST(Session, ATissueOfALabelWithoutALabelMapIsRefused) {
   EXPECT_EQ(session->setTissues(craniumOfLabels().tissues).error().code, "NO_LABELS");
 }
 
-TEST(Session, SaysWhenTheCaseDoesNotFitTheScene) {
+TEST(Session, SaysWhenTheCaseDoesNotFitTheExercise) {
   Volume air = smallHead();
   std::fill(air.hu.begin(), air.hu.end(), kAirHu);
   auto session = Session::create(test::placed(cranium(), air), {});
@@ -137,10 +137,10 @@ Case caseWithoutAVault() {
 }
 
 TEST(Case, ThatShowsAnotherAnatomyIsBegunAtItsSurfaceAndSaysSo) {
-  Scene scene = cranium();
+  Exercise exercise = cranium();
   Case vaultless = caseWithoutAVault();
   vaultless.anatomy = Anatomy{BodyRegion::abdomen};
-  const Placement of = *place(scene, vaultless);
+  const Placement of = *place(exercise, vaultless);
   ASSERT_FALSE(of.error) << of.error->sentence();
   ASSERT_EQ(of.warnings.size(), 2u);
   EXPECT_EQ(of.warnings[0].code, "OTHER_ANATOMY");
@@ -154,11 +154,11 @@ TEST(Case, ThatShowsAnotherAnatomyIsBegunAtItsSurfaceAndSaysSo) {
 }
 
 TEST(Case, WithoutTheLandmarksTissueIsNoDeadEndWhateverItShows) {
-  Scene scene = cranium();
+  Exercise exercise = cranium();
   Case of = caseWithoutAVault();
   for (const BodyRegion region : {BodyRegion::head, BodyRegion::not_sure}) {
     of.anatomy = Anatomy{region, true};
-    const Placement placed = *place(scene, of);
+    const Placement placed = *place(exercise, of);
     ASSERT_FALSE(placed.error) << placed.error->sentence();
     ASSERT_EQ(placed.warnings.size(), 1u);
     EXPECT_EQ(placed.warnings[0].code, "NO_LANDMARK");
@@ -166,9 +166,9 @@ TEST(Case, WithoutTheLandmarksTissueIsNoDeadEndWhateverItShows) {
   }
 }
 
-// Of a liver's scene the landmark is the middle of a ball of 30 mm.
+// Of a liver's exercise the landmark is the middle of a ball of 30 mm.
 TEST(Case, ThatIsTooThinForTheLandmarksBallIsBegunAtItsSurface) {
-  Scene scene = *readScene(resourceFolder() / "scenes" / "liver.json");
+  Exercise exercise = *readExercise(resourceFolder() / "scenes" / "liver.json");
   Volume thin;
   thin.geometry.size = {100, 80, 10};
   thin.geometry.spacing_mm = {2.0, 2.0, 3.0};
@@ -178,7 +178,7 @@ TEST(Case, ThatIsTooThinForTheLandmarksBallIsBegunAtItsSurface) {
       for (int i = 20; i < 80; ++i) thin.hu[thin.geometry.indexOf(i, j, k)] = 200;
     }
   }
-  const Placement of = *place(scene, caseOf(std::make_shared<const Volume>(std::move(thin))));
+  const Placement of = *place(exercise, caseOf(std::make_shared<const Volume>(std::move(thin))));
   ASSERT_FALSE(of.error) << of.error->sentence();
   ASSERT_EQ(of.warnings.size(), 2u);
   EXPECT_EQ(of.warnings[0].code, "LACKS_STRUCTURE");
@@ -203,24 +203,24 @@ TEST(Case, AMissingLabelMapIsNamedAndNoneIsNoError) {
   ASSERT_FALSE(missing.ok());
   EXPECT_EQ(missing.error().code, "MISSING_FILE");
   EXPECT_NE(missing.error().where.find("/no/such/seg.nii"), std::string::npos);
-  Scene scene = cranium();
-  scene.labels_file = "/no/such/seg.nii";
-  const Placement of = *place(scene, head);
+  Exercise exercise = cranium();
+  exercise.labels_file = "/no/such/seg.nii";
+  const Placement of = *place(exercise, head);
   ASSERT_TRUE(of.error);
   EXPECT_EQ(Session::create(of, {}).error().code, "MISSING_FILE");
 }
 
 TEST(Case, ABuiltInAbdomenBringsItsLabelMapAndAnotherReplacesIt) {
   test::TemporaryFolder folder;
-  Scene scene = *readScene(resourceFolder() / "scenes" / "liver.json");
+  Exercise exercise = *readExercise(resourceFolder() / "scenes" / "liver.json");
   const Case read = *readCase("phantom:abdomen");
   ASSERT_TRUE(read.structures);
-  const Placement own = *place(scene, read);
+  const Placement own = *place(exercise, read);
   EXPECT_EQ(own.labels, read.structures);
   EXPECT_FALSE(own.error) << own.error->sentence();
   // What a session recorded with them is replayed with them.
-  auto session =
-      Session::create(own, {folder / "s.h5", *readOperatorScript(scene.operator_file, scene)});
+  auto session = Session::create(
+      own, {folder / "s.h5", *readOperatorScript(exercise.operator_file, exercise)});
   ASSERT_TRUE(session.ok()) << session.error().sentence();
   ASSERT_TRUE((*session)->freewheel(2.0).ok());
   const auto reader = *SessionReader::open(folder / "s.h5");
@@ -229,18 +229,18 @@ TEST(Case, ABuiltInAbdomenBringsItsLabelMapAndAnotherReplacesIt) {
   const GridGeometry& g = read.volume->geometry;
   Volume given{g, Voxels(g.voxelCount(), std::int16_t(1))};
   ASSERT_TRUE(writeVolume(given, folder / "given.nii").ok());
-  scene.labels_file = (folder / "given.nii").string();
-  const Placement other = *place(scene, read);
+  exercise.labels_file = (folder / "given.nii").string();
+  const Placement other = *place(exercise, read);
   ASSERT_TRUE(other.labels);
   EXPECT_EQ(other.labels->labels.front(), 1);
   EXPECT_FALSE(other.patient.structures_built_in);
-  EXPECT_EQ(place(scene, other.patient)->labels, other.labels) << "read once";
+  EXPECT_EQ(place(exercise, other.patient)->labels, other.labels) << "read once";
 }
 
 TEST(Case, IsHashedOnceAndKeepsItsVoxelsWhenTheExerciseCutsThem) {
   const auto voxels = std::make_shared<const Volume>(smallHead());
-  Scene scene = cranium();
-  const Placement placed = *place(scene, caseOf(voxels));
+  Exercise exercise = cranium();
+  const Placement placed = *place(exercise, caseOf(voxels));
   const Case& of = placed.patient;
   EXPECT_EQ(of.sha256, volumeSha256(smallHead()));
   EXPECT_EQ(caseOf(voxels, "known").sha256, "known");
@@ -252,56 +252,56 @@ TEST(Case, IsHashedOnceAndKeepsItsVoxelsWhenTheExerciseCutsThem) {
   EXPECT_EQ(voxels->hu, smallHead().hu);
 }
 
-// --- An exercise on a case ---
+// --- An document on a case ---
 
 TEST(Placement, LeavesTheExerciseAsItIsAndFollowsItsEdits) {
-  const Scene liver = *readScene(resourceFolder() / "scenes" / "liver.json");
-  Scene exercise = liver;
-  const Placement placed = *place(exercise, *readCase("phantom:abdomen"));
+  const Exercise liver = *readExercise(resourceFolder() / "scenes" / "liver.json");
+  Exercise document = liver;
+  const Placement placed = *place(document, *readCase("phantom:abdomen"));
   ASSERT_FALSE(placed.error) << placed.error->sentence();
-  EXPECT_EQ(exercise, liver);
+  EXPECT_EQ(document, liver);
   EXPECT_FALSE(placed.elsewhere);
-  EXPECT_FALSE(exercise.tissues.find("liver")->label) << "a label is the case's";
-  EXPECT_EQ(placed.scene.tissues.find("liver")->label, placed.labels->find("liver")->label);
-  for (const SceneArm& arm : placed.scene.arms) EXPECT_TRUE(arm.map.fixed);
-  for (Tissue& tissue : exercise.tissues.tissues) tissue.opacity = 0.25;
-  exercise.arms[0].map.offset_mm.z += 5.0;
-  const Scene edited = placedScene(exercise, placed);
+  EXPECT_FALSE(document.tissues.find("liver")->label) << "a label is the case's";
+  EXPECT_EQ(placed.exercise.tissues.find("liver")->label, placed.labels->find("liver")->label);
+  for (const ExerciseArm& arm : placed.exercise.arms) EXPECT_TRUE(arm.map.fixed);
+  for (Tissue& tissue : document.tissues.tissues) tissue.opacity = 0.25;
+  document.arms[0].map.offset_mm.z += 5.0;
+  const Exercise edited = placedExercise(document, placed);
   EXPECT_EQ(edited.tissues.find("liver")->opacity, 0.25);
-  EXPECT_EQ(edited.tissues.find("liver")->label, placed.scene.tissues.find("liver")->label);
-  EXPECT_NEAR(
-      glm::length(edited.arms[0].map.fixed->centre_mm - placed.scene.arms[0].map.fixed->centre_mm),
-      5.0, 1e-9);
-  EXPECT_EQ(placedScene(liver, placed), placed.scene);
+  EXPECT_EQ(edited.tissues.find("liver")->label, placed.exercise.tissues.find("liver")->label);
+  EXPECT_NEAR(glm::length(edited.arms[0].map.fixed->centre_mm -
+                          placed.exercise.arms[0].map.fixed->centre_mm),
+              5.0, 1e-9);
+  EXPECT_EQ(placedExercise(liver, placed), placed.exercise);
 }
 
 TEST(Placement, WithoutAStructureTheOtherSetIsInForceAndItsEditsAre) {
-  const Scene liver = *readScene(resourceFolder() / "scenes" / "liver.json");
+  const Exercise liver = *readExercise(resourceFolder() / "scenes" / "liver.json");
   Case bare = *readCase("phantom:abdomen");
   bare.structures = nullptr;
   const Placement placed = *place(liver, bare);
   ASSERT_FALSE(placed.error) << placed.error->sentence();
   EXPECT_TRUE(placed.elsewhere);
-  EXPECT_EQ(placed.scene.tissues, *liver.tissues_elsewhere);
-  Scene exercise = liver;
-  for (Tissue& tissue : exercise.tissues.tissues) tissue.opacity = 0.25;
-  EXPECT_EQ(placedScene(exercise, placed).tissues, *liver.tissues_elsewhere);
-  for (Tissue& tissue : exercise.tissues_elsewhere->tissues) tissue.opacity = 0.5;
-  EXPECT_EQ(placedScene(exercise, placed).tissues.tissues.front().opacity, 0.5);
+  EXPECT_EQ(placed.exercise.tissues, *liver.tissues_elsewhere);
+  Exercise document = liver;
+  for (Tissue& tissue : document.tissues.tissues) tissue.opacity = 0.25;
+  EXPECT_EQ(placedExercise(document, placed).tissues, *liver.tissues_elsewhere);
+  for (Tissue& tissue : document.tissues_elsewhere->tissues) tissue.opacity = 0.5;
+  EXPECT_EQ(placedExercise(document, placed).tissues.tissues.front().opacity, 0.5);
 }
 
-TEST(Scene, OnAnotherCaseHasNoLabelMapOfItsOwn) {
-  Scene scene = cranium();
-  scene.case_source = "phantom:cranium";
-  scene.labels_file = "labels.nii";
-  scene = onCase(scene, "phantom:cranium");
-  EXPECT_EQ(scene.labels_file, "labels.nii");
-  scene = onCase(scene, "");
-  EXPECT_EQ(scene.labels_file, "");
-  EXPECT_FALSE(toJson(scene).contains("case")) << "a recording must not name another case";
-  scene.labels_file = "of the case that is given.nii";
-  scene = onCase(scene, "head.mha");
-  EXPECT_EQ(scene.labels_file, "of the case that is given.nii");
+TEST(Exercise, OnAnotherCaseHasNoLabelMapOfItsOwn) {
+  Exercise exercise = cranium();
+  exercise.case_source = "phantom:cranium";
+  exercise.labels_file = "labels.nii";
+  exercise = onCase(exercise, "phantom:cranium");
+  EXPECT_EQ(exercise.labels_file, "labels.nii");
+  exercise = onCase(exercise, "");
+  EXPECT_EQ(exercise.labels_file, "");
+  EXPECT_FALSE(toJson(exercise).contains("case")) << "a recording must not name another case";
+  exercise.labels_file = "of the case that is given.nii";
+  exercise = onCase(exercise, "head.mha");
+  EXPECT_EQ(exercise.labels_file, "of the case that is given.nii");
 }
 
 }  // namespace

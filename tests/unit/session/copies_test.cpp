@@ -17,18 +17,19 @@ int placed = 0;
 // The linker leads calls of placeLandmarks() through here.
 namespace trephine {
 Result<std::vector<PlacedLandmark>>
-realPlaceLandmarks(const Scene&, const Volume&, const LabelMap*, const Progress&) asm(
-    "__real__ZN8trephine14placeLandmarksERKNS_5SceneERKNS_6VolumeEPKNS_8LabelMapERKNS_"
+realPlaceLandmarks(const Exercise&, const Volume&, const LabelMap*, const Progress&) asm(
+    "__real__ZN8trephine14placeLandmarksERKNS_8ExerciseERKNS_6VolumeEPKNS_8LabelMapERKNS_"
     "8ProgressE");
 Result<std::vector<PlacedLandmark>>
-wrappedPlaceLandmarks(const Scene& scene, const Volume& volume, const LabelMap* labels, const Progress& progress) asm(
-    "__wrap__ZN8trephine14placeLandmarksERKNS_5SceneERKNS_6VolumeEPKNS_8LabelMapERKNS_"
+wrappedPlaceLandmarks(const Exercise& exercise, const Volume& volume, const LabelMap* labels, const Progress& progress) asm(
+    "__wrap__ZN8trephine14placeLandmarksERKNS_8ExerciseERKNS_6VolumeEPKNS_8LabelMapERKNS_"
     "8ProgressE");
-Result<std::vector<PlacedLandmark>> wrappedPlaceLandmarks(const Scene& scene, const Volume& volume,
+Result<std::vector<PlacedLandmark>> wrappedPlaceLandmarks(const Exercise& exercise,
+                                                          const Volume& volume,
                                                           const LabelMap* labels,
                                                           const Progress& progress) {
   ++::placed;
-  return realPlaceLandmarks(scene, volume, labels, progress);
+  return realPlaceLandmarks(exercise, volume, labels, progress);
 }
 
 namespace {
@@ -41,18 +42,18 @@ Volume largeHead() {
 TEST(Copies, AreOneOfACaseAndAnotherOfTheGridThatIsCutAndTheyAreHashedAndSearchedOnce) {
   if (test::kSanitized) GTEST_SKIP() << "A sanitizer has memory of its own";
   test::TemporaryFolder folder;
-  Scene scene = *readScene(resourceFolder() / "scenes" / "cranium.json");
+  Exercise exercise = *readExercise(resourceFolder() / "scenes" / "cranium.json");
   const std::size_t count = [&] {
     const Volume head = largeHead();
     EXPECT_TRUE(writeVolume(head, folder / "head.mha").ok());
     return head.geometry.voxelCount();
   }();
   const double copy_mb = voxelsMb(count);
-  scene = onCase(scene, (folder / "head.mha").string());
+  exercise = onCase(exercise, (folder / "head.mha").string());
 
   test::hashed_bytes = 0;
   const double before_mb = test::privateDirtyMb();
-  const Result<Placement> of = openCase(scene);
+  const Result<Placement> of = openCase(exercise);
   ASSERT_TRUE(of.ok()) << of.error().sentence();
   ASSERT_FALSE(of->error) << of->error->sentence();
   const double opened_mb = test::privateDirtyMb();
@@ -60,8 +61,8 @@ TEST(Copies, AreOneOfACaseAndAnotherOfTheGridThatIsCutAndTheyAreHashedAndSearche
   EXPECT_EQ(of->patient.volume->hu.size(), count);
   EXPECT_EQ(test::hashed_bytes, 2 * count) << "once";
 
-  auto session =
-      Session::create(*of, {folder / "s.h5", *readOperatorScript(scene.operator_file, scene)});
+  auto session = Session::create(
+      *of, {folder / "s.h5", *readOperatorScript(exercise.operator_file, exercise)});
   ASSERT_TRUE(session.ok()) << session.error().sentence();
   const double made_mb = test::privateDirtyMb() - opened_mb;
   EXPECT_GT(made_mb / copy_mb, 1.0) << "the grid";

@@ -4,7 +4,7 @@
 
 #include "base/system.h"
 #include "cases.h"
-#include "scene/scene_structures.h"
+#include "exercise/exercise_structures.h"
 #include "session/hand_start.h"
 #include "session/session.h"
 #include "shells.h"
@@ -63,17 +63,17 @@ TEST(HandStart, WhatLiesFartherOutDoesNotKeepItFromTheAirBetween) {
   EXPECT_LT(25.0 + by_mm, 52.0) << "8 mm of needle fit below 60";
 }
 
-Scene liver() {
-  Scene scene = *readScene(resourceFolder() / "scenes" / "liver-one-arm.json");
-  scene = onCase(scene, "");
-  EXPECT_TRUE(placeStructures(scene, nullptr).ok());  // by HU: it has no labels
-  Landmark& landmark = scene.landmarks[0];  // found by a ray, in a belly that is quick to make
+Exercise liver() {
+  Exercise exercise = *readExercise(resourceFolder() / "scenes" / "liver-one-arm.json");
+  exercise = onCase(exercise, "");
+  EXPECT_TRUE(placeStructures(exercise, nullptr).ok());  // by HU: it has no labels
+  Landmark& landmark = exercise.landmarks[0];  // found by a ray, in a belly that is quick to make
   landmark.bulk_radius_mm = 0.0;
   landmark.from = {0.5, -0.2, 0.5};
-  return scene;
+  return exercise;
 }
 
-// Liver within muscle within skin: enough for the shipped scene.
+// Liver within muscle within skin: enough for the shipped exercise.
 Volume smallBelly() {
   return test::shells(80, 1.5, {{44, 75}, {30, 50}});
 }
@@ -84,7 +84,7 @@ void freewheelTalking(Session& session, double seconds, const std::function<void
   ASSERT_TRUE(session.freewheel(seconds, progress).ok());
 }
 
-TEST(Hands, BeginOutsideOfTheTissueThatTheScenePutsThemIn) {
+TEST(Hands, BeginOutsideOfTheTissueThatTheExercisePutsThemIn) {
   for (const bool outside : {false, true}) {
     auto made = Session::create(test::placed(liver(), smallBelly()), {{}, {}, outside});
     ASSERT_TRUE(made.ok()) << made.error().sentence();
@@ -119,12 +119,12 @@ TEST(Hands, AreBackWhereTheyBeganAfterAReset) {
 }
 
 TEST(Hands, AScriptsHandsBeginWhereTheScriptSays) {
-  const Scene scene = liver();
-  auto script = readOperatorScript(scene.operator_file, scene);
+  const Exercise exercise = liver();
+  auto script = readOperatorScript(exercise.operator_file, exercise);
   ASSERT_TRUE(script.ok()) << script.error().sentence();
   Vec3 first_mm[2];
   for (const bool outside : {false, true}) {
-    auto made = Session::create(test::placed(scene, smallBelly()), {{}, *script, outside});
+    auto made = Session::create(test::placed(exercise, smallBelly()), {{}, *script, outside});
     ASSERT_TRUE(made.ok()) << made.error().sentence();
     ASSERT_TRUE((*made)->freewheel(0.001).ok());
     first_mm[outside] = (*made)->state().record.arms[0].patient_position_mm;
@@ -133,16 +133,16 @@ TEST(Hands, AScriptsHandsBeginWhereTheScriptSays) {
 }
 
 TEST(Hands, PressAsHardAfterAPauseAsBefore) {
-  Scene scene = liver();
-  for (Tissue& tissue : scene.tissues_elsewhere->tissues) {  // one firm thing that nothing cuts
+  Exercise exercise = liver();
+  for (Tissue& tissue : exercise.tissues_elsewhere->tissues) {  // one firm thing that nothing cuts
     tissue.cuttable = false;
     tissue.solid = true;
     tissue.stiffness_N_per_m.value = 800.0;
   }
-  auto made = Session::create(test::placed(scene, smallBelly()), {{}, {}, true});
+  auto made = Session::create(test::placed(exercise, smallBelly()), {{}, {}, true});
   ASSERT_TRUE(made.ok()) << made.error().sentence();
   Session& session = **made;
-  const Vec3 out = session.scene().arms[0].map.fixed->rotation * Vec3(0.0, 0.0, 1.0);
+  const Vec3 out = session.exercise().arms[0].map.fixed->rotation * Vec3(0.0, 0.0, 1.0);
   const auto sent_N = [&] { return glm::length(session.state().record.arms[0].sent_N); };
   std::vector<double> pressed_N;
   int touched = 0, talks = 0;  // since

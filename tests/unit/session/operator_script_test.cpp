@@ -19,23 +19,23 @@ Json script() {
                     "script");
 }
 
-TEST(OperatorScript, EveryShippedSceneHasOneThatFits) {
+TEST(OperatorScript, EveryShippedExerciseHasOneThatFits) {
   for (const auto& entry : std::filesystem::directory_iterator(resourceFolder() / "scenes")) {
-    const Scene scene = *readScene(entry.path());
-    const auto read = readOperatorScript(scene.operator_file, scene);
+    const Exercise exercise = *readExercise(entry.path());
+    const auto read = readOperatorScript(exercise.operator_file, exercise);
     ASSERT_TRUE(read.ok()) << read.error().sentence();
-    EXPECT_EQ(read->hands.size(), scene.arms.size());
+    EXPECT_EQ(read->hands.size(), exercise.arms.size());
     EXPECT_GT(read->duration_s(), 5.0);
   }
 }
 
 TEST(ScriptOperator, MovesTheHandInStraightLinesBetweenWaypoints) {
-  Scene scene = cranium();
+  Exercise exercise = cranium();
   const LandmarkFrame landmark{Vec3(10, 20, 30), frameAlong({0, 0, 1})};
-  scene = withFixedMaps(scene, {{"vault", landmark}});
-  ScriptOperator oper(*parseOperatorScript(script(), "s", scene), scene, {landmark, landmark});
+  exercise = withFixedMaps(exercise, {{"vault", landmark}});
+  ScriptOperator oper(*parseOperatorScript(script(), "s", exercise), exercise, {landmark, landmark});
   OperatorSetPoint hands[2];
-  const double off_m = scene.arms[1].map.offset_mm.z / 1000.0;  // the workspace stands off the bone
+  const double off_m = exercise.arms[1].map.offset_mm.z / 1000.0;  // the workspace stands off the bone
   for (auto [tick, z_m] : {std::pair{0, 0.010}, {1000, 0.010}, {1500, 0.0}, {2000, -0.010}, {9000, -0.010}}) {
     oper.setPoints(std::uint64_t(tick), hands, 2);
     EXPECT_NEAR(hands[1].pose_m.position.z, z_m - off_m, 1e-12) << tick;
@@ -45,8 +45,8 @@ TEST(ScriptOperator, MovesTheHandInStraightLinesBetweenWaypoints) {
 }
 
 TEST(ScriptOperator, GivesEachCommandOnceAtItsTime) {
-  Scene scene = withFixedMaps(cranium(), {{"vault", {}}});
-  ScriptOperator oper(*parseOperatorScript(script(), "s", scene), scene, {{}, {}});
+  Exercise exercise = withFixedMaps(cranium(), {{"vault", {}}});
+  ScriptOperator oper(*parseOperatorScript(script(), "s", exercise), exercise, {{}, {}});
   std::vector<std::pair<std::uint64_t, CommandKind>> given;
   Command command;
   for (std::uint64_t tick = 0; tick < 3000; ++tick) {
@@ -65,8 +65,8 @@ TEST(ScriptOperator, GivesEachCommandOnceAtItsTime) {
 }
 
 TEST(OperatorScript, ChangesEachNumberThatATissueHasAndNoOther) {
-  const Scene plain = cranium();
-  Scene whole = plain;
+  const Exercise plain = cranium();
+  Exercise whole = plain;
   for (const TissueNumber& number : kTissueNumbers) {
     Tissue& bone = whole.tissues.tissues[3];
     if (!number.of(bone)) number.set(bone, {1.0, "made up"});
@@ -93,7 +93,7 @@ TEST(OperatorScript, ChangesEachNumberThatATissueHasAndNoOther) {
 }
 
 TEST(OperatorScript, NamesWhatIsWrong) {
-  const Scene scene = cranium();
+  const Exercise exercise = cranium();
   struct Bad {
     void (*change)(Json&);
     const char* field;
@@ -134,7 +134,7 @@ TEST(OperatorScript, NamesWhatIsWrong) {
   for (const Bad& bad : cases) {
     Json json = script();
     bad.change(json);
-    const auto read = parseOperatorScript(json, "script.json", scene);
+    const auto read = parseOperatorScript(json, "script.json", exercise);
     ASSERT_FALSE(read.ok()) << bad.field;
     EXPECT_NE(read.error().where.find(bad.field), std::string::npos) << read.error().sentence();
     EXPECT_NE(read.error().what.find(bad.value), std::string::npos) << read.error().sentence();
@@ -142,36 +142,36 @@ TEST(OperatorScript, NamesWhatIsWrong) {
 }
 
 TEST(OperatorScript, ChangesNothingThatIsLocked) {
-  const Scene scene = cranium();
+  const Exercise exercise = cranium();
   Json json = script();
   json["commands"] = Json::array({{{"t", 0.5}, {"do", "controller"}, {"controller", "off"}}});
-  const auto off = *parseOperatorScript(json, "script.json", scene);
+  const auto off = *parseOperatorScript(json, "script.json", exercise);
   EXPECT_TRUE(checkLocks(off, {}));
   EXPECT_TRUE(checkLocks(off, {Lock::tissues, Lock::rate}));
   ASSERT_FALSE(checkLocks(off, {Lock::controller}));
   EXPECT_EQ(checkLocks(off, {Lock::controller}).error().code, "LOCKED");
   json["commands"] = Json::array(
       {{{"t", 0.5}, {"do", "tissues"}, {"tissues", {{"bone", {{"damping_Ns_per_m", 1}}}}}}});
-  const auto softer = *parseOperatorScript(json, "script.json", scene);
+  const auto softer = *parseOperatorScript(json, "script.json", exercise);
   EXPECT_TRUE(checkLocks(softer, {Lock::controller, Lock::rate}));
   EXPECT_FALSE(checkLocks(softer, {Lock::tissues}));
   json["commands"] = Json::array({{{"t", 0.5}, {"do", "undo"}}});
-  EXPECT_TRUE(checkLocks(*parseOperatorScript(json, "script.json", scene),
+  EXPECT_TRUE(checkLocks(*parseOperatorScript(json, "script.json", exercise),
                          {Lock::controller, Lock::tissues, Lock::rate}));
 }
 
 TEST(OperatorScript, ClutchesAnArmAndTurnsItsMapInLandmarkAxes) {
-  Scene scene = withFixedMaps(cranium(), {{"vault", {}}});
+  Exercise exercise = withFixedMaps(cranium(), {{"vault", {}}});
   Json json = script();
   json["commands"] = *parseJson(
       R"([{"t": 1, "do": "clutch_on", "arm": "right"},
           {"t": 2, "do": "clutch_off", "arm": "right", "rotation_xyzw": [0, 0, 0.6, 0.8]},
           {"t": 3, "do": "clutch_off", "arm": "left"}, {"t": 4, "do": "recentre", "arm": "left"}])",
       "commands");
-  const auto read = parseOperatorScript(json, "s", scene);
+  const auto read = parseOperatorScript(json, "s", exercise);
   ASSERT_TRUE(read.ok()) << read.error().sentence();
   const LandmarkFrame turned{Vec3(0.0), Quat(0.8, 0.0, 0.0, 0.6)};
-  ScriptOperator oper(*read, scene, {turned, turned});
+  ScriptOperator oper(*read, exercise, {turned, turned});
   std::vector<Command> given;
   Command command;
   while (oper.command(5000, command)) given.push_back(command);
@@ -208,14 +208,14 @@ TEST(OperatorScript, GivesAnArmAnotherOfItsToolsByName) {
 }
 
 TEST(OperatorScript, RefusesAClutchOfNoArmAndARotationThatIsNone) {
-  const Scene scene = cranium();
+  const Exercise exercise = cranium();
   for (const char* wrong :
        {R"([{"t": 1, "do": "clutch_on"}])", R"([{"t": 1, "do": "clutch_on", "arm": "third"}])",
         R"([{"t": 1, "do": "clutch_off", "arm": "left",
                                  "rotation_xyzw": [0, 0, 0, 0.5]}])"}) {
     Json json = script();
     json["commands"] = *parseJson(wrong, "commands");
-    EXPECT_FALSE(parseOperatorScript(json, "s", scene).ok()) << wrong;
+    EXPECT_FALSE(parseOperatorScript(json, "s", exercise).ok()) << wrong;
   }
 }
 

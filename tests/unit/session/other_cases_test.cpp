@@ -9,7 +9,7 @@
 
 #include "base/system.h"
 #include "case/placement.h"
-#include "scene/scene_structures.h"
+#include "exercise/exercise_structures.h"
 #include "session/session.h"
 #include "support.h"
 
@@ -18,8 +18,8 @@ namespace {
 
 using Codes = std::set<std::string>;
 
-Scene sceneOf(const std::string& name) {
-  return *readScene(resourceFolder() / "scenes" / (name + ".json"));
+Exercise exerciseOf(const std::string& name) {
+  return *readExercise(resourceFolder() / "scenes" / (name + ".json"));
 }
 
 std::vector<std::string> all() {
@@ -39,11 +39,11 @@ std::vector<std::string> placedOnes() {
 
 // What a fifth of a second of an exercise warns of on a case, read once for all of them.
 Codes warnings(const std::string& name, const Case& of, const std::string& source) {
-  Scene scene = sceneOf(name);
-  scene = onCase(scene, source);
-  const auto placed = place(scene, of);
+  Exercise exercise = exerciseOf(name);
+  exercise = onCase(exercise, source);
+  const auto placed = place(exercise, of);
   EXPECT_TRUE(placed.ok() && !placed->error) << name;
-  const auto script = readOperatorScript(scene.operator_file, scene);
+  const auto script = readOperatorScript(exercise.operator_file, exercise);
   EXPECT_TRUE(script.ok()) << name;
   auto session = Session::create(*placed, {{}, *script});
   EXPECT_TRUE(session.ok()) << name << ": " << session.error().sentence();
@@ -64,7 +64,7 @@ TEST(OtherCases, EveryExerciseRunsOnEveryBuiltInCaseAndSaysWhereItIsForAnother) 
     const Case of = *readCase(source);
     for (const std::string& name : all()) {
       const Codes said = warnings(name, of, source);
-      const bool other = sceneOf(name).anatomy != anatomy;
+      const bool other = exerciseOf(name).anatomy != anatomy;
       EXPECT_EQ(said.contains("OTHER_ANATOMY"), other) << name << " on " << source;
       if (!other) {
         EXPECT_EQ(said, Codes{}) << name << " on " << source;
@@ -81,7 +81,7 @@ TEST(OtherCases, EveryExerciseRunsOnARealAbdomen) {
     const Codes said = warnings(name, of, source);
     expectAmong(said, {"OTHER_ANATOMY", "NO_LANDMARK", "STARTS_IN_TISSUE", "LACKS_STRUCTURE"},
                 name);
-    EXPECT_EQ(said.contains("OTHER_ANATOMY"), sceneOf(name).anatomy == "cranium") << name;
+    EXPECT_EQ(said.contains("OTHER_ANATOMY"), exerciseOf(name).anatomy == "cranium") << name;
   }
 }
 
@@ -91,7 +91,7 @@ TEST(OtherCases, EveryExerciseRunsOnARealSkullAndThoseForItWithoutAWord) {
   const Case of = *readCase(source);
   for (const std::string& name : placedOnes()) {
     const Codes said = warnings(name, of, source);
-    if (sceneOf(name).anatomy == "cranium") {
+    if (exerciseOf(name).anatomy == "cranium") {
       EXPECT_EQ(said, Codes{}) << name;
     } else {
       EXPECT_TRUE(said.contains("OTHER_ANATOMY")) << name;

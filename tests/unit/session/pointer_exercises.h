@@ -13,9 +13,9 @@
 
 namespace trephine::test {
 
-struct Exercise {
+struct PointerTask {
   std::string name;
-  std::vector<std::vector<Pointed>> arms;  // the scene's order
+  std::vector<std::vector<Pointed>> arms;  // the exercise's order
 };
 
 // A push goes in; then a touch of it holds the depth while the pointer goes round; a tool comes out
@@ -23,25 +23,25 @@ struct Exercise {
 // some 0.65 mm of it, and rows of voxels are 0.8 mm apart: the sides of the windows lie
 // between two rows, 0.3 to 0.5 mm from each, which are then both cut, and no other by a hand that
 // is a little aside.
-inline const Exercise kBurrHole{"burr-hole",
-                                {{{0, 20, 20, 0},
-                                  {0.5, 0, 0, 0},
-                                  {1.0, 0, 0, 2.5},
-                                  {5.5, 0, 0, 0},
-                                  {6.5, 0, 0, 0},
-                                  {7.0, 20, 0, 0}}}};
-inline const Exercise kWindowOneArm{"cranium-one-arm",
-                                    {{{0, -30, -8.55, 0},
-                                      {0.5, -8.05, -8.55, 0},
-                                      {1.0, -8.05, -8.55, 2.0},
-                                      {3.0, -8.05, -8.55, 0.1},
-                                      {5.0, 7.95, -8.55, 0.1},
-                                      {7.0, 7.95, 8.25, 0.1},
-                                      {9.0, -8.05, 8.25, 0.1},
-                                      {11.0, -8.05, -8.55, 0.1},
-                                      {12.5, -8.05, -8.55, 0},
-                                      {13.5, -8.05, -8.55, 0},
-                                      {14.5, -30, -8.55, 0}}}};
+inline const PointerTask kBurrHole{"burr-hole",
+                                   {{{0, 20, 20, 0},
+                                     {0.5, 0, 0, 0},
+                                     {1.0, 0, 0, 2.5},
+                                     {5.5, 0, 0, 0},
+                                     {6.5, 0, 0, 0},
+                                     {7.0, 20, 0, 0}}}};
+inline const PointerTask kWindowOneArm{"cranium-one-arm",
+                                       {{{0, -30, -8.55, 0},
+                                         {0.5, -8.05, -8.55, 0},
+                                         {1.0, -8.05, -8.55, 2.0},
+                                         {3.0, -8.05, -8.55, 0.1},
+                                         {5.0, 7.95, -8.55, 0.1},
+                                         {7.0, 7.95, 8.25, 0.1},
+                                         {9.0, -8.05, 8.25, 0.1},
+                                         {11.0, -8.05, -8.55, 0.1},
+                                         {12.5, -8.05, -8.55, 0},
+                                         {13.5, -8.05, -8.55, 0},
+                                         {14.5, -30, -8.55, 0}}}};
 inline const std::vector<Pointed> kLeftHalf{
     {0, -30, -9.35, 0},        {0.5, 1, -9.35, 0},       {1.0, 1, -9.35, 2.0}, {3.0, 1, -9.35, 0.1},
     {5.0, -14.45, -9.35, 0.1}, {7.5, -14.45, 9.85, 0.1}, {9.5, 1, 9.85, 0.1},  {10.5, 1, 9.85, 0},
@@ -50,18 +50,18 @@ inline std::vector<Pointed> otherSide(std::vector<Pointed> path) {
   for (Pointed& at : path) at.x_mm = -at.x_mm;
   return path;
 }
-inline const Exercise kWindow{"cranium", {kLeftHalf, otherSide(kLeftHalf)}};
+inline const PointerTask kWindow{"cranium", {kLeftHalf, otherSide(kLeftHalf)}};
 inline const std::vector<Pointed> kSlice{
     {0, 8, -60, 0},      {0.5, 8, -42, 0},   {1.0, 8, -42, 2.5}, {5.0, 8, -42, 0.2},
     {9.0, 40, -42, 0.2}, {10.0, 40, -42, 0}, {11.5, 40, -60, 0}};
-inline const Exercise kLiverOneArm{"liver-one-arm", {kSlice}};
-inline const Exercise kLiver{"liver",
-                             {{{0, -5, -60, 0},
-                               {0.5, -5, -48, 0},
-                               {1.0, -5, -48, 1.5},
-                               {5.0, -5, -48, 0},
-                               {11.5, -5, -48, 0}},
-                              kSlice}};
+inline const PointerTask kLiverOneArm{"liver-one-arm", {kSlice}};
+inline const PointerTask kLiver{"liver",
+                                {{{0, -5, -60, 0},
+                                  {0.5, -5, -48, 0},
+                                  {1.0, -5, -48, 1.5},
+                                  {5.0, -5, -48, 0},
+                                  {11.5, -5, -48, 0}},
+                                 kSlice}};
 
 // What was made of a case.
 struct Cut {
@@ -104,10 +104,10 @@ inline bool isCutThrough(const Cut& cut, const Vec3& from_mm, const Vec3& to_mm)
 }
 
 // What is not as the exercise's card asks for; nothing where it is finished.
-inline std::vector<std::string> missing(const Exercise& exercise, const Cut& cut) {
+inline std::vector<std::string> missing(const PointerTask& task, const Cut& cut) {
   std::vector<std::string> words;
   const auto need = [&](bool there, const std::string& what) {
-    if (!there) words.push_back(exercise.name + ": " + what);
+    if (!there) words.push_back(task.name + ": " + what);
   };
   const auto needWindow = [&](double x_mm, double y_mm) {
     need(isCutThrough(cut, {-x_mm, -y_mm, 0}, {x_mm, -y_mm, 0}), "the window's low side");
@@ -115,13 +115,13 @@ inline std::vector<std::string> missing(const Exercise& exercise, const Cut& cut
     need(isCutThrough(cut, {x_mm, y_mm, 0}, {-x_mm, y_mm, 0}), "the window's high side");
     need(isCutThrough(cut, {-x_mm, y_mm, 0}, {-x_mm, -y_mm, 0}), "the window's left side");
   };
-  if (exercise.name == "burr-hole") {
+  if (task.name == "burr-hole") {
     need(isOpen(cut, 0.0, 0.0), "the hole");
     need(cut.deepest_mm[0] < -9.0, "the brain's side");
     need(cut.of("bone") > 150.0, "its size");
-  } else if (exercise.name == "cranium-one-arm") {
+  } else if (task.name == "cranium-one-arm") {
     needWindow(9.0, 9.0);
-  } else if (exercise.name == "cranium") {
+  } else if (task.name == "cranium") {
     needWindow(15.0, 10.0);
   } else {
     need(cut.of("liver") > 500.0, "the slice");

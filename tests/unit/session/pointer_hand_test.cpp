@@ -23,16 +23,16 @@ using test::smallHead;
 
 constexpr std::size_t kArm = 1;
 
-Scene cranium(bool cuttable) {
-  Scene scene = test::cranium();
-  for (Tissue& tissue : scene.tissues.tissues) {
+Exercise cranium(bool cuttable) {
+  Exercise exercise = test::cranium();
+  for (Tissue& tissue : exercise.tissues.tissues) {
     if (tissue.id == "bone") tissue.cuttable = cuttable;
     if (tissue.id == "scalp") {  // shown, so that the tool hovers off it; and hardly felt
       tissue.opacity = 1.0;
       tissue.stiffness_N_per_m.value = tissue.friction_N.value = 0.0;
     }
   }
-  return scene;
+  return exercise;
 }
 
 // What the loop said, every tick: from the recording of a run in which the right hand follows
@@ -55,14 +55,14 @@ using Talk = std::function<void(Session&, double)>;
 
 Played run(const std::vector<Pointed>& path, bool cuttable, const Talk& talk = {}) {
   const test::TemporaryFolder folder;
-  const Scene scene = cranium(cuttable);
-  auto made = Session::create(test::placed(scene, smallHead()), {folder / "s.h5", {}, true});
+  const Exercise exercise = cranium(cuttable);
+  auto made = Session::create(test::placed(exercise, smallHead()), {folder / "s.h5", {}, true});
   EXPECT_TRUE(made.ok()) << made.error().sentence();
   Session& session = **made;
   Played out;
   out.frame = session.landmarks()[0].frame;
-  out.parameters = hapticParameters(session.scene(), session.rig());
-  out.limit_N = session.scene().arms[kArm].max_force_N;
+  out.parameters = hapticParameters(session.exercise(), session.rig());
+  out.limit_N = session.exercise().arms[kArm].max_force_N;
   PointerUser user(session, kArm, path, 125.0);
   const std::uint64_t allocated = rt::guardedAllocations();
   int talks = 0;
@@ -283,8 +283,8 @@ struct PutDown {
 };
 
 PutDown putDown(double seconds, const Talk& talk = {}) {
-  const Scene scene = cranium(true);
-  auto made = Session::create(test::placed(scene, smallHead()), {{}, {}, true});
+  const Exercise exercise = cranium(true);
+  auto made = Session::create(test::placed(exercise, smallHead()), {{}, {}, true});
   EXPECT_TRUE(made.ok()) << made.error().sentence();
   Session& session = **made;
   PointerUser user(session, kArm, {{0, 4, 0, 0}, {0.5, 4, 0, 2.0}, {2.0, 4, 0, 2.0}}, 125.0);
@@ -338,8 +338,8 @@ TEST(PointerHand, AToolThatWasPutDownComesOutWhereTissueComesBackAroundIt) {
 
 TEST(PointerHand, TurnsTheToolInATenthOfASecondWithinBoundsAndBack) {
   const test::TemporaryFolder folder;
-  const Scene scene = cranium(true);
-  auto made = Session::create(test::placed(scene, smallHead()), {{}, {}, true});
+  const Exercise exercise = cranium(true);
+  auto made = Session::create(test::placed(exercise, smallHead()), {{}, {}, true});
   ASSERT_TRUE(made.ok()) << made.error().sentence();
   Session& session = **made;
   PointerUser user(session, kArm, {{0, 4, 0, 0}, {9.0, 4, 0, 0}}, 125.0);
@@ -372,8 +372,8 @@ TEST(PointerHand, TurnsTheToolInATenthOfASecondWithinBoundsAndBack) {
 TEST(PointerHand, AnUndoTakesThePushAwayAndTheToolComesOut) {
   bool undone = false;
   const test::TemporaryFolder folder;
-  const Scene scene = cranium(true);
-  auto made = Session::create(test::placed(scene, smallHead()), {{}, {}, true});
+  const Exercise exercise = cranium(true);
+  auto made = Session::create(test::placed(exercise, smallHead()), {{}, {}, true});
   ASSERT_TRUE(made.ok()) << made.error().sentence();
   Session& session = **made;
   PointerUser user(session, kArm, {{0, 4, 0, 0}, {0.5, 4, 0, 2.0}, {2.0, 4, 0, 2.0}}, 125.0);
@@ -463,8 +463,8 @@ TEST(PointerHand, WithTurnsHandsAndClutchesReplaysBitForBit) {
 }
 
 TEST(PointerHand, OfARunningSessionTakesTheHostsTimes) {
-  const Scene scene = cranium(true);
-  auto made = Session::create(test::placed(scene, smallHead()), {{}, {}, true});
+  const Exercise exercise = cranium(true);
+  auto made = Session::create(test::placed(exercise, smallHead()), {{}, {}, true});
   ASSERT_TRUE(made.ok()) << made.error().sentence();
   Session& session = **made;
   PointerUser user(session, kArm, {{0, 12, 0, 0}, {9.0, 12, 0, 0}}, 125.0);

@@ -13,13 +13,14 @@
 namespace trephine {
 namespace {
 
-using test::Exercise;
+using test::PointerTask;
 using test::PointerUser;
 
-Placement placed(const Scene& scene) {
+Placement placed(const Exercise& exercise) {
   static std::map<std::string, Case> all;
-  if (!all.contains(scene.case_source)) all[scene.case_source] = *readCase(scene.case_source);
-  return *place(scene, all[scene.case_source]);
+  if (!all.contains(exercise.case_source))
+    all[exercise.case_source] = *readCase(exercise.case_source);
+  return *place(exercise, all[exercise.case_source]);
 }
 
 struct Done : test::Cut {
@@ -28,19 +29,19 @@ struct Done : test::Cut {
   double removed_mm3 = 0.0;
 };
 
-Done done(const Exercise& exercise, double rate_hz, const std::filesystem::path& recording = {}) {
-  Scene scene = *readScene(resourceFolder() / "scenes" / (exercise.name + ".json"));
+Done done(const PointerTask& task, double rate_hz, const std::filesystem::path& recording = {}) {
+  Exercise exercise = *readExercise(resourceFolder() / "scenes" / (task.name + ".json"));
   Done out;
-  out.of = placed(scene);
+  out.of = placed(exercise);
   auto made = Session::create(out.of, {recording, {}, true});
   EXPECT_TRUE(made.ok()) << made.error().sentence();
   Session& session = **made;
   out.frame = session.landmarks()[0].frame;
-  out.parameters = hapticParameters(session.scene(), session.rig());
-  out.deepest_mm.assign(exercise.arms.size(), 1e9);
+  out.parameters = hapticParameters(session.exercise(), session.rig());
+  out.deepest_mm.assign(task.arms.size(), 1e9);
   std::vector<PointerUser> users;
-  for (std::size_t i = 0; i < exercise.arms.size(); ++i) {
-    users.emplace_back(session, i, exercise.arms[i], rate_hz);
+  for (std::size_t i = 0; i < task.arms.size(); ++i) {
+    users.emplace_back(session, i, task.arms[i], rate_hz);
   }
   long talks = 0;
   const Progress progress([&](double, const std::string&) {
@@ -62,9 +63,9 @@ Done done(const Exercise& exercise, double rate_hz, const std::filesystem::path&
   }
   for (std::size_t i = 0; i < users.size(); ++i) {
     const ArmRecord& arm = session.state().record.arms[i];
-    EXPECT_EQ(arm.tool_state & (kToolWaits | kToolHeld), 0u) << exercise.name << ": it came out";
-    EXPECT_LT(glm::length(arm.sent_N), 0.05) << exercise.name;
-    EXPECT_EQ(arm.tissue_class, -1) << exercise.name;
+    EXPECT_EQ(arm.tool_state & (kToolWaits | kToolHeld), 0u) << task.name << ": it came out";
+    EXPECT_LT(glm::length(arm.sent_N), 0.05) << task.name;
+    EXPECT_EQ(arm.tissue_class, -1) << task.name;
   }
   for (const auto& arm : out.report.arms) EXPECT_LE(arm.statistics.max_force_N, 3.3);
   EXPECT_EQ(out.report.events_dropped, 0u);
@@ -97,35 +98,35 @@ void expectNoBoneInTheTools(const std::string& name, const Done& run,
   EXPECT_EQ(inside.voxels, 0) << name << ": by " << inside.deepest_mm << " mm at most";
 }
 
-void expectTheSameAtAnyRate(const Exercise& exercise) {
+void expectTheSameAtAnyRate(const PointerTask& task) {
   const test::TemporaryFolder folder;
   std::vector<double> removed_mm3;
   for (const double rate_hz : {60.0, 125.0, 1000.0}) {
     const bool recorded = rate_hz == 125.0;
     const std::filesystem::path file = folder / "s.h5";
-    const Done run = done(exercise, rate_hz, recorded ? file : std::filesystem::path());
-    std::printf("%-16s %4.0f/s %.1f mm3\n", exercise.name.c_str(), rate_hz, run.removed_mm3);
+    const Done run = done(task, rate_hz, recorded ? file : std::filesystem::path());
+    std::printf("%-16s %4.0f/s %.1f mm3\n", task.name.c_str(), rate_hz, run.removed_mm3);
     removed_mm3.push_back(run.removed_mm3);
-    for (const std::string& what : test::missing(exercise, run)) ADD_FAILURE() << what;
-    if (recorded) expectNoBoneInTheTools(exercise.name, run, file);
+    for (const std::string& what : test::missing(task, run)) ADD_FAILURE() << what;
+    if (recorded) expectNoBoneInTheTools(task.name, run, file);
   }
   const auto [least, most] = std::minmax_element(removed_mm3.begin(), removed_mm3.end());
-  EXPECT_LT(*most, 1.05 * *least) << exercise.name;
+  EXPECT_LT(*most, 1.05 * *least) << task.name;
 }
 
-TEST(PointerScenes, TheBurrHoleIsDone) {
+TEST(PointerExercises, TheBurrHoleIsDone) {
   expectTheSameAtAnyRate(test::kBurrHole);
 }
-TEST(PointerScenes, TheWindowIsCutOutWithOneArm) {
+TEST(PointerExercises, TheWindowIsCutOutWithOneArm) {
   expectTheSameAtAnyRate(test::kWindowOneArm);
 }
-TEST(PointerScenes, TheWindowIsCutOutWithBothArms) {
+TEST(PointerExercises, TheWindowIsCutOutWithBothArms) {
   expectTheSameAtAnyRate(test::kWindow);
 }
-TEST(PointerScenes, TheLiverIsSlicedWithOneArm) {
+TEST(PointerExercises, TheLiverIsSlicedWithOneArm) {
   expectTheSameAtAnyRate(test::kLiverOneArm);
 }
-TEST(PointerScenes, TheLiverIsPuncturedAndSliced) {
+TEST(PointerExercises, TheLiverIsPuncturedAndSliced) {
   expectTheSameAtAnyRate(test::kLiver);
 }
 

@@ -26,7 +26,7 @@ class PointerUser {
         arm_(arm),
         path_(std::move(path)),
         rate_hz_(rate_hz),
-        tissues_(tissueTable(session.scene().tissues)) {}
+        tissues_(tissueTable(session.exercise().tissues)) {}
 
   // All events up to then.
   void playUntil(double t_s) {
@@ -74,7 +74,8 @@ class PointerUser {
       const std::size_t voxel = g.indexOf(i, j, k);
       const int c =
           classify(tissues_, grid.hu(voxel), grid.labels() ? grid.labels()->labels[voxel] : 0);
-      if (c >= 0 && session_.scene().tissues.tissues[std::size_t(c)].opacity > 0.5) return deep_mm;
+      if (c >= 0 && session_.exercise().tissues.tissues[std::size_t(c)].opacity > 0.5)
+        return deep_mm;
     }
     return {};
   }

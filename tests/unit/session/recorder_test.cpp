@@ -16,7 +16,7 @@ namespace {
 using test::cranium;
 using test::scripted;
 
-// A ball of bone: enough of a cranium for the shipped scene.
+// A ball of bone: enough of a cranium for the shipped exercise.
 Volume ball() {
   return test::shells(64, 1.5, {{40, 1200}});
 }
@@ -24,9 +24,9 @@ Volume ball() {
 // A slow session is drained as often in its own time as a fast one.
 TEST(Recorder, ThatComesLateWritesWhatWaitsBeforeItReturns) {
   test::TemporaryFolder folder;
-  Scene scene = cranium();
-  scene.rate_hz = 100.0;
-  auto session = Session::create(test::placed(scene, ball()), scripted(folder / "s.h5"));
+  Exercise exercise = cranium();
+  exercise.rate_hz = 100.0;
+  auto session = Session::create(test::placed(exercise, ball()), scripted(folder / "s.h5"));
   ASSERT_TRUE(session.ok()) << session.error().sentence();
   int looks = 0;
   const Progress look([&](double fraction, const std::string&) {

@@ -1,4 +1,4 @@
-// A small case for the shipped scene, and the scene's own script.
+// A small case for the shipped exercise, and the exercise's own script.
 #pragma once
 
 #include "base/system.h"
@@ -7,18 +7,18 @@
 
 namespace trephine::test {
 
-// A ball of bone in scalp: enough of a cranium for the shipped scene, and quick to make.
+// A ball of bone in scalp: enough of a cranium for the shipped exercise, and quick to make.
 inline Volume smallHead() {
   return shells(80, 1.2, {{44, -20}, {39, 1200}, {32, 35}});
 }
 
-inline Scene cranium() {
-  return *readScene(resourceFolder() / "scenes" / "cranium.json");
+inline Exercise cranium() {
+  return *readExercise(resourceFolder() / "scenes" / "cranium.json");
 }
 
 inline SessionOptions scripted(const std::filesystem::path& recording = {}) {
-  const Scene scene = cranium();
-  return {recording, *readOperatorScript(scene.operator_file, scene)};
+  const Exercise exercise = cranium();
+  return {recording, *readOperatorScript(exercise.operator_file, exercise)};
 }
 
 }  // namespace trephine::test

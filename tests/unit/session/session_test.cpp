@@ -64,7 +64,7 @@ TEST(Session, RunsInRealTimeTakesLiveInputAndReplaysIdentically) {
   Session& session = **made;
   ASSERT_TRUE(session.start().ok());
   const Vec3 down_mm = glm::normalize(-session.landmarks()[0].frame.position_mm);
-  TissueSet softer = session.scene().tissues;
+  TissueSet softer = session.exercise().tissues;
   softer.tissues[3].friction_N.value = 0.5;
   for (int i = 0; i < 60; ++i) {
     session.moveHand(1, 0.6 * down_mm);
@@ -104,12 +104,12 @@ void freewheelTalking(Session& session, double seconds, const std::function<void
 }
 
 TEST(Session, InAPauseAHandThatWasPressingDoesNotSinkInAndNothingMovesIt) {
-  Scene scene = cranium();
-  for (Tissue& tissue : scene.tissues.tissues) {
+  Exercise exercise = cranium();
+  for (Tissue& tissue : exercise.tissues.tissues) {
     tissue.cuttable = false;
     tissue.friction_N.value = 3.0;
   }
-  auto made = Session::create(test::placed(scene, smallHead()), {});
+  auto made = Session::create(test::placed(exercise, smallHead()), {});
   ASSERT_TRUE(made.ok()) << made.error().sentence();
   Session& session = **made;
   const Vec3 down_mm = glm::normalize(-session.landmarks()[0].frame.position_mm);
@@ -171,7 +171,7 @@ TEST(Session, UndoRewindAndParametersWhileItCutsLeaveARecordingThatReplaysIdenti
   ASSERT_TRUE(made.ok()) << made.error().sentence();
   Session& session = **made;
   ASSERT_TRUE(session.start(4.0).ok());
-  TissueSet tissues = session.scene().tissues;
+  TissueSet tissues = session.exercise().tissues;
   double most_N = 0.0, last_N = 0.0;
   for (int i = 0; !session.finished(); ++i) {
     const std::uint64_t next = session.state().ticks + 13;
@@ -264,7 +264,7 @@ TEST(Session, APokeCutsNothingWhateverIsEditedAndTellsForceAgainstDepth) {
   options.poke = true;
   auto session = *Session::create(test::placed(cranium(), smallHead()), options);
   EXPECT_TRUE(session->isPoke());
-  TissueSet softer = session->scene().tissues;
+  TissueSet softer = session->exercise().tissues;
   for (Tissue& tissue : softer.tissues) {
     tissue.cuttable = true;
     tissue.cutting_J_per_mm3.value = 1e-9;
@@ -288,17 +288,17 @@ TEST(Session, APokeCutsNothingWhateverIsEditedAndTellsForceAgainstDepth) {
 // A sharp tool parts soft tissue in a poke as it does in the exercise, which here cannot pay for a
 // cut either.
 TEST(Session, APokeIsFeltAsTheExerciseIsUntilThatCuts) {
-  Scene tough = cranium();
+  Exercise tough = cranium();
   for (Tissue& tissue : tough.tissues.tissues) {
     tissue.cutting_J_per_mm3.value = kMechanicsRange.high;
   }
-  const auto felt = [](const Scene& scene, bool poke) {
+  const auto felt = [](const Exercise& exercise, bool poke) {
     SessionOptions options = scripted();
     options.poke = poke;
-    auto session = *Session::create(test::placed(scene, smallHead()), options);
+    auto session = *Session::create(test::placed(exercise, smallHead()), options);
     std::vector<double> forces_N;
     freewheelTalking(*session, 8.0, [&] {
-      for (std::size_t arm = 0; arm < session->scene().arms.size(); ++arm) {
+      for (std::size_t arm = 0; arm < session->exercise().arms.size(); ++arm) {
         forces_N.push_back(glm::length(session->state().record.arms[arm].demanded_N));
       }
     });
@@ -316,7 +316,7 @@ TEST(Session, APokeIsFeltAsTheExerciseIsUntilThatCuts) {
 TEST(Session, AnEditIsFeltWithinTwoTicksAndTheForceNeverJumps) {
   test::TemporaryFolder folder;
   auto session = *Session::create(test::placed(cranium(), smallHead()), scripted(folder / "s.h5"));
-  const TissueSet own = session->scene().tissues;
+  const TissueSet own = session->exercise().tissues;
   TissueSet soft = own, hard = own;
   for (Tissue& tissue : soft.tissues) {
     for (const TissueNumber& number : kTissueNumbers) {
@@ -378,14 +378,14 @@ std::size_t commandsIn(const std::filesystem::path& recording) {
 TEST(Session, RecolouringATissueNeverReachesTheHapticThread) {
   test::TemporaryFolder folder;
   auto session = *Session::create(test::placed(cranium(), smallHead()), scripted(folder / "s.h5"));
-  TissueSet tissues = session->scene().tissues;
+  TissueSet tissues = session->exercise().tissues;
   for (int step = 0; step < 200; ++step) {  // more than the ring of commands holds
     tissues.tissues[3].opacity = 0.001 * step;
     tissues.tissues[3].colour = Vec3(0.001 * step);
     tissues.tissues[3].name = "Bone " + std::to_string(step);
     ASSERT_TRUE(session->setTissues(tissues).ok()) << step;
   }
-  EXPECT_EQ(session->scene().tissues.tissues[3].opacity, 0.199) << "kept for the window";
+  EXPECT_EQ(session->exercise().tissues.tissues[3].opacity, 0.199) << "kept for the window";
   tissues.tissues[3].friction_N.value += 0.5;
   ASSERT_TRUE(session->setTissues(tissues).ok());
   ASSERT_TRUE(session->freewheel(0.2).ok());
@@ -402,18 +402,18 @@ std::string arms(const std::filesystem::path& folder, const Json& more) {
 }
 
 // Simulated arms by that file.
-Rig rigOf(const Scene& scene, const std::string& config) {
-  Rig rig = simulatedRig(scene);
+Rig rigOf(const Exercise& exercise, const std::string& config) {
+  Rig rig = simulatedRig(exercise);
   for (Rig::Arm& arm : rig.arms) arm.device.config = config;
   return rig;
 }
 
 TEST(Session, NamesTheArmsThatWereLostInItsReport) {
   test::TemporaryFolder folder;
-  const Scene scene = cranium();
+  const Exercise exercise = cranium();
   SessionOptions options = scripted(folder / "s.h5");
-  options.rig = rigOf(scene, arms(folder.path(), {{"vanish_after_s", 0.3}}));
-  auto session = *Session::create(test::placed(scene, smallHead()), options);
+  options.rig = rigOf(exercise, arms(folder.path(), {{"vanish_after_s", 0.3}}));
+  auto session = *Session::create(test::placed(exercise, smallHead()), options);
   ASSERT_TRUE(session->freewheel(0.5).ok());
   const RunReport report = session->report();
   ASSERT_EQ(report.faults.size(), 2u);
@@ -424,7 +424,7 @@ TEST(Session, NamesTheArmsThatWereLostInItsReport) {
   EXPECT_NE(toText(report).find("FAULT at 0.300 s, left: the arm did not answer"),
             std::string::npos);
 
-  auto sound = *Session::create(test::placed(scene, smallHead()), scripted());
+  auto sound = *Session::create(test::placed(exercise, smallHead()), scripted());
   ASSERT_TRUE(sound->freewheel(0.5).ok());
   EXPECT_TRUE(sound->report().faults.empty());
   EXPECT_EQ(toJson(sound->report())["faults"], Json::array());
@@ -433,7 +433,7 @@ TEST(Session, NamesTheArmsThatWereLostInItsReport) {
 // As a script commands it.
 TEST(Session, OneArmsDeviceIsLostTheOtherGoesOnAndTheRecordingReplays) {
   test::TemporaryFolder folder;
-  const Scene scene = cranium();
+  const Exercise exercise = cranium();
   SessionOptions options = scripted(folder / "s.h5");
   const auto at = [](double time_s, CommandKind kind, int arm) {
     ScriptCommand command;
@@ -445,7 +445,7 @@ TEST(Session, OneArmsDeviceIsLostTheOtherGoesOnAndTheRecordingReplays) {
   options.script->commands = {
       at(0.3, CommandKind::device_lost, 0), at(0.6, CommandKind::clear_faults, -1),
       at(0.8, CommandKind::device_back, 0), at(0.9, CommandKind::clear_faults, -1)};
-  const Placement of = test::placed(scene, smallHead());
+  const Placement of = test::placed(exercise, smallHead());
   auto session = *Session::create(of, options);
   ASSERT_TRUE(session->freewheel(1.2).ok());
   const RunReport report = session->report();
@@ -557,10 +557,11 @@ TEST(Session, KeepsAScriptsCommandsWhileItsVoxelsAreRead) {
 // A device that returns late: force away, back, and the same in the replay.
 TEST(Session, AStallIsAFaultInTheReportAndReplaysIdentically) {
   test::TemporaryFolder folder;
-  const Scene scene = cranium();
+  const Exercise exercise = cranium();
   SessionOptions options = scripted(folder / "s.h5");
-  options.rig = rigOf(scene, arms(folder.path(), {{"block_after_s", 0.3}, {"block_for_s", 0.1}}));
-  auto session = *Session::create(test::placed(scene, smallHead()), options);
+  options.rig =
+      rigOf(exercise, arms(folder.path(), {{"block_after_s", 0.3}, {"block_for_s", 0.1}}));
+  auto session = *Session::create(test::placed(exercise, smallHead()), options);
   ASSERT_TRUE(session->start(0.6).ok());
   ASSERT_TRUE(waitUntil([&] { return session->finished(); }));
   ASSERT_TRUE(session->stop().ok());
@@ -615,7 +616,7 @@ TEST(Session, TwoArmsThatShareVoxelsShareTheirVolumeInTheReport) {
 
 TEST(Session, RefusesTissuesThatCannotBe) {
   auto session = Session::create(test::placed(cranium(), smallHead()), {});
-  TissueSet bad = (*session)->scene().tissues;
+  TissueSet bad = (*session)->exercise().tissues;
   bad.tissues[0].damping_Ns_per_m.value = -1.0;
   EXPECT_FALSE((*session)->setTissues(bad).ok());
 }

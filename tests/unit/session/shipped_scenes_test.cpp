@@ -1,4 +1,4 @@
-// The shipped scenes as they are run: what their recordings say of tools, bone and force.
+// The shipped exercises as they are run: what their recordings say of tools, bone and force.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -8,8 +8,8 @@
 
 #include "base/system.h"
 #include "haptics/bounded_controller.h"
-#include "scene/entry_point.h"
-#include "scene/scene_structures.h"
+#include "exercise/entry_point.h"
+#include "exercise/exercise_structures.h"
 #include "case/placement.h"
 #include "session/energy_watch.h"
 #include "session/run_statistics.h"
@@ -28,9 +28,9 @@ constexpr std::array kShipped{"burr-hole", "cranium", "cranium-one-arm", "liver"
 constexpr double kSeconds = 10.0;
 
 // Each case is opened once.
-const Case& caseOf(const Scene& scene) {
+const Case& caseOf(const Exercise& exercise) {
   static std::map<std::string, Case> all;
-  const std::string& source = scene.case_source;
+  const std::string& source = exercise.case_source;
   if (!all.contains(source)) {
     auto read = readCase(source);
     EXPECT_TRUE(read.ok()) << read.error().sentence();
@@ -38,19 +38,19 @@ const Case& caseOf(const Scene& scene) {
   }
   return all[source];
 }
-Placement placed(const Scene& scene) {
-  return *place(scene, caseOf(scene));
+Placement placed(const Exercise& exercise) {
+  return *place(exercise, caseOf(exercise));
 }
 
-Scene shipped(const std::string& name, const std::string& case_source) {
-  Scene scene = *readScene(resourceFolder() / "scenes" / (name + ".json"));
-  if (!case_source.empty()) scene = onCase(scene, case_source);
-  return scene;
+Exercise shipped(const std::string& name, const std::string& case_source) {
+  Exercise exercise = *readExercise(resourceFolder() / "scenes" / (name + ".json"));
+  if (!case_source.empty()) exercise = onCase(exercise, case_source);
+  return exercise;
 }
 
-// A scene's first ten seconds, with its own script.
+// An exercise's first ten seconds, with its own script.
 struct Recorded {
-  Scene scene;  // maps fixed
+  Exercise exercise;  // maps fixed
   Volume before;
   std::shared_ptr<const LabelMap> labels;
   RunReport report;
@@ -60,16 +60,16 @@ struct Recorded {
 
 Recorded record(const std::string& name, const std::string& case_source) {
   const test::TemporaryFolder folder;
-  Scene scene = shipped(name, case_source);
+  Exercise exercise = shipped(name, case_source);
   Recorded out;
-  const Placement of = placed(scene);
+  const Placement of = placed(exercise);
   out.before = *of.patient.volume;
   out.labels = of.labels;
-  const SessionOptions options{folder / "s.h5", *readOperatorScript(scene.operator_file, scene)};
+  const SessionOptions options{folder / "s.h5", *readOperatorScript(exercise.operator_file, exercise)};
   auto session = Session::create(of, options);
   EXPECT_TRUE(session.ok()) << session.error().sentence();
   EXPECT_TRUE((*session)->freewheel(kSeconds).ok());
-  out.scene = (*session)->scene();
+  out.exercise = (*session)->exercise();
   out.report = (*session)->report();
   auto reader = SessionReader::open(folder / "s.h5");
   EXPECT_TRUE(reader.ok()) << reader.error().sentence();
@@ -93,7 +93,7 @@ struct Seen {
 
 std::vector<Seen> see(const Recorded& run) {
   constexpr double kWorthAFlag_N = 0.02;
-  const HapticParameters p = hapticParameters(run.scene);
+  const HapticParameters p = hapticParameters(run.exercise);
   std::vector<Seen> seen(p.arms.size());
   Volume volume = run.before;
   std::size_t next = 0;
@@ -105,7 +105,7 @@ std::vector<Seen> see(const Recorded& run) {
     for (std::size_t i = 0; i < seen.size(); ++i) {
       const ArmRecord& arm = tick.arms[i];
       Seen& of = seen[i];
-      of.arm = run.scene.arms[i].name;
+      of.arm = run.exercise.arms[i].name;
       of.removed_mm3 = run.report.arms[i].removed_mm3;
       for (const auto& [tissue, mm3] : run.report.removed_mm3) {
         if (tissue == "liver") of.liver_mm3 = mm3;
@@ -117,7 +117,7 @@ std::vector<Seen> see(const Recorded& run) {
       if (!flagged) ++of.silent, of.silent_other += arm.sent_N != arm.demanded_N;
       if (arm.tissue_class >= 0) {
         auto& [sum_N, ticks] =
-            of.sent_N[run.scene.tissues.tissues[std::size_t(arm.tissue_class)].id];
+            of.sent_N[run.exercise.tissues.tissues[std::size_t(arm.tissue_class)].id];
         sum_N += glm::length(arm.sent_N);
         ++ticks;
       }
@@ -166,10 +166,10 @@ void expectEveryDifferenceFlagged(const std::string& name, const std::string& ca
   }
 }
 
-TEST(ShippedScenes, HaveNoUncutBoneInTheirTools) {
+TEST(ShippedExercises, HaveNoUncutBoneInTheirTools) {
   for (const char* name : kShipped) expectNoBoneInTheTools(name, "");
 }
-TEST(ShippedScenes, HaveNoUncutBoneInTheirToolsOnRealCases) {
+TEST(ShippedExercises, HaveNoUncutBoneInTheirToolsOnRealCases) {
   TREPHINE_TEST_DATA_OR_SKIP(data);
   for (const char* name : kShipped) expectNoBoneInTheTools(name, realCase(data, name));
 }
@@ -182,15 +182,15 @@ void expectTouchesAndRemoves(const std::string& name, const std::string& case_so
     EXPECT_GE(seen.removed_mm3, 50.0) << name << ", " << seen.arm;
   }
 }
-TEST(ShippedScenes, TouchAndRemoveTissueWithEveryArm) {
+TEST(ShippedExercises, TouchAndRemoveTissueWithEveryArm) {
   for (const char* name : kShipped) expectTouchesAndRemoves(name, "");
   for (const char* name : {"seed-cranium", "seed-liver"}) expectTouchesAndRemoves(name, "");
 }
-TEST(ShippedScenes, TouchAndRemoveTissueOfRealCasesToo) {
+TEST(ShippedExercises, TouchAndRemoveTissueOfRealCasesToo) {
   TREPHINE_TEST_DATA_OR_SKIP(data);
   for (const char* name : kShipped) expectTouchesAndRemoves(name, realCase(data, name));
 }
-TEST(ShippedScenes, CutTheLiverInTheLiverScenes) {
+TEST(ShippedExercises, CutTheLiverInTheLiverExercises) {
   for (const char* name : {"liver", "liver-one-arm"}) {
     EXPECT_EQ(shipped(name, "").tissues.find("liver")->structure, "liver");
     for (const Seen& seen : seenOf(name, "")) {
@@ -200,28 +200,28 @@ TEST(ShippedScenes, CutTheLiverInTheLiverScenes) {
   }
 }
 // Where a patient's case has no liver.
-TEST(ShippedScenes, KnowTissueByHuOnOtherCasesThanTheirOwn) {
-  Scene scene = shipped("liver", "");
-  scene = onCase(scene, "/some/ct");
-  const auto placed = placeStructures(scene, nullptr);
+TEST(ShippedExercises, KnowTissueByHuOnOtherCasesThanTheirOwn) {
+  Exercise exercise = shipped("liver", "");
+  exercise = onCase(exercise, "/some/ct");
+  const auto placed = placeStructures(exercise, nullptr);
   ASSERT_TRUE(placed.ok());
   EXPECT_EQ(placed->warnings.size(), 1u);
   ASSERT_TRUE(placed->elsewhere);
-  const TissueSet& tissues = *scene.tissues_elsewhere;
+  const TissueSet& tissues = *exercise.tissues_elsewhere;
   for (const Tissue& tissue : tissues.tissues) EXPECT_TRUE(tissue.isAnywhere()) << tissue.id;
   EXPECT_TRUE(checkLabels(tissues, nullptr).ok());
 }
 // How many points of a line are within a millimetre of bone that begins there.
-int onBone(const std::vector<Vec3>& points, const Scene& scene, const Placement& of) {
+int onBone(const std::vector<Vec3>& points, const Exercise& exercise, const Placement& of) {
   const LandmarkFrame& frame = of.landmarks[0].frame;
   const Vec3 out = frame.rotation * Vec3(0.0, 0.0, 1.0);
-  const TissueTable tissues = tissueTable(scene.tissues);
-  const int bone = int(scene.tissues.find("bone") - scene.tissues.tissues.data());
+  const TissueTable tissues = tissueTable(exercise.tissues);
+  const int bone = int(exercise.tissues.find("bone") - exercise.tissues.tissues.data());
   const auto isBone = [&](const Vec3& at_mm) {
     return classify(tissues, sampleHu(*of.patient.volume, at_mm)) == bone;
   };
-  const Landmark& vault = *scene.findLandmarkById("vault");
-  const auto surface = ontoSurface(points, out, 5.0, vault, *of.patient.volume, scene.tissues);
+  const Landmark& vault = *exercise.findLandmarkById("vault");
+  const auto surface = ontoSurface(points, out, 5.0, vault, *of.patient.volume, exercise.tissues);
   int count = 0;
   for (std::size_t i = 0; i < points.size(); ++i) {
     count += glm::length(points[i] - surface[i]) < 1.0 && isBone(points[i] - out) &&
@@ -230,62 +230,62 @@ int onBone(const std::vector<Vec3>& points, const Scene& scene, const Placement&
   return count;
 }
 
-TEST(ShippedScenes, HaveTheirOutlineOnTheBoneOfTheirOwnCase) {
+TEST(ShippedExercises, HaveTheirOutlineOnTheBoneOfTheirOwnCase) {
   int outlines = 0;
   for (const char* name : {"burr-hole", "cranium", "cranium-one-arm", "liver", "liver-one-arm",
                            "seed-cranium", "seed-liver"}) {
-    Scene scene = shipped(name, "");
-    if (!scene.outline) continue;
+    Exercise exercise = shipped(name, "");
+    if (!exercise.outline) continue;
     ++outlines;
-    const Placement of = placed(scene);
-    ASSERT_TRUE(scene.outline->frame) << name << ": so that it holds on other patients";
-    const Vec3 was_mm = scene.outline->frame->at.position_mm;
+    const Placement of = placed(exercise);
+    ASSERT_TRUE(exercise.outline->frame) << name << ": so that it holds on other patients";
+    const Vec3 was_mm = exercise.outline->frame->at.position_mm;
     EXPECT_LT(glm::length(was_mm - of.landmarks[0].frame.position_mm), 0.01) << name;
-    const std::vector<Vec3>& points = scene.outline->points_mm;
-    EXPECT_EQ(onBone(points, scene, of), int(points.size())) << name;
-    const auto drawn = outlineOn(scene, of.landmarks, *of.patient.volume);
+    const std::vector<Vec3>& points = exercise.outline->points_mm;
+    EXPECT_EQ(onBone(points, exercise, of), int(points.size())) << name;
+    const auto drawn = outlineOn(exercise, of.landmarks, *of.patient.volume);
     EXPECT_GT(drawn.size(), points.size());
-    EXPECT_EQ(onBone(drawn, scene, of), int(drawn.size())) << name;
+    EXPECT_EQ(onBone(drawn, exercise, of), int(drawn.size())) << name;
   }
   EXPECT_EQ(outlines, 3) << "the burr hole and the two windows";
 }
 
-TEST(ShippedScenes, HaveTheirOutlineOnTheBoneOfARealCaseToo) {
+TEST(ShippedExercises, HaveTheirOutlineOnTheBoneOfARealCaseToo) {
   TREPHINE_TEST_DATA_OR_SKIP(data);
   for (const char* name : {"burr-hole", "cranium", "cranium-one-arm"}) {
-    Scene scene = shipped(name, realCase(data, name));
-    const Placement of = placed(scene);
+    Exercise exercise = shipped(name, realCase(data, name));
+    const Placement of = placed(exercise);
     ASSERT_FALSE(of.error) << of.error->sentence();
-    const auto drawn = outlineOn(scene, of.landmarks, *of.patient.volume);
+    const auto drawn = outlineOn(exercise, of.landmarks, *of.patient.volume);
     ASSERT_FALSE(drawn.empty());
-    std::printf("%s: %d of %zu points of the outline on bone\n", name, onBone(drawn, scene, of),
+    std::printf("%s: %d of %zu points of the outline on bone\n", name, onBone(drawn, exercise, of),
                 drawn.size());
-    EXPECT_GT(onBone(drawn, scene, of), 0.95 * double(drawn.size())) << name;
+    EXPECT_GT(onBone(drawn, exercise, of), 0.95 * double(drawn.size())) << name;
   }
 }
 
 // The window's hands, which no script moves.
-TEST(ShippedScenes, BeginWithTheToolsOutsideOfTissueInTheWindow) {
+TEST(ShippedExercises, BeginWithTheToolsOutsideOfTissueInTheWindow) {
   for (const char* name : {"burr-hole", "cranium", "cranium-one-arm", "liver", "liver-one-arm",
                            "seed-cranium", "seed-liver"}) {
-    Scene scene = shipped(name, "");
-    const Placement of = placed(scene);
+    Exercise exercise = shipped(name, "");
+    const Placement of = placed(exercise);
     auto session = Session::create(of, {{}, {}, true});
     ASSERT_TRUE(session.ok()) << session.error().sentence();
     ASSERT_TRUE((*session)->freewheel(0.5).ok());
     EXPECT_EQ((*session)->report().removed_voxels, 0u) << name;
     const TickRecord& record = (*session)->state().record;
-    for (std::size_t i = 0; i < scene.arms.size(); ++i) {
-      EXPECT_EQ(record.arms[i].tissue_class, -1) << name << ", " << scene.arms[i].name;
-      EXPECT_EQ(record.arms[i].tool_state, 0u) << name << ", " << scene.arms[i].name;
+    for (std::size_t i = 0; i < exercise.arms.size(); ++i) {
+      EXPECT_EQ(record.arms[i].tissue_class, -1) << name << ", " << exercise.arms[i].name;
+      EXPECT_EQ(record.arms[i].tool_state, 0u) << name << ", " << exercise.arms[i].name;
       const double moved_mm = 1000.0 * glm::length(record.arms[i].device_position_m);
-      if (scene.anatomy != "cranium") continue;
+      if (exercise.anatomy != "cranium") continue;
       EXPECT_LT(moved_mm, 0.5) << name << ": it is in air as it is";
     }
   }
 }
 
-TEST(ShippedScenes, GiveOutNoEnergyThatTheWindowWouldCallAFault) {
+TEST(ShippedExercises, GiveOutNoEnergyThatTheWindowWouldCallAFault) {
   for (const char* name : kShipped) {
     for (const Seen& seen : seenOf(name, ""))
       EXPECT_EQ(seen.gave_out, 0) << name << ", " << seen.arm;
@@ -293,24 +293,24 @@ TEST(ShippedScenes, GiveOutNoEnergyThatTheWindowWouldCallAFault) {
 }
 
 // A hand that presses lightly on the vault.
-TEST(ShippedScenes, GiveOutEnergyWhereAnArmShakesOnFirmBone) {
+TEST(ShippedExercises, GiveOutEnergyWhereAnArmShakesOnFirmBone) {
   for (const ControllerKind controller : {ControllerKind::off, ControllerKind::bounded}) {
-    Scene scene = shipped("cranium-one-arm", "");
-    scene.controller = controller;
-    for (Tissue& tissue : scene.tissues.tissues) {
+    Exercise exercise = shipped("cranium-one-arm", "");
+    exercise.controller = controller;
+    for (Tissue& tissue : exercise.tissues.tissues) {
       tissue.cuttable = false;
       if (tissue.id == "bone") tissue.stiffness_N_per_m.value = 10000.0;
     }
-    auto session = Session::create(placed(scene), {{}, {}, true});
+    auto session = Session::create(placed(exercise), {{}, {}, true});
     ASSERT_TRUE(session.ok()) << session.error().sentence();
-    const Vec3 down = (*session)->scene().arms[0].map.fixed->rotation * Vec3(0.0, 0.0, -1.0);
+    const Vec3 down = (*session)->exercise().arms[0].map.fixed->rotation * Vec3(0.0, 0.0, -1.0);
     EnergyWatch watch;
     int gave_out = 0, pressed = 0;
     double last_J = 0.0;
     const Progress progress([&](double, const std::string&) {
       const LoopState& state = (*session)->state();
       const ArmRecord& arm = state.record.arms[0];
-      gave_out += watch.look(arm, 1.0, state.paused, double(state.ticks) / scene.rate_hz);
+      gave_out += watch.look(arm, 1.0, state.paused, double(state.ticks) / exercise.rate_hz);
       last_J = arm.energy_out_J.x + arm.energy_out_J.y + arm.energy_out_J.z;
       if (arm.tool_state & kToolHeld) ++pressed;
       if (pressed < 2) (*session)->moveHand(0, 0.5 * down);
@@ -325,21 +325,21 @@ TEST(ShippedScenes, GiveOutEnergyWhereAnArmShakesOnFirmBone) {
   }
 }
 
-TEST(ShippedScenes, FlagEveryDifferenceOfTheSentForceFromTheDemandedOne) {
+TEST(ShippedExercises, FlagEveryDifferenceOfTheSentForceFromTheDemandedOne) {
   for (const char* name : kShipped) expectEveryDifferenceFlagged(name, "");
 }
-TEST(ShippedScenes, FlagEveryDifferenceOfTheSentForceOnRealCasesToo) {
+TEST(ShippedExercises, FlagEveryDifferenceOfTheSentForceOnRealCasesToo) {
   TREPHINE_TEST_DATA_OR_SKIP(data);
   for (const char* name : kShipped) expectEveryDifferenceFlagged(name, realCase(data, name));
 }
 
-// What an arm is sent at 10 mm/s straight in along the scene's landmark, by tissue [N].
+// What an arm is sent at 10 mm/s straight in along the exercise's landmark, by tissue [N].
 struct Probed {
   std::string arm;
   std::map<std::string, double> mean_N, most_N;
 };
 
-Probed probe(const Scene& placed, const Rig& rig, std::size_t arm, const LandmarkFrame& frame, const Vec3& aside_mm,
+Probed probe(const Exercise& placed, const Rig& rig, std::size_t arm, const LandmarkFrame& frame, const Vec3& aside_mm,
              const Placement& of) {
   HapticParameters p = hapticParameters(placed, rig);
   p.arms = {p.arms[arm]};
@@ -369,15 +369,15 @@ Probed probe(const Scene& placed, const Rig& rig, std::size_t arm, const Landmar
 }
 
 std::vector<Probed> probesOf(const std::string& name, const std::string& case_source) {
-  Scene scene = shipped(name, case_source);
-  const Placement of = placed(scene);
+  Exercise exercise = shipped(name, case_source);
+  const Placement of = placed(exercise);
   auto session = Session::create(of, {});
   EXPECT_TRUE(session.ok()) << session.error().sentence();
   const LandmarkFrame& frame = (*session)->landmarks()[0].frame;
   const Vec3 aside_mm = name.starts_with("liver") ? Vec3(8, -34, 0) : Vec3(0.0);  // below the ribs
   std::vector<Probed> out;
-  for (std::size_t arm = 0; arm < scene.arms.size(); ++arm) {
-    out.push_back(probe((*session)->scene(), (*session)->rig(), arm, frame, aside_mm, of));
+  for (std::size_t arm = 0; arm < exercise.arms.size(); ++arm) {
+    out.push_back(probe((*session)->exercise(), (*session)->rig(), arm, frame, aside_mm, of));
     for (const auto& [tissue, mean_N] : out.back().mean_N) {
       std::printf("%-16s %-5s %-6s %-8s mean %.2f N, most %.2f N\n", name.c_str(),
                   case_source.empty() ? "own" : "real", out.back().arm.c_str(), tissue.c_str(),
@@ -395,18 +395,18 @@ void expectBoneFelt(const std::string& name, const std::string& case_source, dou
 
 constexpr std::array kCranial{"burr-hole", "cranium", "cranium-one-arm"};
 
-TEST(ShippedScenes, LetBoneBeFeltByHalfANewton) {
+TEST(ShippedExercises, LetBoneBeFeltByHalfANewton) {
   for (const char* name : kCranial) expectBoneFelt(name, "", 0.5);
 }
 // The vault of the real skull is thinner than the blade is long: from the first touch to the last
 // it is sent a little less on average.
-TEST(ShippedScenes, LetBoneBeFeltOnTheRealSkull) {
+TEST(ShippedExercises, LetBoneBeFeltOnTheRealSkull) {
   TREPHINE_TEST_DATA_OR_SKIP(data);
   for (const std::string name : kCranial) {
     expectBoneFelt(name, realCase(data, name), name == "burr-hole" ? 0.5 : 0.45);
   }
 }
-TEST(ShippedScenes, LetTheCapsuleOfTheLiverBeToldFromItsParenchyma) {
+TEST(ShippedExercises, LetTheCapsuleOfTheLiverBeToldFromItsParenchyma) {
   for (const char* name : {"liver", "liver-one-arm"}) {
     for (const Probed& probed : probesOf(name, "")) {
       // A blade lies across the capsule all the way in: there it is the click that stands out.
@@ -421,29 +421,29 @@ TEST(ShippedScenes, LetTheCapsuleOfTheLiverBeToldFromItsParenchyma) {
 // The built-in liver and its capsule, and the same in every second block of 16 voxels alone:
 // borders across the tool's way, where HU go on as they were. What is known by HU alone is not to
 // be cut.
-TEST(ShippedScenes, CutByStructureRemoveNoVoxelOutsideOfIt) {
+TEST(ShippedExercises, CutByStructureRemoveNoVoxelOutsideOfIt) {
   for (const bool in_blocks : {false, true}) {
-    Scene scene = shipped("liver", "");
-    const Case bare = caseOf(scene);
+    Exercise exercise = shipped("liver", "");
+    const Case bare = caseOf(exercise);
     auto structures = std::make_shared<LabelMap>(*bare.structures);
     for (std::size_t v = 0; in_blocks && v < structures->labels.size(); ++v) {
       const Index3 at = structures->geometry.indicesOf(v);
       if ((at[0] / 16 + at[1] / 16 + at[2] / 16) % 2 == 0) structures->labels[v] = 0;
     }
     // Where the whole liver is met.
-    const Placement whole = *place(scene, bare);
+    const Placement whole = *place(exercise, bare);
     const LandmarkFrame& enters = whole.landmarks.front().frame;
-    scene.landmarks.front() = placedAt(scene.landmarks.front(), enters.position_mm,
+    exercise.landmarks.front() = placedAt(exercise.landmarks.front(), enters.position_mm,
                                        enters.rotation * Vec3(0.0, 0.0, 1.0));
-    Placement of = *place(scene, withStructures(bare, structures));
+    Placement of = *place(exercise, withStructures(bare, structures));
     ASSERT_FALSE(of.error) << of.error->sentence();
     std::array<bool, 256> to_cut{};
-    for (Tissue& tissue : of.scene.tissues.tissues) {
+    for (Tissue& tissue : of.exercise.tissues.tissues) {
       if (tissue.isAnywhere()) tissue.cuttable = false;
       if (tissue.cuttable && tissue.label) to_cut[std::size_t(*tissue.label)] = true;
     }
     const test::TemporaryFolder folder;
-    const SessionOptions options{folder / "s.h5", *readOperatorScript(scene.operator_file, scene)};
+    const SessionOptions options{folder / "s.h5", *readOperatorScript(exercise.operator_file, exercise)};
     auto session = Session::create(of, options);
     ASSERT_TRUE(session) << session.error().sentence();
     ASSERT_TRUE((*session)->freewheel(kSeconds).ok());

@@ -17,8 +17,8 @@ Volume block() {
   return test::shells(64, 1.5, {{40, 1200}});
 }
 
-Scene cranium() {
-  return *readScene(resourceFolder() / "scenes" / "cranium.json");
+Exercise cranium() {
+  return *readExercise(resourceFolder() / "scenes" / "cranium.json");
 }
 
 // Arms whose reading blocks at 0.3 s for `block_s`.
@@ -34,10 +34,10 @@ Rig blocking(const std::filesystem::path& folder, double block_s) {
 TEST(StuckDevice, IsLeftBehindByStopAndNotOfferedAgain) {
   test::TemporaryFolder folder;
   constexpr double kBlock_s = 3.0;
-  const Scene scene = cranium();
-  SessionOptions options{folder / "s.h5", *readOperatorScript(scene.operator_file, scene)};
+  const Exercise exercise = cranium();
+  SessionOptions options{folder / "s.h5", *readOperatorScript(exercise.operator_file, exercise)};
   options.rig = blocking(folder.path(), kBlock_s);
-  auto made = Session::create(test::placed(scene, block()), options);
+  auto made = Session::create(test::placed(exercise, block()), options);
   ASSERT_TRUE(made.ok()) << made.error().sentence();
   auto session = *std::move(made);
   ASSERT_TRUE(session->start(60.0).ok());
@@ -55,7 +55,7 @@ TEST(StuckDevice, IsLeftBehindByStopAndNotOfferedAgain) {
 
   SessionOptions without;
   without.rig = blocking(folder.path(), 0.0);
-  const auto again = Session::create(test::placed(scene, block()), without);
+  const auto again = Session::create(test::placed(exercise, block()), without);
   ASSERT_FALSE(again.ok());
   EXPECT_EQ(again.error().code, "DEVICE_STUCK");
   EXPECT_EQ(test::threadsNamed("haptic").size(), 1u) << "the call still blocks";

@@ -34,7 +34,7 @@ TEST(IsBeingWritten, IsSoOfAMarkedRecordingThatWasWrittenAMomentAgo) {
   recordRun(folder / "whole.h5", 500);
   EXPECT_FALSE(isBeingWritten(folder / "whole.h5"));
   auto recorder = SessionRecorder::create(
-      folder / "now.h5", {toJson(test::sceneWithOneArm()), volumeSha256(slab()), {}, "test"}, 1);
+      folder / "now.h5", {toJson(test::exerciseWithOneArm()), volumeSha256(slab()), {}, "test"}, 1);
   ASSERT_TRUE(recorder.ok());
   EXPECT_TRUE(isBeingWritten(folder / "now.h5"));
   std::filesystem::copy_file(folder / "now.h5", folder / "killed.h5");
@@ -177,18 +177,18 @@ TEST(ForeignRecording, WithATextOrAVersionOfManyElementsIsRefused) {
   }
 }
 
-TEST(ForeignRecording, WhoseSceneNamesAFileOpensNone) {
+TEST(ForeignRecording, WhoseExerciseNamesAFileOpensNone) {
   test::TemporaryFolder folder;
   ASSERT_EQ(::mkfifo((folder / "pipe").c_str(), 0600), 0);
   const std::string pipe = (folder / "pipe").string();
   const auto replayed = [&](const std::function<void(Json&)>& change) {
-    const Scene one_arm = test::sceneWithOneArm();
-    Json scene = toJson(RecordedScene{one_arm, simulatedRig(one_arm)});
-    change(scene);
+    const Exercise one_arm = test::exerciseWithOneArm();
+    Json exercise = toJson(RecordedExercise{one_arm, simulatedRig(one_arm)});
+    change(exercise);
     const auto file = folder / "a.h5";
     std::filesystem::remove(file);
     auto recorder =
-        SessionRecorder::create(file, {scene, volumeSha256(slab()), slab().geometry, "test"}, 1);
+        SessionRecorder::create(file, {exercise, volumeSha256(slab()), slab().geometry, "test"}, 1);
     EXPECT_TRUE((*recorder)->finish({0, 0, 0, volumeSha256(slab())}));
     const auto reader = SessionReader::open(file);
     EXPECT_TRUE(reader.ok()) << reader.error().sentence();
@@ -306,7 +306,7 @@ TEST(Recording, AnyByteThatChangedIsFoundWithinSecondsOrDoesNotMatter) {
   EXPECT_GT(damaged, bytes / 5);
 }
 
-TEST(Recording, AHeadOfWhichALetterChangedIsDamagedAndNotAnotherScene) {
+TEST(Recording, AHeadOfWhichALetterChangedIsDamagedAndNotAnotherExercise) {
   test::TemporaryFolder folder;
   recordRun(folder / "a.h5", 100);
   std::string bytes = bytesOf(folder / "a.h5");

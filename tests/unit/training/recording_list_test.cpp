@@ -14,10 +14,10 @@ namespace fs = std::filesystem;
 // 200 ticks at 1 kHz, in a pause from the first of these ticks to the second of each pair.
 void record(const fs::path& file, const std::vector<std::uint64_t>& pauses_and_resumes,
             const std::string& case_source = "") {
-  Scene scene = test::sceneWithOneArm();
-  scene.case_source = case_source;
+  Exercise exercise = test::exerciseWithOneArm();
+  exercise.case_source = case_source;
   auto recorder = SessionRecorder::create(
-      file, {toJson(RecordedScene{scene, simulatedRig(scene)}), "sha of the voxels", test::slab().geometry, "test"}, 1);
+      file, {toJson(RecordedExercise{exercise, simulatedRig(exercise)}), "sha of the voxels", test::slab().geometry, "test"}, 1);
   ASSERT_TRUE(recorder.ok()) << recorder.error().sentence();
   std::size_t next = 0;
   for (std::uint64_t t = 0; t < 200; ++t) {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "haptics/haptic_core.h"
-#include "scene/scene.h"
+#include "exercise/exercise.h"
 #include "training/session_recorder.h"
 
 namespace trephine::test {
@@ -21,10 +21,10 @@ inline Volume slab() {
   return v;
 }
 
-inline Scene sceneWithOneArm() {
-  Scene scene;
-  scene.name = "test";
-  scene.anatomy = "cranium";
+inline Exercise exerciseWithOneArm() {
+  Exercise exercise;
+  exercise.name = "test";
+  exercise.anatomy = "cranium";
   Tissue bone;
   bone.id = bone.name = "bone";
   bone.hu_min = 226;
@@ -35,25 +35,25 @@ inline Scene sceneWithOneArm() {
   bone.stiffness_N_per_m.value = 800;
   bone.friction_N.value = 2;
   bone.cutting_J_per_mm3.value = 1e-4;
-  scene.tissues = {"test", {bone}};
-  scene.tools.push_back({"blade", makeBlade(0.008, 17), {}});
-  SceneArm arm;
+  exercise.tissues = {"test", {bone}};
+  exercise.tools.push_back({"blade", makeBlade(0.008, 17), {}});
+  ExerciseArm arm;
   arm.name = "right";
   arm.tool = "blade";
   arm.map.fixed = WorkspaceMap{};
-  scene.arms.push_back(arm);
-  scene.laws = {LawKind::viscous, LawKind::coulomb, LawKind::elastic};
-  return scene;
+  exercise.arms.push_back(arm);
+  exercise.laws = {LawKind::viscous, LawKind::coulomb, LawKind::elastic};
+  return exercise;
 }
 
 // Runs the core and records it, as a session does; `ticks` of a cut with an undo in it.
 inline void recordRun(const std::filesystem::path& file, std::uint64_t ticks, bool finish = true,
                       std::uint64_t dropped = 0) {
-  const Scene scene = sceneWithOneArm();
+  const Exercise exercise = exerciseWithOneArm();
   Grid grid(slab());
-  HapticCore core(hapticParameters(scene), *grid.takeWriter());
+  HapticCore core(hapticParameters(exercise), *grid.takeWriter());
   auto recorder = SessionRecorder::create(
-      file, {toJson(RecordedScene{scene, simulatedRig(scene)}), volumeSha256(slab()), grid.geometry(), "test"}, 1);
+      file, {toJson(RecordedExercise{exercise, simulatedRig(exercise)}), volumeSha256(slab()), grid.geometry(), "test"}, 1);
   ASSERT_TRUE(recorder.ok()) << recorder.error().sentence();
   for (std::uint64_t t = 0; t < ticks; ++t) {
     TickInput input;

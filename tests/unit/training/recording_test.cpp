@@ -16,7 +16,7 @@ namespace trephine {
 namespace {
 
 using test::recordRun;
-using test::sceneWithOneArm;
+using test::exerciseWithOneArm;
 using test::slab;
 
 TEST(Recording, ReplaysBitForBit) {
@@ -53,7 +53,7 @@ TEST(Recording, ANumberOfATissueThatItDoesNotHaveIsNone) {
   const test::TemporaryFolder folder;
   Event written;
   written.command.kind = CommandKind::tissues;
-  written.command.tissues = tissueTable(sceneWithOneArm().tissues);
+  written.command.tissues = tissueTable(exerciseWithOneArm().tissues);
   written.command.tissues.classes[0].rupture_N = 7.0;
 
   const hid_t whole = eventType();
@@ -83,11 +83,11 @@ TEST(Recording, ANumberOfATissueThatItDoesNotHaveIsNone) {
 // Rewrites one recorded number and expects the replay to find just that one.
 TEST(Recording, AReplayNamesTheFirstDifference) {
   test::TemporaryFolder folder;
-  const Scene scene = sceneWithOneArm();
+  const Exercise exercise = exerciseWithOneArm();
   Grid grid(slab());
-  HapticCore core(hapticParameters(scene), *grid.takeWriter());
+  HapticCore core(hapticParameters(exercise), *grid.takeWriter());
   auto recorder = SessionRecorder::create(
-      folder / "a.h5", {toJson(RecordedScene{scene, simulatedRig(scene)}), volumeSha256(slab()), grid.geometry(), "test"}, 1);
+      folder / "a.h5", {toJson(RecordedExercise{exercise, simulatedRig(exercise)}), volumeSha256(slab()), grid.geometry(), "test"}, 1);
   for (std::uint64_t t = 0; t < 1000; ++t) {
     TickInput input;
     input.tick = t;
@@ -144,17 +144,17 @@ std::shared_ptr<const LabelMap> halves() {
 
 TEST(Recording, KeepsTheLabelsOfTissuesAlsoOfAChange) {
   test::TemporaryFolder folder;
-  Scene scene = sceneWithOneArm();
-  scene.tissues.tissues[0].label = 5;
-  scene.tools[0].tool.made_from.motor_W = 0.5;  // it is pressed straight at the other half
+  Exercise exercise = exerciseWithOneArm();
+  exercise.tissues.tissues[0].label = 5;
+  exercise.tools[0].tool.made_from.motor_W = 0.5;  // it is pressed straight at the other half
   const auto labels = halves();
   Grid grid(slab(), labels);
-  HapticCore core(hapticParameters(scene), *grid.takeWriter());
+  HapticCore core(hapticParameters(exercise), *grid.takeWriter());
   auto recorder = SessionRecorder::create(
       folder / "a.h5",
-      {toJson(RecordedScene{scene, simulatedRig(scene)}), volumeSha256(slab()), grid.geometry(), "test", labelsSha256(*labels)}, 1);
+      {toJson(RecordedExercise{exercise, simulatedRig(exercise)}), volumeSha256(slab()), grid.geometry(), "test", labelsSha256(*labels)}, 1);
   ASSERT_TRUE(recorder.ok()) << recorder.error().sentence();
-  TissueSet other = scene.tissues;
+  TissueSet other = exercise.tissues;
   other.tissues[0].label = 6;
   for (std::uint64_t t = 0; t < 4000; ++t) {
     TickInput input;
@@ -227,11 +227,11 @@ TEST(Recording, OfAnOlderVersionIsRefusedByName) {
 
 TEST(Recording, KeepsWhichArmWasClutchedAndWhereItsMapTurned) {
   test::TemporaryFolder folder;
-  const Scene scene = sceneWithOneArm();
+  const Exercise exercise = exerciseWithOneArm();
   Grid grid(slab());
-  HapticCore core(hapticParameters(scene), *grid.takeWriter());
+  HapticCore core(hapticParameters(exercise), *grid.takeWriter());
   auto recorder = SessionRecorder::create(
-      folder / "a.h5", {toJson(RecordedScene{scene, simulatedRig(scene)}), volumeSha256(slab()), grid.geometry(), "test"}, 1);
+      folder / "a.h5", {toJson(RecordedExercise{exercise, simulatedRig(exercise)}), volumeSha256(slab()), grid.geometry(), "test"}, 1);
   const Quat turned = glm::angleAxis(0.3, Vec3(0, 0, 1));
   for (std::uint64_t t = 0; t < 3000; ++t) {
     TickInput input;
@@ -268,13 +268,13 @@ TEST(Recording, KeepsWhichArmWasClutchedAndWhereItsMapTurned) {
 
 TEST(Recording, KeepsWhichToolAnArmTookAndWhen) {
   test::TemporaryFolder folder;
-  Scene scene = sceneWithOneArm();
-  scene.tools.push_back({"burr", makeBurr(0.002, 16, 2, 0.02), {}});
-  scene.arms[0].other_tools = {"burr"};
+  Exercise exercise = exerciseWithOneArm();
+  exercise.tools.push_back({"burr", makeBurr(0.002, 16, 2, 0.02), {}});
+  exercise.arms[0].other_tools = {"burr"};
   Grid grid(slab());
-  HapticCore core(hapticParameters(scene), *grid.takeWriter());
+  HapticCore core(hapticParameters(exercise), *grid.takeWriter());
   auto recorder = SessionRecorder::create(
-      folder / "a.h5", {toJson(RecordedScene{scene, simulatedRig(scene)}), volumeSha256(slab()), grid.geometry(), "test"}, 1);
+      folder / "a.h5", {toJson(RecordedExercise{exercise, simulatedRig(exercise)}), volumeSha256(slab()), grid.geometry(), "test"}, 1);
   for (std::uint64_t t = 0; t < 2000; ++t) {
     TickInput input;
     input.tick = t;
@@ -356,11 +356,11 @@ TEST(Recording, ThatIsDeletedWhileItIsWrittenIsSaid) {
 
 TEST(Recording, AFullDiskEndsTheRecordingAndKeepsWhatWasWritten) {
   test::TemporaryFolder folder;
-  const Scene scene = sceneWithOneArm();
+  const Exercise exercise = exerciseWithOneArm();
   Grid grid(slab());
-  HapticCore core(hapticParameters(scene), *grid.takeWriter());
+  HapticCore core(hapticParameters(exercise), *grid.takeWriter());
   auto recorder = SessionRecorder::create(
-      folder / "a.h5", {toJson(RecordedScene{scene, simulatedRig(scene)}), volumeSha256(slab()), grid.geometry(), "test"}, 1);
+      folder / "a.h5", {toJson(RecordedExercise{exercise, simulatedRig(exercise)}), volumeSha256(slab()), grid.geometry(), "test"}, 1);
   ASSERT_TRUE(recorder.ok());
   std::optional<test::FileSizeLimit> full(4'000'000);
   Status status;

@@ -2,8 +2,8 @@
 
 #include <fstream>
 
+#include "exercise/exercise.h"
 #include "file_size_limit.h"
-#include "scene/scene.h"
 #include "support.h"
 #include "training/session_recorder.h"
 
@@ -13,10 +13,10 @@ namespace {
 // Two ticks of one arm, each number another.
 std::filesystem::path recordTwoTicks(const test::TemporaryFolder& folder, const std::string& arm) {
   const auto file = folder / "a.h5";
-  Json scene = {{"rate_hz", 1000.0}, {"arms", Json::array({Json{{"name", arm}}})}};
+  Json exercise = {{"rate_hz", 1000.0}, {"arms", Json::array({Json{{"name", arm}}})}};
   GridGeometry geometry;
   geometry.size = {2, 2, 2};
-  auto recorder = SessionRecorder::create(file, {scene, "", geometry, "test"}, 1);
+  auto recorder = SessionRecorder::create(file, {exercise, "", geometry, "test"}, 1);
   EXPECT_TRUE(recorder.ok());
   for (std::uint64_t t = 0; t < 2; ++t) {
     TickRecord record;

@@ -60,7 +60,8 @@ class ImportTaskTest : public ::testing::Test {
 
   QApplication& application_ = test::application();
   QTemporaryDir folder_;
-  ImportTask task_;
+  double given_back_mb_ = 0.0;
+  ImportTask task_{[this] { return given_back_mb_; }};
   int scanned_ = 0, read_ = 0, stopped_ = 0, last_hu_ = -1;
   std::vector<int> slices_;
   std::optional<Error> error_;
@@ -214,7 +215,7 @@ TEST_F(ImportTaskTest, AfterARefusedImportTheDialogKeepsTheSizeThatWasChosen) {
 TEST_F(ImportTaskTest, WhatTheOpenCaseGivesBackCountsForTheNext) {
   scan();
   const test::DataLimit limit(100.0);
-  task_.setGivenBack(1000.0);
+  given_back_mb_ = 1000.0;
   task_.read(*task_.bestSeries(), {}, 500.0);
   ASSERT_TRUE(waitFor([&] { return read_ == 1 || error_.has_value(); }));
   EXPECT_FALSE(error_ && error_->what.find("practising") != std::string::npos)

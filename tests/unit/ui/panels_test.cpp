@@ -396,46 +396,46 @@ TEST_F(PanelTest, NoCaseIsOpenedWhileAnExerciseRunsOrAnotherIsBeingOpened) {
 
 TEST_F(PanelTest, AnArmShowsItsForceItsTissueAndItsFault) {
   ArmsPanel panel;
-  Scene scene;
-  scene.tissues = twoTissues();
-  scene.arms.resize(1);
-  scene.arms[0].name = "right";
-  panel.setScene(scene);
+  Exercise exercise;
+  exercise.tissues = twoTissues();
+  exercise.arms.resize(1);
+  exercise.arms[0].name = "right";
+  panel.setExercise(exercise);
   LoopState state;
   ArmRecord& arm = state.record.arms[0];
   arm.sent_N = {0.0, 3.0, 0.0};
   arm.demanded_N = {0.0, 4.0, 3.0};
   arm.energy_out_J = {0.001, 0.002, 0.0};
   arm.tissue_class = 1;
-  panel.showState(state, scene.tissues, {3.3});
+  panel.showState(state, exercise.tissues, {3.3});
   EXPECT_EQ(find<QLabel>(panel, "rightForce").text(), "3.00 N of 3.30 N");
   EXPECT_TRUE(find<QLabel>(panel, "rightDemanded").text().contains("5.00 N"));
   EXPECT_EQ(find<QLabel>(panel, "rightContact").text(), "Bone");
   EXPECT_TRUE(find<QLabel>(panel, "rightFaults").isHidden());
 
   arm.faults = kFaultLate;
-  panel.showState(state, scene.tissues, {3.3});
+  panel.showState(state, exercise.tissues, {3.3});
   EXPECT_TRUE(find<QLabel>(panel, "rightFaults").text().contains("late"));
   EXPECT_FALSE(find<QLabel>(panel, "rightFaults").isHidden());
 }
 
 TEST_F(PanelTest, AnArmsToolIsNamedAndChosenFromThoseThatTheExerciseGivesIt) {
   ArmsPanel panel;
-  Scene scene;
-  scene.tissues = twoTissues();
-  scene.tools = {{"cutter", makeBurr(0.003, 16, 2, 0.03), {}},
-                 {"scalpel", makeBlade(0.016, 4), {}}};
-  scene.arms.resize(2);
-  scene.arms[0].name = "left";
-  scene.arms[1].name = "right";
-  scene.arms[0].tool = scene.arms[1].tool = "cutter";
-  scene.arms[1].other_tools = {"scalpel"};
-  panel.setScene(scene);
+  Exercise exercise;
+  exercise.tissues = twoTissues();
+  exercise.tools = {{"cutter", makeBurr(0.003, 16, 2, 0.03), {}},
+                    {"scalpel", makeBlade(0.016, 4), {}}};
+  exercise.arms.resize(2);
+  exercise.arms[0].name = "left";
+  exercise.arms[1].name = "right";
+  exercise.arms[0].tool = exercise.arms[1].tool = "cutter";
+  exercise.arms[1].other_tools = {"scalpel"};
+  panel.setExercise(exercise);
   auto &left = find<QComboBox>(panel, "leftTool"), &right = find<QComboBox>(panel, "rightTool");
   EXPECT_EQ(right.currentText(), "cutter, 6 mm");
   EXPECT_FALSE(right.isEnabled()) << "nothing runs";
   LoopState state;
-  panel.showState(state, scene.tissues, {3.3, 3.3});
+  panel.showState(state, exercise.tissues, {3.3, 3.3});
   EXPECT_FALSE(left.isEnabled());
   EXPECT_TRUE(left.toolTip().contains("one tool"));
   ASSERT_TRUE(right.isEnabled());
@@ -449,23 +449,23 @@ TEST_F(PanelTest, AnArmsToolIsNamedAndChosenFromThoseThatTheExerciseGivesIt) {
   EXPECT_EQ(wanted[0], (std::pair<std::size_t, std::size_t>(1, 1)));
   // It waits for the tool to be out of tissue.
   state.wanted_tools[1] = 1;
-  panel.showState(state, scene.tissues, {3.3, 3.3});
+  panel.showState(state, exercise.tissues, {3.3, 3.3});
   EXPECT_EQ(right.currentText(), "cutter, 6 mm") << "as it is";
   EXPECT_FALSE(find<QLabel>(panel, "rightToolWaits").isHidden());
   EXPECT_TRUE(find<QLabel>(panel, "rightToolWaits").text().contains("out of the tissue"));
   EXPECT_TRUE(find<QLabel>(panel, "leftToolWaits").isHidden());
   state.tools[1] = 1;
-  panel.showState(state, scene.tissues, {3.3, 3.3});
+  panel.showState(state, exercise.tissues, {3.3, 3.3});
   EXPECT_EQ(right.currentText(), "scalpel, 16 mm");
   EXPECT_TRUE(find<QLabel>(panel, "rightToolWaits").isHidden());
 }
 
 TEST_F(PanelTest, EnergyIsShownAsItIsAndColouredAsWrongWhereTheArmShakes) {
   ArmsPanel panel;
-  Scene scene;
-  scene.arms.resize(1);
-  scene.arms[0].name = "right";
-  panel.setScene(scene);
+  Exercise exercise;
+  exercise.arms.resize(1);
+  exercise.arms[0].name = "right";
+  panel.setExercise(exercise);
   QLabel& energy = find<QLabel>(panel, "rightEnergy");
   LoopState state;
   const auto shown = [&](double energy_J) {
@@ -583,10 +583,10 @@ TEST_F(PanelTest, WhatIsChangedInTheForceIsSaidByWhatItIs) {
 
 TEST_F(PanelTest, EachOfTheseWordsIsExplainedBesideIt) {
   ArmsPanel panel;
-  Scene scene;
-  scene.arms.resize(1);
-  scene.arms[0].name = "right";
-  panel.setScene(scene);
+  Exercise exercise;
+  exercise.arms.resize(1);
+  exercise.arms[0].name = "right";
+  panel.setExercise(exercise);
   const QString help = find<QLabel>(panel, "rightParts").toolTip();
   for (std::uint32_t bit = kPartArmBound; bit <= kPartLimiter; bit <<= 1) {
     ArmRecord arm;
@@ -597,7 +597,7 @@ TEST_F(PanelTest, EachOfTheseWordsIsExplainedBesideIt) {
   }
 }
 
-TEST_F(PanelTest, ControllersAreCalledAsTheirPageCallsThemAndNoneIsShownBeforeAScene) {
+TEST_F(PanelTest, ControllersAreCalledAsTheirPageCallsThemAndNoneIsShownBeforeAExercise) {
   ArmsPanel panel;
   auto& list = find<QComboBox>(panel, "controller");
   EXPECT_EQ(list.currentIndex(), -1) << "nothing is open";

@@ -14,12 +14,12 @@
 namespace trephine {
 namespace {
 
-Scene twoArms() {
-  Scene scene;
-  scene.arms.resize(2);
-  scene.arms[0].name = "left";
-  scene.arms[1].name = "right";
-  return scene;
+Exercise twoArms() {
+  Exercise exercise;
+  exercise.arms.resize(2);
+  exercise.arms[0].name = "left";
+  exercise.arms[1].name = "right";
+  return exercise;
 }
 
 // A view that counts what reaches it.
@@ -45,13 +45,13 @@ class StateNoticeTest : public ::testing::Test {
     EXPECT_NE(found, nullptr) << name;
     return *found;
   }
-  void show(double still_s = 0.0) { notice_.showState(state_, scene_, still_s); }
+  void show(double still_s = 0.0) { notice_.showState(state_, exercise_, still_s); }
   std::string title() { return find<QLabel>("forceNoticeTitle").text().toStdString(); }
   std::string why() { return find<QLabel>("forceNoticeWhy").text().toStdString(); }
   bool shown(const char* name) { return find<QWidget>(name).isVisible(); }
 
   QApplication& application_ = test::application();
-  Scene scene_ = twoArms();
+  Exercise exercise_ = twoArms();
   LoopState state_;
   View view_;
   StateNotice notice_{&view_};
@@ -69,7 +69,7 @@ TEST_F(StateNoticeTest, LiesBelowTheToolsOfItsViews) {
   bar.show();
   StateNotice below(&view_, &bar);
   state_.paused = true;
-  below.showState(state_, scene_, 0.0);
+  below.showState(state_, exercise_, 0.0);
   EXPECT_GE(below.geometry().top(), 34);
   show();
   EXPECT_LT(notice_.geometry().top(), 34) << "without tools at the top";
@@ -193,28 +193,28 @@ TEST_F(StateNoticeTest, OfTwoReasonsWithoutForceBothAreSaid) {
 }
 
 TEST_F(StateNoticeTest, AfterARewindItIsSaidToDrawOutOnlyWhatIsInTissueThatCameBack) {
-  std::string words = backWords(20, state_, scene_).toStdString();
+  std::string words = backWords(20, state_, exercise_).toStdString();
   EXPECT_EQ(words.find("Back at 0:20"), 0u) << words;
   EXPECT_NE(words.find("clock runs on"), std::string::npos) << words;
   EXPECT_EQ(words.find("draw"), std::string::npos) << words;
   state_.record.arms[0].tool_state = kToolWaits;
-  words = backWords(20, state_, scene_).toStdString();
+  words = backWords(20, state_, exercise_).toStdString();
   EXPECT_NE(words.find("Left arm: draw the tool out"), std::string::npos) << words;
 }
 
 TEST_F(StateNoticeTest, AnUndoSaysWhoseCutCameBackAndARedoWhichWasMadeAgain) {
-  scene_.tissues.tissues.resize(1);
-  scene_.tissues.tissues[0].name = "Bone";
+  exercise_.tissues.tissues.resize(1);
+  exercise_.tissues.tissues[0].name = "Bone";
   LoopState cut = state_;
   cut.removed[1][0] = 300;
   cut.removed[0][0] = 40;  // of a stroke that stands
   LoopState undone = cut;
   undone.removed[1][0] = 0;
-  EXPECT_EQ(undoneWords(cut, undone, scene_, 0.5).toStdString(),
+  EXPECT_EQ(undoneWords(cut, undone, exercise_, 0.5).toStdString(),
             "Brought back: Right arm, 150 mm\u00b3 of Bone.");
-  EXPECT_EQ(undoneWords(undone, cut, scene_, 0.5).toStdString(),
+  EXPECT_EQ(undoneWords(undone, cut, exercise_, 0.5).toStdString(),
             "Cut again: Right arm, 150 mm\u00b3 of Bone.");
-  EXPECT_TRUE(undoneWords(cut, cut, scene_, 0.5).isEmpty());
+  EXPECT_TRUE(undoneWords(cut, cut, exercise_, 0.5).isEmpty());
 }
 
 TEST_F(StateNoticeTest, WhateverCameBeforeEachCardIsAsHighAsItsWords) {

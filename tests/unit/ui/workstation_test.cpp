@@ -26,7 +26,7 @@ namespace {
 
 using test::waitFor;
 
-// A ball of bone: enough for the landmark of the default scene.
+// A ball of bone: enough for the landmark of the default exercise.
 Volume ball() {
   return test::shells(60, 1.5, {{40, 1200}});
 }
@@ -87,7 +87,7 @@ TEST_F(WorkstationTest, ALabelMapBelongsToTheCaseThatIsOpen) {
   ASSERT_TRUE(failed_);
   EXPECT_EQ(failed_->code, "NOT_LABELS");
   EXPECT_TRUE(workstation_.placed()->labels) << "the one before stays";
-  workstation_.useScene(workstation_.sceneFile());
+  workstation_.useExercise(workstation_.exerciseFile());
   ASSERT_TRUE(wait());
   EXPECT_TRUE(workstation_.placed()->labels) << "another exercise on the same case";
   workstation_.openImported(caseOf(ct));
@@ -140,7 +140,7 @@ TEST_F(WorkstationTest, ARawFilesSidecarIsImportedLikeTheRawFile) {
 TEST_F(WorkstationTest, AnExerciseTakesTheLabelMapAndWithoutItIsRefused) {
   workstation_.openImported(caseOf(std::make_shared<const Volume>(ball())));
   ASSERT_TRUE(wait());
-  TissueSet tissues = workstation_.scene()->tissues;
+  TissueSet tissues = workstation_.exercise()->tissues;
   tissues.tissues.back().label = 7;
   workstation_.setTissues(tissues);
   const auto started = [&] {
@@ -195,13 +195,13 @@ TEST_F(WorkstationTest, WhatIsEditedWhileAnExerciseStartsIsFeltInIt) {
   ASSERT_TRUE(wait());
   workstation_.start(folder_.path(), {}, 1e9);
   ASSERT_EQ(workstation_.phase(), Workstation::Phase::starting);
-  TissueSet tissues = workstation_.scene()->tissues;
+  TissueSet tissues = workstation_.exercise()->tissues;
   tissues.tissues.back().damping_Ns_per_m.value = 20.0;
   workstation_.setTissues(tissues);
   workstation_.setController(ControllerKind::off);
   ASSERT_TRUE(waitFor([&] { return workstation_.session() != nullptr; }));
   EXPECT_FALSE(failed_) << failed_->sentence();
-  EXPECT_EQ(workstation_.session()->scene().tissues.tissues.back().damping_Ns_per_m.value, 20.0);
+  EXPECT_EQ(workstation_.session()->exercise().tissues.tissues.back().damping_Ns_per_m.value, 20.0);
   EXPECT_TRUE(comes([&] {
     const LoopState& state = workstation_.session()->state();
     return state.ticks > 0 && state.controller == ControllerKind::off;
@@ -242,7 +242,7 @@ TEST_F(PlacedTest, ALandmarkLiesWhereTheTissueIsThatAnEditMadeOfIt) {
   const double before_mm = vault_mm();
   startAndStop();
   EXPECT_EQ(started_mm_, before_mm);
-  TissueSet tissues = workstation_.scene()->tissues;
+  TissueSet tissues = workstation_.exercise()->tissues;
   for (Tissue& tissue : tissues.tissues) {
     if (tissue.id == "bone") tissue.hu_min = 1500;
   }
@@ -255,19 +255,19 @@ TEST_F(PlacedTest, ALandmarkLiesWhereTheTissueIsThatAnEditMadeOfIt) {
   EXPECT_EQ(started_mm_, before_mm) << "and where it lay before, once the edit is taken back";
 }
 
-TEST_F(PlacedTest, ASceneThatNamesNoCaseIsPlacedInTheOneThatIsOpen) {
+TEST_F(PlacedTest, AExerciseThatNamesNoCaseIsPlacedInTheOneThatIsOpen) {
   workstation_.openImported(caseOf(std::make_shared<const Volume>(ball())));
   ASSERT_TRUE(wait());
   const double top_mm = vault_mm();
-  Json scene = *readJsonFile(resourceFolder() / "scenes" / "cranium.json");
-  scene.erase("case");
-  scene["landmarks"][0]["from"] = {0.5, 0.5, -0.2};  // from below
-  std::vector<Json*> names{&scene["tissues"], &scene["operator"]};
-  for (Json& tool : scene["tools"]) names.push_back(&tool["file"]);
+  Json exercise = *readJsonFile(resourceFolder() / "scenes" / "cranium.json");
+  exercise.erase("case");
+  exercise["landmarks"][0]["from"] = {0.5, 0.5, -0.2};  // from below
+  std::vector<Json*> names{&exercise["tissues"], &exercise["operator"]};
+  for (Json& tool : exercise["tools"]) names.push_back(&tool["file"]);
   for (Json* name : names) {
     *name = (resourceFolder() / "scenes" / name->get<std::string>()).lexically_normal().string();
   }
-  ASSERT_TRUE(writeTextFile(folder_ / "below.json", scene.dump()));
+  ASSERT_TRUE(writeTextFile(folder_ / "below.json", exercise.dump()));
   workstation_.openPath(folder_ / "below.json");
   ASSERT_TRUE(wait());
   EXPECT_FALSE(failed_) << failed_->sentence();
@@ -281,8 +281,8 @@ class SavedVolumeTest : public WorkstationTest {
   void start() {
     workstation_.openImported(caseOf(std::make_shared<const Volume>(ball())));
     ASSERT_TRUE(wait());
-    const Scene& scene = *workstation_.scene();
-    workstation_.start(folder_.path(), *readOperatorScript(scene.operator_file, scene), 1e9);
+    const Exercise& exercise = *workstation_.exercise();
+    workstation_.start(folder_.path(), *readOperatorScript(exercise.operator_file, exercise), 1e9);
     ASSERT_TRUE(waitFor([&] { return workstation_.session() != nullptr; }));
     ASSERT_TRUE(comes([&] { return workstation_.session()->state().can_undo; }));
   }
@@ -332,7 +332,7 @@ TEST_F(SavedVolumeTest, AskedForTwiceIsWrittenOnceAndTheExerciseStandsStillMeanw
   stop();
 }
 
-// What the scene finds is deep in soft tissue, and so is where it puts the tools.
+// What the exercise finds is deep in soft tissue, and so is where it puts the tools.
 TEST_F(WorkstationTest, HandsThatTheMouseWillMoveBeginOutsideOfTissue) {
   const Volume deep = test::shells(60, 1.5, {{42, -20}, {15, 1200}});
   workstation_.openImported(caseOf(std::make_shared<const Volume>(deep)));
@@ -352,21 +352,21 @@ class EditedTissuesTest : public WorkstationTest {
   EditedTissuesTest() {
     workstation_.openImported(caseOf(std::make_shared<const Volume>(ball())));
     EXPECT_TRUE(wait());
-    TissueSet tissues = workstation_.scene()->tissues;
+    TissueSet tissues = workstation_.exercise()->tissues;
     tissues.tissues.back().hu_min = 900;
     workstation_.setTissues(tissues);
   }
-  int boneFrom() { return workstation_.scene()->tissues.tissues.back().hu_min; }
+  int boneFrom() { return workstation_.exercise()->tissues.tissues.back().hu_min; }
 };
 
-TEST_F(EditedTissuesTest, StayWithTheirSceneWhateverTheCaseAndAreKnownToBeEdited) {
+TEST_F(EditedTissuesTest, StayWithTheirExerciseWhateverTheCaseAndAreKnownToBeEdited) {
   EXPECT_TRUE(workstation_.tissuesEdited());
   EXPECT_EQ(workstation_.declaredTissues().tissues.back().hu_min, 226);
   workstation_.openImported(caseOf(std::make_shared<const Volume>(ball())));
   ASSERT_TRUE(wait());
   EXPECT_EQ(boneFrom(), 900);
   workstation_.useLabels(labels(7));
-  TissueSet tissues = workstation_.scene()->tissues;
+  TissueSet tissues = workstation_.exercise()->tissues;
   tissues.tissues.back().hu_min = 950;  // while the label map is read
   workstation_.setTissues(tissues);
   ASSERT_TRUE(wait());
@@ -375,7 +375,7 @@ TEST_F(EditedTissuesTest, StayWithTheirSceneWhateverTheCaseAndAreKnownToBeEdited
   EXPECT_TRUE(workstation_.tissuesEdited());
   EXPECT_EQ(workstation_.declaredTissues().tissues.back().hu_min, 226);
 
-  workstation_.useScene(workstation_.sceneFile());
+  workstation_.useExercise(workstation_.exerciseFile());
   ASSERT_TRUE(wait());
   EXPECT_EQ(boneFrom(), 226) << "an exercise that is chosen brings its own";
   EXPECT_FALSE(workstation_.tissuesEdited());
@@ -391,15 +391,15 @@ TEST_F(WorkstationTest, TissuesThatWereEditedComeBackWithTheStructuresThatTheyAr
   ASSERT_TRUE(workstation_.useStructures(nullptr));
   ASSERT_TRUE(wait());
   EXPECT_TRUE(workstation_.isElsewhere()) << "those by HU are in force";
-  EXPECT_EQ(workstation_.tissues(), *workstation_.scene()->tissues_elsewhere);
-  EXPECT_TRUE(workstation_.sceneEdited()) << "the set that waits is not saved";
+  EXPECT_EQ(workstation_.tissues(), *workstation_.exercise()->tissues_elsewhere);
+  EXPECT_TRUE(workstation_.exerciseEdited()) << "the set that waits is not saved";
   EXPECT_FALSE(workstation_.tissuesEdited());
   // What is saved now is the exercise, not what this case leaves of it.
   TissueSet by_hu = workstation_.tissues();
   by_hu.tissues.front().opacity = 0.456;
   workstation_.setTissues(by_hu);
   EXPECT_TRUE(workstation_.isElsewhere());
-  const std::optional<Scene> made = workstation_.scene();
+  const std::optional<Exercise> made = workstation_.exercise();
   EXPECT_EQ(made->tissues.tissues.front().opacity, 0.123);
   EXPECT_FALSE(made->tissues.find("liver")->structure.empty());
   ASSERT_TRUE(made->tissues_elsewhere);
@@ -408,18 +408,18 @@ TEST_F(WorkstationTest, TissuesThatWereEditedComeBackWithTheStructuresThatTheyAr
   ASSERT_TRUE(workstation_.useStructures(structures));
   ASSERT_TRUE(wait());
   EXPECT_TRUE(workstation_.tissuesEdited());
-  EXPECT_EQ(workstation_.scene()->tissues.tissues.front().opacity, 0.123);
+  EXPECT_EQ(workstation_.exercise()->tissues.tissues.front().opacity, 0.123);
   EXPECT_EQ(workstation_.placedTissues().find("liver")->label, structures->find("liver")->label);
 }
 
-TEST_F(EditedTissuesTest, AreSavedAsASetThatScenesCanName) {
+TEST_F(EditedTissuesTest, AreSavedAsASetThatExercisesCanName) {
   bool then = false;
   workstation_.saveTissues(folder_ / "mine.json", [&] { then = true; });
   ASSERT_TRUE(waitFor([&] { return then; }));
   EXPECT_FALSE(failed_);
   const Result<TissueSet> saved = readTissueSet(folder_ / "mine.json");
   ASSERT_TRUE(saved) << saved.error().sentence();
-  EXPECT_TRUE(*saved == workstation_.scene()->tissues);
+  EXPECT_TRUE(*saved == workstation_.exercise()->tissues);
   EXPECT_FALSE(workstation_.tissuesEdited());
 }
 
@@ -446,35 +446,35 @@ TEST_F(WorkstationTest, NothingIsStartedFromAWindowThatCannotDraw) {
 }
 
 // A file of the trainee's own may change while it is open.
-TEST_F(WorkstationTest, ASceneThatIsEditedUnderneathBringsNothingThatIsLocked) {
+TEST_F(WorkstationTest, AExerciseThatIsEditedUnderneathBringsNothingThatIsLocked) {
   Policy policy;
   policy.locks = {Lock::controller};
   policy.controller = ControllerKind::bounded;
   Workstation locked(policy);
   std::optional<Error> said;
   QObject::connect(&locked, &Workstation::failed, &locked, [&](const Error& e) { said = e; });
-  const std::filesystem::path scenes = resourceFolder() / "scenes", file = folder_ / "own.json";
-  Json scene = *readJsonFile(scenes / "cranium.json");
+  const std::filesystem::path exercises = resourceFolder() / "scenes", file = folder_ / "own.json";
+  Json exercise = *readJsonFile(exercises / "cranium.json");
   for (const char* key : {"tissues", "operator"})
-    scene[key] = scenes / scene[key].get<std::string>();
-  for (Json& tool : scene["tools"]) tool["file"] = scenes / tool["file"].get<std::string>();
-  scene["case"] = "";
-  ASSERT_TRUE(writeTextFile(file, scene.dump()));
+    exercise[key] = exercises / exercise[key].get<std::string>();
+  for (Json& tool : exercise["tools"]) tool["file"] = exercises / tool["file"].get<std::string>();
+  exercise["case"] = "";
+  ASSERT_TRUE(writeTextFile(file, exercise.dump()));
   locked.openPath(file);
   locked.openImported(caseOf(std::make_shared<const Volume>(ball())));
   ASSERT_TRUE(waitFor([&] { return locked.phase() == Workstation::Phase::ready; }));
-  ASSERT_EQ(locked.sceneFile(), file);
+  ASSERT_EQ(locked.exerciseFile(), file);
   said.reset();
-  scene["controller"] = "off";
-  ASSERT_TRUE(writeTextFile(file, scene.dump()));
+  exercise["controller"] = "off";
+  ASSERT_TRUE(writeTextFile(file, exercise.dump()));
   EXPECT_TRUE(locked.placeEntry(std::nullopt));
   ASSERT_TRUE(waitFor([&] { return !locked.isOpening(); }));
   EXPECT_FALSE(said) << said->sentence();
-  EXPECT_EQ(locked.scene()->controller, ControllerKind::bounded);
-  locked.useScene(file);
+  EXPECT_EQ(locked.exercise()->controller, ControllerKind::bounded);
+  locked.useExercise(file);
   ASSERT_TRUE(said);
   EXPECT_EQ(said->code, "LOCKED");
-  EXPECT_EQ(locked.scene()->controller, ControllerKind::bounded);
+  EXPECT_EQ(locked.exercise()->controller, ControllerKind::bounded);
 }
 
 // ---- Edits of the exercise
@@ -485,16 +485,16 @@ class EditsTest : public WorkstationTest {
     workstation_.openPhantom("cranium");
     EXPECT_TRUE(waitFor([this] { return workstation_.phase() == Workstation::Phase::ready; }));
   }
-  const Scene& scene() { return *workstation_.scene(); }
+  const Exercise& exercise() { return *workstation_.exercise(); }
 };
 
 // Tissues, tools and arms, at random but possible.
-Scene randomlyEdited(Scene scene, std::mt19937& random) {
+Exercise randomlyEdited(Exercise exercise, std::mt19937& random) {
   const auto pick = [&](std::size_t count) { return std::size_t(random()) % count; };
   const auto share = [&] { return double(random() % 1000) / 1000.0; };
-  Tissue& tissue = scene.tissues.tissues[pick(scene.tissues.tissues.size())];
-  SceneTool& tool = scene.tools[pick(scene.tools.size())];
-  SceneArm& arm = scene.arms[pick(scene.arms.size())];
+  Tissue& tissue = exercise.tissues.tissues[pick(exercise.tissues.tissues.size())];
+  ExerciseTool& tool = exercise.tools[pick(exercise.tools.size())];
+  ExerciseArm& arm = exercise.arms[pick(exercise.arms.size())];
   switch (random() % 12) {
     case 0:
       tissue.damping_Ns_per_m = {20.0 * share(), "asked"};
@@ -506,16 +506,18 @@ Scene randomlyEdited(Scene scene, std::mt19937& random) {
       tissue.colour = Vec3(share(), share(), share());
       break;
     case 3:
-      scene.tissues = withThreshold(scene.tissues, pick(scene.tissues.tissues.size()),
-                                    random() % 2 ? RangeEnd::low : RangeEnd::high,
-                                    int(random() % 4000) - 1000, random() % 2, scene.tissues);
+      exercise.tissues = withThreshold(exercise.tissues, pick(exercise.tissues.tissues.size()),
+                                       random() % 2 ? RangeEnd::low : RangeEnd::high,
+                                       int(random() % 4000) - 1000, random() % 2, exercise.tissues);
       break;
     case 4:
-      if (const auto more = withNewTissue(scene.tissues)) scene = withTissues(scene, *more).scene;
+      if (const auto more = withNewTissue(exercise.tissues))
+        exercise = withTissues(exercise, *more).exercise;
       break;
     case 5:
-      if (const auto less = withoutTissue(scene.tissues, pick(scene.tissues.tissues.size()))) {
-        scene = withTissues(scene, *less).scene;
+      if (const auto less =
+              withoutTissue(exercise.tissues, pick(exercise.tissues.tissues.size()))) {
+        exercise = withTissues(exercise, *less).exercise;
       }
       break;
     case 6:
@@ -534,69 +536,69 @@ Scene randomlyEdited(Scene scene, std::mt19937& random) {
       arm.max_force_N = 0.5 + 2.0 * share();
       break;
     case 11:
-      arm.tool = scene.tools[pick(scene.tools.size())].id;
+      arm.tool = exercise.tools[pick(exercise.tools.size())].id;
       arm.other_tools.clear();
       break;
   }
-  return scene;
+  return exercise;
 }
 
 TEST_F(EditsTest, TwoHundredAtRandomAreTakenBackAndDoneAgain) {
-  const Scene before = scene();
+  const Exercise before = exercise();
   std::mt19937 random(20);
   int done = 0;
   for (int n = 0; n < 200; ++n) {
-    const Status edited = workstation_.edit(randomlyEdited(scene(), random), "edit");
+    const Status edited = workstation_.edit(randomlyEdited(exercise(), random), "edit");
     workstation_.closeEdit();
     done += edited.ok();
   }
   EXPECT_GT(done, 150);
   EXPECT_FALSE(failed_) << failed_->sentence();
-  const Scene after = scene();
+  const Exercise after = exercise();
   EXPECT_FALSE(before == after);
   int back = 0;
   for (; workstation_.edits().canUndo(); ++back) workstation_.undoEdit();
-  EXPECT_TRUE(scene() == before);
+  EXPECT_TRUE(exercise() == before);
   EXPECT_GT(back, 140);
   for (; workstation_.edits().canRedo(); --back) workstation_.redoEdit();
   EXPECT_EQ(back, 0);
-  EXPECT_TRUE(scene() == after);
+  EXPECT_TRUE(exercise() == after);
   EXPECT_TRUE(waitFor([this] { return !workstation_.isOpening(); }));
-  EXPECT_TRUE(scene() == after) << "placed in the case";
+  EXPECT_TRUE(exercise() == after) << "placed in the case";
 }
 
 TEST_F(EditsTest, WhatIsNotPossibleIsRefusedInWordsAndChangesNothing) {
-  const Scene before = scene();
-  Scene wrong = before;
+  const Exercise before = exercise();
+  Exercise wrong = before;
   wrong.arms[0].map.force_scale = 1000.0;
   const Status refused = workstation_.edit(wrong, "arm");
   ASSERT_FALSE(refused.ok());
   EXPECT_NE(refused.error().where.find("force_scale"), std::string::npos)
       << refused.error().sentence();
-  EXPECT_TRUE(scene() == before);
+  EXPECT_TRUE(exercise() == before);
   EXPECT_FALSE(workstation_.edits().canUndo());
 }
 
 TEST_F(EditsTest, StayOnAnotherCaseAndOnOtherStructuresAndAreToldFromWhatWasOpened) {
-  EXPECT_FALSE(workstation_.sceneEdited());
-  Scene edited = scene();
+  EXPECT_FALSE(workstation_.exerciseEdited());
+  Exercise edited = exercise();
   edited.arms[0].map.motion_scale = 0.75;
   ASSERT_TRUE(workstation_.edit(edited, "arm").ok());
-  EXPECT_TRUE(workstation_.sceneEdited());
+  EXPECT_TRUE(workstation_.exerciseEdited());
   ASSERT_TRUE(workstation_.useStructures(nullptr));
   ASSERT_TRUE(wait());
-  EXPECT_EQ(scene().arms[0].map.motion_scale, 0.75);
+  EXPECT_EQ(exercise().arms[0].map.motion_scale, 0.75);
   workstation_.openImported(caseOf(std::make_shared<const Volume>(ball())));
   ASSERT_TRUE(wait());
-  EXPECT_EQ(scene().arms[0].map.motion_scale, 0.75);
-  EXPECT_TRUE(workstation_.sceneEdited());
+  EXPECT_EQ(exercise().arms[0].map.motion_scale, 0.75);
+  EXPECT_TRUE(workstation_.exerciseEdited());
   workstation_.undoEdit();
-  EXPECT_NE(scene().arms[0].map.motion_scale, 0.75);
-  EXPECT_FALSE(workstation_.sceneEdited());
+  EXPECT_NE(exercise().arms[0].map.motion_scale, 0.75);
+  EXPECT_FALSE(workstation_.exerciseEdited());
 }
 
 TEST_F(EditsTest, AnEntryPointIsOneStepAndGoesWithAnotherCase) {
-  const Landmark* own = &scene().landmarks[0];
+  const Landmark* own = &exercise().landmarks[0];
   Landmark place = *own;
   place.is_place = true;
   place.at_mm = workstation_.placed()->landmarks[0].frame.position_mm + Vec3(0.0, 5.0, 0.0);

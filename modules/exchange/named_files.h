@@ -1,0 +1,23 @@
+// The files that an exercise names, and those that its tissues and tools name, wherever in its JSON
+// they stand. For this room's .cpp files.
+#pragma once
+
+#include <functional>
+#include <string>
+
+#include "base/json.h"
+
+namespace trephine {
+
+enum class NamedFile { caseVolume, labels, tissues, tool, mesh, device, operatorScript };
+
+// Called with each text of the exercise that names a file, which may be changed; `id` is the tool's
+// or arm's. A built-in case is none.
+using OnNamedFile = std::function<Status(NamedFile kind, const std::string& id, Json& name)>;
+Status eachNamedFile(Json& exercise, const OnNamedFile& on);
+
+// Of a tissue set and of a tool as files: the text that names another file; null: none does.
+Json* elsewhereOf(Json& tissues);
+Json* meshOf(Json& tool);
+
+}  // namespace trephine

@@ -1,0 +1,56 @@
+#include "exercise/exercise_card.h"
+
+#include "base/utf8.h"
+
+namespace trephine {
+
+namespace {
+
+void checkText(JsonReader& reader, const char* key, const std::string& text, std::size_t most) {
+  if (text.empty()) reader.fail(key, "The text is empty", "Say it, or leave the whole card out");
+  if (cleanUtf8(text) != text) {
+    reader.fail(key,
+                "The text is no plain line: it has line breaks, control characters or spaces "
+                "around it");
+  }
+  if (const std::size_t count = charactersOf(text); count > most) {
+    reader.fail(key,
+                "The text has " + std::to_string(count) + " characters, at most " +
+                    std::to_string(most) + " can be read at a glance",
+                "Say it in fewer words");
+  }
+}
+
+CardText readText(JsonReader reader) {
+  CardText text;
+  text.goal = reader.text("goal");
+  text.steps = reader.texts("steps", kCardSteps);
+  text.hands = reader.text("hands");
+  if (!reader.ok()) return text;
+  checkText(reader, "goal", text.goal, kCardGoal);
+  if (text.steps.empty()) reader.fail("steps", "There is no step", "Say at least one");
+  for (const std::string& step : text.steps) checkText(reader, "steps", step, kCardStep);
+  checkText(reader, "hands", text.hands, kCardHands);
+  return text;
+}
+
+Json toJson(const CardText& text) {
+  return {{"goal", text.goal}, {"steps", text.steps}, {"hands", text.hands}};
+}
+
+}  // namespace
+
+ExerciseCard readExerciseCard(JsonReader card) {
+  ExerciseCard out;
+  out.en = readText(card.object("en"));
+  if (card.has("zh_TW")) out.zh_TW = readText(card.object("zh_TW"));
+  return out;
+}
+
+Json toJson(const ExerciseCard& card) {
+  Json json{{"en", toJson(card.en)}};
+  if (card.zh_TW) json["zh_TW"] = toJson(*card.zh_TW);
+  return json;
+}
+
+}  // namespace trephine

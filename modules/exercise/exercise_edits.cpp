@@ -1,0 +1,179 @@
+#include "exercise/exercise_edits.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace trephine {
+
+void ExerciseHistory::begin(Exercise exercise) {
+  undo_.clear();
+  redo_.clear();
+  open_.clear();
+  now_ = shared(std::move(exercise));
+}
+
+void ExerciseHistory::note(Exercise exercise, const std::string& what) {
+  if (exercise == *now_) return;
+  redo_.clear();
+  if (open_.empty() || open_ != what || undo_.empty()) {
+    undo_.push_back({std::move(now_), what});
+    if (undo_.size() > kMostSteps) undo_.erase(undo_.begin());
+  }
+  open_ = what;
+  now_ = shared(std::move(exercise));
+}
+
+const Exercise& ExerciseHistory::undo() {
+  open_.clear();
+  Step step = std::move(undo_.back());
+  undo_.pop_back();
+  redo_.push_back({std::exchange(now_, std::move(step.exercise)), std::move(step.what)});
+  return *now_;
+}
+
+const Exercise& ExerciseHistory::redo() {
+  open_.clear();
+  Step step = std::move(redo_.back());
+  redo_.pop_back();
+  undo_.push_back({std::exchange(now_, std::move(step.exercise)), std::move(step.what)});
+  return *now_;
+}
+
+ExerciseMap movedTo(const Exercise& exercise, std::size_t arm, const std::string& landmark,
+                    const std::vector<PlacedLandmark>& landmarks) {
+  ExerciseMap map = exercise.arms[arm].map;
+  if (landmark.empty()) {
+    map.fixed = withFixedMaps(exercise, landmarks).arms[arm].map.fixed;
+    if (map.fixed) map.landmark.clear();
+    return map;
+  }
+  map.landmark = landmark;
+  if (!map.fixed) return map;
+  for (const PlacedLandmark& placed : landmarks) {
+    if (placed.id != landmark) continue;
+    map.offset_mm =
+        glm::conjugate(placed.frame.rotation) * (map.fixed->centre_mm - placed.frame.position_mm);
+  }
+  map.fixed.reset();
+  return map;
+}
+
+NewTissues withTissues(Exercise exercise, const TissueSet& set) {
+  NewTissues out{std::move(exercise), {}};
+  Exercise& to = out.exercise;
+  const TissueSet before = std::exchange(to.tissues, set);
+  const auto solid = std::ranges::find_if(set.tissues, &Tissue::isSolid);
+  const Tissue& instead = solid == set.tissues.end() ? set.tissues.front() : *solid;
+  for (Landmark& landmark : to.landmarks) {
+    if (set.find(landmark.tissue)) continue;
+    const Tissue* was = before.find(landmark.tissue);
+    out.notes.push_back("The landmark '" + landmark.id + "' was on " +
+                        (was ? was->name : landmark.tissue) + " and is on " + instead.name +
+                        " now");
+    landmark.tissue = instead.id;
+  }
+  std::erase_if(to.view.looks, [&](const auto& look) { return !set.find(look.first); });
+  if (to.tissues_elsewhere) {
+    for (const Landmark& landmark : to.landmarks) {
+      if (to.tissues_elsewhere->find(landmark.tissue)) continue;
+      to.tissues_elsewhere.reset();
+      out.notes.push_back("The exercise has these tissues on every case now");
+      break;
+    }
+  }
+  return out;
+}
+
+const TissueSet& tissuesInForce(const Exercise& exercise, bool elsewhere) {
+  return elsewhere && exercise.tissues_elsewhere ? *exercise.tissues_elsewhere : exercise.tissues;
+}
+
+TissueSet& tissuesInForce(Exercise& exercise, bool elsewhere) {
+  return elsewhere && exercise.tissues_elsewhere ? *exercise.tissues_elsewhere : exercise.tissues;
+}
+
+NewTissues withTissuesInForce(Exercise exercise, const TissueSet& set, bool elsewhere) {
+  const bool swapped = elsewhere && exercise.tissues_elsewhere;
+  if (swapped) std::swap(exercise.tissues, *exercise.tissues_elsewhere);
+  NewTissues out = withTissues(std::move(exercise), set);
+  if (swapped && out.exercise.tissues_elsewhere) {
+    std::swap(out.exercise.tissues, *out.exercise.tissues_elsewhere);
+  }
+  return out;
+}
+
+Exercise withLiveOf(Exercise exercise, const Exercise& other, bool elsewhere) {
+  tissuesInForce(exercise, elsewhere) = tissuesInForce(other, elsewhere);
+  exercise.controller = other.controller;
+  return exercise;
+}
+
+namespace {
+
+bool sameStructures(const TissueSet& a, const TissueSet& b) {
+  return std::ranges::equal(a.tissues, b.tissues, [](const Tissue& one, const Tissue& other) {
+    return one.id == other.id && one.structure == other.structure && one.shell == other.shell;
+  });
+}
+
+}  // namespace
+
+bool samePlaces(const Exercise& a, const Exercise& b) {
+  const bool both = a.tissues_elsewhere && b.tissues_elsewhere;
+  // Whether the case is one for the anatomy is said with its places.
+  return a.landmarks == b.landmarks && a.structures == b.structures && a.anatomy == b.anatomy &&
+         sameStructures(a.tissues, b.tissues) &&
+         a.tissues_elsewhere.has_value() == b.tissues_elsewhere.has_value() &&
+         (!both || sameStructures(*a.tissues_elsewhere, *b.tissues_elsewhere));
+}
+
+bool sameFiles(const Exercise& a, const Exercise& b) {
+  return a.operator_file == b.operator_file &&
+         std::ranges::equal(
+             a.tools, b.tools, {}, [](const ExerciseTool& t) { return t.look.mesh; },
+             [](const ExerciseTool& t) { return t.look.mesh; });
+}
+
+bool sameDevices(const Exercise& a, const Exercise& b) {
+  return a.rate_hz == b.rate_hz &&
+         std::ranges::equal(a.arms, b.arms, {}, &ExerciseArm::name, &ExerciseArm::name);
+}
+
+bool isEntry(const Landmark& landmark, const Exercise& opened) {
+  const Landmark* of_file = opened.findLandmarkById(landmark.id);
+  return landmark.is_place && of_file && landmark != *of_file;
+}
+
+bool isEdited(const Exercise& exercise, const Exercise& opened, bool elsewhere) {
+  Exercise same = withLiveOf(opened, exercise, elsewhere);
+  for (Landmark& landmark : same.landmarks) {  // a clicked place is of preparing a case
+    const Landmark* now = exercise.findLandmarkById(landmark.id);
+    if (now && isEntry(*now, opened)) landmark = *now;
+  }
+  return same != exercise;
+}
+
+Exercise forAnotherCase(Exercise exercise, const Exercise& opened) {
+  for (ExerciseArm& arm : exercise.arms) {
+    const auto same = std::ranges::find(opened.arms, arm.name, &ExerciseArm::name);
+    if (arm.map.fixed && same != opened.arms.end()) arm.map = same->map;
+  }
+  for (Landmark& landmark : exercise.landmarks) {
+    if (isEntry(landmark, opened)) landmark = *opened.findLandmarkById(landmark.id);
+  }
+  return exercise;
+}
+
+Exercise asSaved(Exercise exercise, const Exercise& saved) {
+  exercise.case_source = saved.case_source;
+  exercise.labels_file = saved.labels_file;
+  exercise.outline = saved.outline;
+  exercise.name = saved.name;
+  exercise.operator_file = saved.operator_file;
+  for (std::size_t i = 0; i < exercise.tools.size() && i < saved.tools.size(); ++i) {
+    exercise.tools[i].look.mesh = saved.tools[i].look.mesh;
+  }
+  return exercise;
+}
+
+}  // namespace trephine

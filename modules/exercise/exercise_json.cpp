@@ -1,0 +1,436 @@
+#include <algorithm>
+#include <set>
+
+#include "exercise/arms_file.h"
+#include "exercise/names.h"
+#include "exercise/exercise_numbers.h"
+#include "volume/phantom.h"
+
+namespace trephine {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t kMostInAList = 64;
+
+ExerciseMap readMap(JsonReader map) {
+  ExerciseMap out;
+  if (!map.has("centre_mm")) {
+    out.landmark = map.text("landmark");
+    readNumbers(map, kExerciseMapNumbers, out);
+    return out;
+  }
+  WorkspaceMap fixed;
+  readNumbers(map, kWorkspaceMapNumbers, fixed);
+  fixed.rotation = readRotation(map);
+  out.motion_scale = fixed.motion_scale;
+  out.force_scale = fixed.force_scale;
+  out.fixed = fixed;
+  return out;
+}
+
+ExerciseArm readArm(JsonReader& item) {
+  ExerciseArm arm;
+  arm.name = item.text("name");
+  arm.tool = item.text("tool");
+  if (item.has("other_tools")) arm.other_tools = item.texts("other_tools", kMostTools - 1);
+  arm.map = readMap(item.object("map"));
+  readNumbers(item, kArmNumbers, arm);
+  return arm;
+}
+
+// What moved an arm, of a recording.
+Rig::Arm readRigArm(JsonReader& item, const fs::path& folder) {
+  Rig::Arm arm;
+  JsonReader device = item.object("device");
+  arm.device = readDevice(device, folder);
+  if (item.has("dynamics")) {
+    JsonReader dynamics = item.object("dynamics");
+    readNumbers(dynamics, kArmDynamicsNumbers, arm.dynamics.emplace());
+  }
+  return arm;
+}
+
+Landmark readLandmark(JsonReader& item) {
+  Landmark landmark;
+  landmark.id = item.text("id");
+  landmark.tissue = item.text("tissue");
+  if (item.has("at_mm")) {
+    landmark.is_place = true;
+    readNumbers(item, kPlaceNumbers, landmark);
+    landmark.outward = item.direction("outward");
+  } else if (item.has("bulk_radius_mm")) {
+    readNumbers(item, kBulkNumbers, landmark);
+    landmark.outward = item.direction("outward");
+  } else {
+    readNumbers(item, kRayNumbers, landmark);
+    if (item.ok() && landmark.from == landmark.towards) {
+      item.fail("towards", "The ray of the landmark '" + landmark.id + "' goes nowhere",
+                "Let it go to another place than it begins at");
+    }
+  }
+  readNumbers(item, kLandmarkNumbers, landmark);
+  return landmark;
+}
+
+// By tissue id.
+TissueLooks readLooks(JsonReader& view, const TissueSet& tissues) {
+  TissueLooks looks;
+  JsonReader named = view.object("looks");
+  for (const Tissue& tissue : tissues.tissues) {
+    const char* id = tissue.id.c_str();
+    if (!named.has(id)) continue;
+    const std::string look = named.text(id);
+    if (const auto kind = kindOf(kTissueLookNames, look)) {
+      looks[tissue.id] = *kind;
+    } else {
+      named.fail(id, "Unknown look '" + look + "'", choices(kTissueLookNames));
+    }
+  }
+  const Json& all = view.raw("looks");
+  for (auto item = all.begin(); all.is_object() && item != all.end(); ++item) {
+    if (tissues.find(item.key())) continue;
+    named.fail(item.key().c_str(), "The view names the unknown tissue '" + item.key() + "'",
+               "Use the ids of the scene's tissues");
+  }
+  return looks;
+}
+
+Locks readLocks(JsonReader& reader) {
+  Locks locks;
+  for (const std::string& name : reader.texts("locks", kLockNames.size())) {
+    if (const auto lock = kindOf(kLockNames, name)) {
+      locks.insert(*lock);
+    } else {
+      reader.fail("locks", "There is nothing to lock called '" + name + "'", choices(kLockNames));
+    }
+  }
+  return locks;
+}
+
+// Names by which others refer to an element are there once.
+template <class Items, class NameOf>
+void checkNamesDiffer(JsonReader& reader, const char* list, const Items& items, NameOf name_of) {
+  std::set<std::string> seen;
+  for (const auto& item : items) {
+    const std::string name = name_of(item);
+    if (!seen.insert(name).second) {
+      reader.fail(list, "'" + name + "' stands twice in the list", "Give each a name of its own");
+    }
+  }
+}
+
+void checkToolsOf(JsonReader& reader, const Exercise& exercise, const ExerciseArm& arm) {
+  std::set<std::string> seen{arm.tool};
+  for (const std::string& id : arm.other_tools) {
+    if (seen.insert(id).second) continue;
+    reader.fail("arms", "The arm '" + arm.name + "' names the tool '" + id + "' twice");
+  }
+  for (const std::string& id : seen) {
+    if (exercise.findTool(id)) continue;
+    reader.fail("arms", "The arm '" + arm.name + "' names the unknown tool '" + id + "'");
+  }
+}
+
+// Of a recording: a device moves one arm, and its delay is one that the loop knows.
+void checkRig(JsonReader& reader, const Exercise& exercise, const Rig& rig) {
+  std::set<std::string> devices;
+  for (std::size_t i = 0; i < rig.arms.size(); ++i) {
+    const auto& [device, dynamics] = rig.arms[i];
+    const std::string& name = exercise.arms[i].name;
+    if (!devices.insert(device.plugin + "/" + std::to_string(device.place)).second) {
+      reader.fail("arms", "The arm '" + name + "' uses a device that another arm uses");
+    }
+    if (!dynamics || kDelaySamples.holds(delaySamples(*dynamics, 1.0 / exercise.rate_hz))) continue;
+    reader.fail("arms", "The delay of the arm '" + name + "' is longer than " +
+                            std::to_string(kMaxDelayTicks) + " periods of the rate");
+  }
+}
+
+// What one field cannot say: names that must exist, things that must be there once.
+void checkReferences(JsonReader& reader, const Exercise& exercise) {
+  for (const Landmark& landmark : exercise.landmarks) {
+    if (!exercise.tissues.find(landmark.tissue)) {
+      reader.fail("landmarks", "The landmark '" + landmark.id + "' names the unknown tissue '" +
+                                   landmark.tissue + "'");
+    }
+    if (exercise.tissues_elsewhere && !exercise.tissues_elsewhere->find(landmark.tissue)) {
+      reader.fail("tissues", "The set for other cases lacks the tissue '" + landmark.tissue +
+                                 "' of the landmark '" + landmark.id + "'");
+    }
+  }
+  if (exercise.arms.empty() || exercise.arms.size() > std::size_t(kMaxArms)) {
+    reader.fail("arms", "A scene has 1 to 4 arms, this one has " + std::to_string(exercise.arms.size()));
+  }
+  checkNamesDiffer(reader, "landmarks", exercise.landmarks, [](const auto& l) { return l.id; });
+  checkNamesDiffer(reader, "tools", exercise.tools, [](const auto& t) { return t.id; });
+  checkNamesDiffer(reader, "arms", exercise.arms, [](const auto& a) { return a.name; });
+  checkNamesDiffer(reader, "laws", exercise.laws, [](LawKind law) { return nameOf(kLawNames, law); });
+  for (const ExerciseArm& arm : exercise.arms) {
+    checkToolsOf(reader, exercise, arm);
+    if (!arm.map.fixed && !exercise.findLandmarkById(arm.map.landmark)) {
+      reader.fail("arms", "The arm '" + arm.name + "' names the unknown landmark '" +
+                              arm.map.landmark + "'");
+    }
+  }
+  if (!exercise.view.landmark.empty() && !exercise.findLandmarkById(exercise.view.landmark)) {
+    reader.fail("view", "The view names the unknown landmark '" + exercise.view.landmark + "'");
+  }
+  if (!exercise.outline || !exercise.outline->frame) return;
+  const std::string& of = exercise.outline->frame->landmark;
+  if (!exercise.findLandmarkById(of)) {
+    reader.fail("outline", "Its frame names the unknown landmark '" + of + "'");
+  }
+}
+
+Result<TissueSet> readTissues(const Json& value, const fs::path& folder, const std::string& file) {
+  if (value.is_string()) return readTissueSet((folder / value.get<std::string>()).lexically_normal());
+  Result<TissueSet> set = parseTissueSet(value, file + ": tissues");
+  if (set && !set->elsewhere_file.empty()) {
+    set->elsewhere_file = (folder / set->elsewhere_file).lexically_normal().string();
+  }
+  return set;
+}
+
+// `rig`: of a recording, which says what moved the arms; null: an exercise, which does not.
+Result<Exercise> parse(const Json& json, const fs::path& file, Rig* rig) {
+  const fs::path folder = file.parent_path();
+  JsonReader reader(json, file.string());
+  Exercise exercise;
+  reader.format("trephine.scene", 1);
+  exercise.name = reader.text("name");
+  exercise.anatomy = reader.text("anatomy");
+  exercise.case_source = reader.text("case", "");
+  if (const auto phantom = phantomNamed(exercise.case_source)) {
+    const auto there = phantomGeometry(*phantom);
+    if (!there) reader.fail("case", there.error().what, there.error().next);
+  } else if (!exercise.case_source.empty()) {
+    exercise.case_source = (folder / exercise.case_source).lexically_normal().string();
+  }
+  const std::string labels = reader.text("labels", "");
+  if (!labels.empty()) exercise.labels_file = (folder / labels).lexically_normal().string();
+  if (reader.has("structures")) exercise.structures = reader.texts("structures", kMostInAList);
+  Result<TissueSet> tissues = readTissues(reader.raw("tissues"), folder, file.string());
+  if (reader.ok() && !tissues) return tissues.error();
+  if (tissues) exercise.tissues = *std::move(tissues);
+  if (!exercise.tissues.elsewhere_file.empty()) {
+    Result<TissueSet> elsewhere = readTissueSet(exercise.tissues.elsewhere_file);
+    if (!elsewhere) return elsewhere.error();
+    exercise.tissues_elsewhere = *std::move(elsewhere);
+  } else if (reader.has("tissues_elsewhere")) {
+    Result<TissueSet> elsewhere = parseTissueSet(reader.raw("tissues_elsewhere"),
+                                                 file.string() + ": tissues_elsewhere");
+    if (reader.ok() && !elsewhere) return elsewhere.error();
+    if (elsewhere) exercise.tissues_elsewhere = *std::move(elsewhere);
+  }
+  for (JsonReader& item : reader.objects("landmarks", kMostInAList))
+    exercise.landmarks.push_back(readLandmark(item));
+  for (JsonReader& item : reader.objects("tools", kMostInAList))
+    exercise.tools.push_back(readExerciseTool(item, folder));
+  for (JsonReader& item : reader.objects("arms", kMostInAList)) {
+    exercise.arms.push_back(readArm(item));
+    if (rig) rig->arms.push_back(readRigArm(item, folder));
+  }
+  for (const std::string& name : reader.texts("laws", kMostInAList)) {
+    if (auto kind = kindOf(kLawNames, name)) {
+      exercise.laws.push_back(*kind);
+    } else {
+      reader.fail("laws", "Unknown law '" + name + "'", choices(kLawNames));
+    }
+  }
+  const std::string force_at = reader.text("force_at", "tip");
+  if (auto kind = kindOf(kForceAtNames, force_at)) {
+    exercise.force_at = *kind;
+  } else {
+    reader.fail("force_at", "Unknown place of force '" + force_at + "'", choices(kForceAtNames));
+  }
+  const std::string removal = reader.text("removal", "work");
+  if (auto kind = kindOf(kRemovalNames, removal)) {
+    exercise.removal = *kind;
+  } else {
+    reader.fail("removal", "Unknown removal '" + removal + "'", choices(kRemovalNames));
+  }
+  const std::string controller = reader.text("controller");
+  if (auto kind = kindOf(kControllerNames, controller)) {
+    exercise.controller = *kind;
+  } else {
+    reader.fail("controller", "Unknown controller '" + controller + "'", choices(kControllerNames));
+  }
+  readNumbers(reader, kExerciseNumbers, exercise);
+  const std::string script = reader.text("operator", "");
+  if (!script.empty()) {
+    exercise.operator_file = (folder / script).lexically_normal().string();
+    std::error_code ec;
+    if (!fs::is_regular_file(exercise.operator_file, ec)) {
+      reader.fail("operator", "The file '" + script + "' is not there", "Check the name");
+    }
+  }
+  if (reader.has("view")) {
+    JsonReader view = reader.object("view");
+    exercise.view.landmark = view.text("landmark", "");
+    readNumbers(view, kViewNumbers, exercise.view);
+    if (view.has("looks")) exercise.view.looks = readLooks(view, exercise.tissues);
+  }
+  if (reader.has("card")) exercise.card = readExerciseCard(reader.object("card"));
+  if (reader.has("outline")) exercise.outline = readExerciseOutline(reader.object("outline"));
+  if (reader.has("locks")) exercise.locks = readLocks(reader);
+  if (reader.ok()) checkReferences(reader, exercise);
+  if (rig && reader.ok()) checkRig(reader, exercise, *rig);
+  if (Status status = reader.finish(); !status) return status.error();
+  return exercise;
+}
+
+// The key of a text that would name a file; empty where there is none.
+std::string namedFile(const Json& json) {
+  const auto is_text = [](const Json& object, const char* key) {
+    return object.is_object() && object.contains(key) && object[key].is_string();
+  };
+  for (const char* key : {"labels", "operator", "tissues"}) {
+    if (is_text(json, key)) return key;
+  }
+  if (is_text(json, "case") && !phantomNamed(json["case"].get<std::string>())) return "case";
+  if (json.contains("tissues") && is_text(json["tissues"], "elsewhere")) return "tissues.elsewhere";
+  const auto list = [&](const char* key) {
+    return json.contains(key) && json[key].is_array() ? json[key] : Json::array();
+  };
+  for (const Json& tool : list("tools")) {
+    if (is_text(tool, "file")) return "tools.file";
+    if (is_text(tool, "mesh")) return "tools.mesh";
+  }
+  for (const Json& arm : list("arms")) {
+    const bool device = arm.is_object() && arm.contains("device");
+    if (device && is_text(arm["device"], "config")) return "arms.device.config";
+  }
+  return {};
+}
+
+}  // namespace
+
+Result<RecordedExercise> parseRecordedExercise(const Json& json, const std::string& where) {
+  if (const std::string key = json.is_object() ? namedFile(json) : ""; !key.empty()) {
+    return Error{"BAD_FIELD", "It names a file, which no scene of a recording does",
+                 where + ": " + key, "Choose a recording that this program made"};
+  }
+  RecordedExercise recorded;
+  Result<Exercise> exercise = parse(json, where, &recorded.rig);
+  if (!exercise) return exercise.error();
+  recorded.exercise = *std::move(exercise);
+  return recorded;
+}
+
+Result<Exercise> parseExercise(const Json& json, const fs::path& file) {
+  return parse(json, file, nullptr);
+}
+
+Result<Exercise> readExercise(const fs::path& file) {
+  Result<Json> json = readJsonFile(file, Progress(), kMostWrittenBytes);
+  if (!json) return json.error();
+  return parseExercise(*json, file);
+}
+
+Json exerciseFile(const Exercise& exercise) {
+  Json json = toJson(exercise);
+  const auto name = [](Json& in, const char* key, const std::string& file) {
+    if (!file.empty()) in[key] = file;
+  };
+  name(json, "case", exercise.case_source);
+  name(json, "labels", exercise.labels_file);
+  name(json, "operator", exercise.operator_file);
+  if (exercise.tissues_elsewhere) json["tissues_elsewhere"] = toJson(*exercise.tissues_elsewhere);
+  for (std::size_t i = 0; i < exercise.tools.size(); ++i) {
+    const ToolLook& look = exercise.tools[i].look;
+    if (look.mesh.empty()) continue;
+    Json& tool = json["tools"][i];
+    tool["mesh"] = look.mesh.string();
+    writeNumbers(tool, kLookNumbers, look);
+    tool["axis"] = {look.axis.x, look.axis.y, look.axis.z};
+  }
+  if (exercise.view.distance_mm != ExerciseView{}.distance_mm || !exercise.view.landmark.empty()) {
+    writeNumbers(json["view"], kViewNumbers, exercise.view);
+  }
+  return json;
+}
+
+Status checkEdited(const Exercise& exercise) {
+  const Result<Exercise> read = parseExercise(exerciseFile(exercise), "the exercise");
+  if (read) return {};
+  Error error = read.error();
+  // Nobody wrote a file that a schema could help with.
+  if (error.next.find("schema") != std::string::npos) error.next = "It stays as it was";
+  return error;
+}
+
+Json toJson(const RecordedExercise& recorded) {
+  Json json = toJson(recorded.exercise);
+  for (std::size_t i = 0; i < recorded.rig.arms.size() && i < json["arms"].size(); ++i) {
+    const auto& [device, dynamics] = recorded.rig.arms[i];
+    Json& arm = json["arms"][i];
+    arm["device"]["plugin"] = device.plugin;
+    writeNumbers(arm["device"], kDeviceNumbers, device);
+    if (dynamics) writeNumbers(arm["dynamics"], kArmDynamicsNumbers, *dynamics);
+  }
+  return json;
+}
+
+Json toJson(const Exercise& exercise) {
+  const auto vec = [](const Vec3& v) { return Json{v.x, v.y, v.z}; };
+  Json landmarks = Json::array(), tools = Json::array(), arms = Json::array(), laws = Json::array();
+  for (const Landmark& l : exercise.landmarks) {
+    Json landmark = {{"id", l.id}, {"tissue", l.tissue}};
+    if (l.is_place) {
+      writeNumbers(landmark, kPlaceNumbers, l);
+      landmark["outward"] = vec(l.outward);
+    } else if (l.bulk_radius_mm > 0.0) {
+      writeNumbers(landmark, kBulkNumbers, l);
+      landmark["outward"] = vec(l.outward);
+    } else {
+      writeNumbers(landmark, kRayNumbers, l);
+    }
+    writeNumbers(landmark, kLandmarkNumbers, l);
+    landmarks.push_back(landmark);
+  }
+  for (const ExerciseTool& t : exercise.tools) tools.push_back(toJson(t));
+  for (const ExerciseArm& a : exercise.arms) {
+    Json map;
+    if (a.map.fixed) {
+      const Quat& q = a.map.fixed->rotation;
+      writeNumbers(map, kWorkspaceMapNumbers, *a.map.fixed);
+      map["rotation_wxyz"] = {q.w, q.x, q.y, q.z};
+    } else {
+      map["landmark"] = a.map.landmark;
+      writeNumbers(map, kExerciseMapNumbers, a.map);
+    }
+    Json arm{{"name", a.name}, {"tool", a.tool}, {"map", map}};
+    if (!a.other_tools.empty()) arm["other_tools"] = a.other_tools;
+    writeNumbers(arm, kArmNumbers, a);
+    arms.push_back(arm);
+  }
+  for (LawKind law : exercise.laws) laws.push_back(nameOf(kLawNames, law));
+  Json json = {{"format", "trephine.scene"}, {"version", 1}, {"name", exercise.name},
+               {"anatomy", exercise.anatomy}};
+  if (phantomNamed(exercise.case_source)) json["case"] = exercise.case_source;
+  if (!exercise.structures.empty()) json["structures"] = exercise.structures;
+  json["tissues"] = toJson(exercise.tissues);
+  json["landmarks"] = landmarks;
+  json["tools"] = tools;
+  json["arms"] = arms;
+  json["laws"] = laws;
+  json["force_at"] = nameOf(kForceAtNames, exercise.force_at);
+  json["removal"] = nameOf(kRemovalNames, exercise.removal);
+  json["controller"] = controllerName(exercise.controller);
+  writeNumbers(json, kExerciseNumbers, exercise);
+  if (!exercise.view.landmark.empty()) {
+    json["view"]["landmark"] = exercise.view.landmark;
+    writeNumbers(json["view"], kViewNumbers, exercise.view);
+  }
+  for (const auto& [id, look] : exercise.view.looks) {
+    json["view"]["looks"][id] = nameOf(kTissueLookNames, look);
+  }
+  if (exercise.card) json["card"] = toJson(*exercise.card);
+  if (exercise.outline) json["outline"] = toJson(*exercise.outline);
+  for (const Lock lock : exercise.locks) json["locks"].push_back(nameOf(kLockNames, lock));
+  return json;
+}
+
+}  // namespace trephine
