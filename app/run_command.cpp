@@ -8,12 +8,11 @@
 #include "app/out_folder.h"
 #include "base/file.h"
 #include "base/log.h"
-#include "case/placement.h"
+#include "desk/opening.h"
 #include "exercise/arms_file.h"
 #include "exercise/exercise_numbers.h"
 #include "exercise/names.h"
 #include "lab/exercise/exercise_picture.h"
-#include "library/name_words.h"
 #include "session/arm_devices.h"
 #include "session/session.h"
 #include "training/tick_table.h"
@@ -157,9 +156,8 @@ bool isOfThisMachine(const Error& error) {
 // Runs the exercise and leaves its files in `out`. The Error is of a run that took no step.
 Result<RunOutcome> runExercise(const RunArguments& arguments, const Policy& policy,
                                const Progress& progress) {
-  Result<Exercise> exercise = readExercise(arguments.exercise);
+  Result<Exercise> exercise = readAllowedExercise(arguments.exercise, &policy);
   if (!exercise) return exercise.error();
-  if (Status may = checkExercise(policy, *exercise, arguments.exercise); !may) return may.error();
   SessionOptions options;
   if (Status chosen = applyChoices(arguments, policy, *exercise, options.rig); !chosen) {
     return chosen.error();
@@ -188,15 +186,18 @@ Result<RunOutcome> runExercise(const RunArguments& arguments, const Policy& poli
   options.recording = freshFile(out, "session", ".h5");
   if (Status can = checkRunTargets(arguments, options.recording); !can) return can.error();
 
-  Result<Placement> of = openCase(*exercise, progress, hideNamesOf);
-  if (!of) return of.error();
-  Result<std::unique_ptr<Session>> session = Session::create(*of, options);
+  OpenRequest request{*exercise, arguments.exercise};
+  request.source = exercise->case_source;
+  Result<OpenOutcome> opened = openOnDesk(std::move(request), progress);
+  if (!opened) return opened.error();
+  const Placement of = std::get<Opened>(*std::move(opened)).placed;  // nothing is asked
+  Result<std::unique_ptr<Session>> session = Session::create(of, options);
   // Another run may have taken the name meanwhile.
   std::error_code ec;
   while (!session && session.error().code == "CANNOT_WRITE" && fs::exists(options.recording, ec)) {
     options.recording = freshFile(out, "session", ".h5");
     if (Status can = checkRunTargets(arguments, options.recording); !can) return can.error();
-    session = Session::create(*of, options);
+    session = Session::create(of, options);
   }
   if (!session) return session.error();
 
@@ -209,11 +210,11 @@ Result<RunOutcome> runExercise(const RunArguments& arguments, const Policy& poli
                               : (*session)->freewheel(seconds, progress);
   RunOutcome outcome{(*session)->report(), {}};
   if (!ran) outcome.failure = ran.error();
-  if (!ran && outcome.report.ticks == 0) return ran.error();
+  if (!ran && outcome.report.done.ticks == 0) return ran.error();
   saveWhatWasAsked(arguments, options.recording, **session, progress, outcome);
   if (outcome.failure) return outcome;
   const fs::path picture = freshFile(out, "picture", ".png");
-  const Status drawn = writeExercisePicture(**session, of->patient.volume, picture);
+  const Status drawn = writeExercisePicture(**session, of.patient.volume, picture);
   if (drawn) {
     outcome.report.picture = picture.string();
   } else if (isOfThisMachine(drawn.error())) {
@@ -239,7 +240,7 @@ int runCommand(const RunArguments& arguments, const Policy& policy, bool json,
   const int code =
       printOutcome("run", toJson(outcome->report), toText(outcome->report), outcome->failure, json);
   constexpr int kFaulted = 4;
-  return code == 0 && !outcome->report.faults.empty() ? kFaulted : code;
+  return code == 0 && !outcome->report.done.faults.empty() ? kFaulted : code;
 }
 
 }  // namespace trephine

@@ -28,6 +28,7 @@ ArmsHere::ArmsHere(std::function<std::optional<ChosenArms>()> chosen,
 
 void ArmsHere::read(const Exercise& exercise) {
   exercise_ = exercise;
+  ask_again_ = asking_.busy();  // what is asked now is of another
   rig_ = simulatedRig(exercise_);
   if (!readArmDynamics(exercise_, rig_, &workspaces_mm_)) workspaces_mm_.clear();
   answered_();
@@ -37,10 +38,7 @@ void ArmsHere::read(const Exercise& exercise) {
 void ArmsHere::ask() {
   const std::optional<ChosenArms> chosen = chosen_();
   if (!chosen || chosen->empty()) return;
-  if (asking_.busy()) {
-    ask_again_ = true;
-    return;
-  }
+  if (asking_.busy()) return;
   struct Answer {
     Rig rig;
     std::vector<Vec3> workspaces_mm;

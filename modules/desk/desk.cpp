@@ -124,6 +124,7 @@ void Desk::begin(const std::filesystem::path& recordings, std::optional<Operator
   // The name is the time: nothing of the patient, nothing of the folder.
   const std::string stem = localTime("session-%Y%m%d-%H%M%S");
   carved_.reset();  // its memory is the next one's
+  question_.reset();
   // What was found in tissues that have been edited since lies elsewhere now, or is found now.
   const TissueTable tissues = tissueTable(placedTissues());
   const bool again = placed_->error || !(placed_with_ == tissues);

@@ -73,8 +73,10 @@ class Desk {
   // DeskEvents::onQuestion(); until it is answered, the case stays as it is.
   void useLabels(const std::filesystem::path& file, const Answers& answers = {});
   // The option of the question that was asked last, or the words that its kind takes. The file is
-  // not read again.
+  // not read again. Where nothing is asked any more: NOT_ASKED.
   void answer(const std::string& option);
+  // Nobody answers.
+  void dropQuestion() { question_.reset(); }
   // Structures that were made or changed here, on the case's grid: the exercise is placed in them.
   // False: not now (something is being opened or runs).
   bool useStructures(const std::shared_ptr<const LabelMap>& structures);

@@ -166,10 +166,15 @@ void Desk::useLabels(const std::filesystem::path& file, const Answers& answers) 
 }
 
 void Desk::answer(const std::string& option) {
-  if (!question_ || !mayOpen()) return;
+  // Of the case that it was asked about.
+  if (!question_ || placed_->patient.volume != question_->request.of->volume) {
+    question_.reset();
+    return fail({"NOT_ASKED", "What was asked about is not being opened any more", "",
+                 "Open the structures again"});
+  }
+  if (!mayOpen()) return;
+  // On the exercise as it is by now.
   const StructureQuestion question = *std::exchange(question_, {});
-  // The exercise as it is by now, on the case that it was asked about.
-  if (!placed_ || placed_->patient.volume != question.request.of->volume) return;
   OpenRequest request = requestOf(*exercise_, exercise_file_);
   request.same_exercise = request.structures_alone = true;
   request.of = placed_->patient;
@@ -195,11 +200,17 @@ void Desk::placeAgain(const std::shared_ptr<const LabelMap>& structures, bool of
 }
 
 void Desk::open(OpenRequest request, const Opening& as) {
-  question_.reset();
+  if (!as.placing) question_.reset();  // structures that were made here leave it as it is
   if (!request.same_exercise) events_.onExerciseOpening(request.exercise, request.exercise_file);
   opening_.run(
-      [request = std::move(request)](const Progress& progress) mutable {
-        return openOnDesk(std::move(request), progress);
+      [request = std::move(request)](const Progress& progress) mutable -> Result<OpenOutcome> {
+        const std::shared_ptr<const Volume> shown = request.shown;
+        Result<OpenOutcome> outcome = openOnDesk(std::move(request), progress);
+        if (!outcome) return outcome;
+        if (auto* opened = std::get_if<Opened>(&*outcome)) {
+          if (Status added = addMirror(*opened, shown); !added) return added.error();
+        }
+        return outcome;
       },
       [this](Result<OpenOutcome> outcome) { opened(std::move(outcome)); });
   go(as);
@@ -216,13 +227,17 @@ void Desk::endOpening() {
 void Desk::opened(Result<OpenOutcome> outcome) {
   if (!outcome) {
     if (ended_.of_edit && history_.canUndo()) goTo(history_.undo());
-    if (auto* back = std::get_if<Opening>(&activity_)) back->of_edit = false;  // and no further
+    if (auto* back = std::get_if<Opening>(&activity_)) {
+      back->of_edit = false;       // and no further
+      ended_.place_again = false;  // it is all that waited
+    }
     if (placed_) say(DeskChange::placing_failed);
     return fail(outcome.error());
   }
   if (auto* question = std::get_if<StructureQuestion>(&*outcome)) {
     question_ = std::move(*question);
-    return events_.onQuestion(*question_);
+    const StructureQuestion asked = *question_;  // who is told may answer at once
+    return events_.onQuestion(asked);
   }
   opened(std::get<Opened>(*std::move(outcome)));
 }

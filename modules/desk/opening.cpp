@@ -64,21 +64,6 @@ void chooseExercise(const OpenRequest& request, const Case& of, Opened& opened) 
   opened.same_exercise = false;
 }
 
-// Shown beside the one that is shown now.
-Result<Volume> mirrorOf(const Placement& placed) {
-  const Volume& volume = *placed.patient.volume;
-  const std::size_t voxels = volume.geometry.voxelCount();
-  const double needed_mb = shownMb(voxels) + (placed.labels ? labelsMb(voxels) : 0.0);
-  if (Status enough = enoughMemory(needed_mb, "Showing the case", "the case"); !enough) {
-    return enough.error();
-  }
-  try {
-    return copyOf(volume);
-  } catch (const std::bad_alloc&) {
-    return outOfMemory("to show the case", "the case");
-  }
-}
-
 }  // namespace
 
 Result<OpenOutcome> openOnDesk(OpenRequest request, const Progress& progress) {
@@ -102,6 +87,7 @@ Result<OpenOutcome> openOnDesk(OpenRequest request, const Progress& progress) {
     } else {
       of = std::get<Case>(*std::move(labelled));
     }
+    request.structures.reset();  // its memory
   }
   if (of && !of->anatomy) of->anatomy = anatomyOf(*of->volume, Progress(progress, at, 1.0));
   if (of) {
@@ -118,11 +104,24 @@ Result<OpenOutcome> openOnDesk(OpenRequest request, const Progress& progress) {
   if (!placed) return placed.error();
   opened.placed = *std::move(placed);
   if (without_its_own) opened.placed.elsewhere = true;
-  if (opened.placed.patient.volume == request.shown) return OpenOutcome(std::move(opened));
-  Result<Volume> mirror = mirrorOf(opened.placed);
-  if (!mirror) return mirror.error();
-  opened.mirror = *std::move(mirror);
   return OpenOutcome(std::move(opened));
+}
+
+Status addMirror(Opened& opened, const std::shared_ptr<const Volume>& shown) {
+  const Placement& placed = opened.placed;
+  if (placed.patient.volume == shown) return {};
+  const Volume& volume = *placed.patient.volume;
+  const std::size_t voxels = volume.geometry.voxelCount();
+  const double needed_mb = shownMb(voxels) + (placed.labels ? labelsMb(voxels) : 0.0);
+  if (Status enough = enoughMemory(needed_mb, "Showing the case", "the case"); !enough) {
+    return enough;
+  }
+  try {
+    opened.mirror = copyOf(volume);
+  } catch (const std::bad_alloc&) {
+    return outOfMemory("to show the case", "the case");
+  }
+  return {};
 }
 
 }  // namespace trephine

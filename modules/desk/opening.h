@@ -51,7 +51,7 @@ struct Opened {
   std::optional<TissueSet> tissues{};  // the stored case's own
   // Why the case came without its structures, without those of the file, or without its tissues.
   std::optional<Error> no_structures{}, no_labels{}, no_tissues{};
-  Volume mirror{};  // a copy of its voxels; empty where they are shown already
+  Volume mirror{};  // a copy of its voxels for a view: addMirror()
 };
 
 // What a person is asked about a file with structures that can be used; it is not used yet.
@@ -65,6 +65,9 @@ using OpenOutcome = std::variant<Opened, StructureQuestion>;
 // Errors: those of reading, of labels, and CANCELLED, OUT_OF_MEMORY; LOCKED is never one, as
 // readAllowedExercise() has been asked before.
 Result<OpenOutcome> openOnDesk(OpenRequest request, const Progress& progress);
+
+// The copy of its voxels, unless the view has them already (`shown`). Errors: OUT_OF_MEMORY.
+Status addMirror(Opened& opened, const std::shared_ptr<const Volume>& shown);
 
 // The only way to an exercise of a file: what is locked is asked each time, since the file may have
 // changed. `policy`: null where nothing is locked. Errors: those of readExercise(),

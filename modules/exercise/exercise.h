@@ -1,6 +1,6 @@
 // What an exercise consists of, as a file declares it: case, tissues, tools, arms, laws,
 // controller. What an exercise does not name is not created, not stepped and not drawn.
-// The file: JSON, resources/schemas/exercise.md.
+// The file: JSON, resources/schemas/scene.md.
 #pragma once
 
 #include <filesystem>
@@ -110,7 +110,7 @@ Json toJson(const RecordedExercise& recorded);
 Result<RecordedExercise> parseRecordedExercise(const Json& json, const std::string& where);
 
 // As a file that readExercise() reads: everything, tissues inline and those for elsewhere beside
-// them, files named from the root. Neither the labels of a case nor the devices of its arms are a
+// them, files named from the root. Neither the labels of a case nor the devices of its arms are an
 // exercise's.
 Json exerciseFile(const Exercise& exercise);
 

@@ -67,8 +67,8 @@ struct NewTissues {
 };
 NewTissues withTissues(Exercise exercise, const TissueSet& set);
 
-// --- What an edit changes. `elsewhere`: the case lacks a structure, so the set for such cases is in
-// force (Placement::elsewhere).
+// --- What an edit changes. `elsewhere`: the case lacks a structure, so the set for such cases is
+// in force (Placement::elsewhere).
 
 const TissueSet& tissuesInForce(const Exercise& exercise, bool elsewhere);
 TissueSet& tissuesInForce(Exercise& exercise, bool elsewhere);

@@ -125,7 +125,7 @@ inline constexpr NumberOf<ToolLook> kLookNumbers[] = {
 // `rotation_wxyz`, a unit quaternion.
 Quat readRotation(JsonReader& item);
 
-// The tables of resources/schemas/exercise.md and tool.md.
+// The tables of resources/schemas/scene.md and tool.md.
 std::string exerciseNumbersPage();
 std::string toolNumbersPage();
 

@@ -210,8 +210,8 @@ void HapticCore::apply(const Command& command, std::uint64_t tick) {
       }
       break;
     case CommandKind::tissues:
-      if (command.tissues == parameters_.tissues) break;
-      useTissues(std::exchange(parameters_.tissues, command.tissues));
+      if (!command.tissues || *command.tissues == parameters_.tissues) break;
+      useTissues(std::exchange(parameters_.tissues, *command.tissues));
       for (Arm& arm : arms_) {
         forgetController(arm.controller);  // it may be holding the force of the tissue before
         arm.limiter.change();

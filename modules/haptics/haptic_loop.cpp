@@ -169,30 +169,34 @@ bool HapticLoop::write(const TickRecord& record) {
   return true;
 }
 
-void HapticLoop::publish(const TickRecord& record) {
-  LoopState& state = state_.writeSlot();
+void setState(LoopState& state, const HapticCore& core, const TickRecord& record) {
   state.record = record;
-  state.ticks = tick_;
-  state.missed = missed_;
-  state.nonfinite = core_.nonFinite();
-  state.dropped = dropped();
-  const CarveJournal& journal = core_.journal();
+  state.nonfinite = core.nonFinite();
+  const CarveJournal& journal = core.journal();
   state.can_undo = journal.canUndo();
   state.can_redo = journal.canRedo();
   state.seconds = std::uint32_t(journal.seconds());
   for (int arm = 0; arm < kMaxArms; ++arm) {
     for (int c = 0; c < kMaxTissues; ++c) state.removed[arm][c] = journal.removed(arm, c);
   }
-  const std::vector<ArmParameters>& arms = core_.parameters().arms;
+  const std::vector<ArmParameters>& arms = core.parameters().arms;
   for (std::size_t i = 0; i < arms.size(); ++i) {
     state.maps[i] = arms[i].map;
-    state.tools[i] = std::int32_t(core_.toolInHand(i));
-    state.wanted_tools[i] = std::int32_t(core_.toolWanted(i));
+    state.tools[i] = std::int32_t(core.toolInHand(i));
+    state.wanted_tools[i] = std::int32_t(core.toolWanted(i));
   }
-  state.controller = core_.controller();
-  state.paused = core_.paused();
+  state.controller = core.controller();
+  state.paused = core.paused();
   state.busy = journal.busy();
-  state.journal_full = core_.journalFull();
+  state.journal_full = core.journalFull();
+}
+
+void HapticLoop::publish(const TickRecord& record) {
+  LoopState& state = state_.writeSlot();
+  setState(state, core_, record);
+  state.ticks = tick_;
+  state.missed = missed_;
+  state.dropped = dropped();
   state_.publish();
 }
 

@@ -81,6 +81,10 @@ struct LoopState {
   std::array<std::int32_t, kMaxArms> tools{}, wanted_tools{};
 };
 
+// What of it the core and its last record say: all but `ticks`, `missed` and `dropped`. No
+// allocation.
+void setState(LoopState& state, const HapticCore& core, const TickRecord& record);
+
 class HapticLoop {
  public:
   // `oper` may be null: then no arm gets a set-point. It outlives the loop, and so does

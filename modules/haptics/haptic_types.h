@@ -66,7 +66,9 @@ struct Command {
   // turns to `rotation`, device axes to patient axes; 0, it keeps its own; recentre: 1, the map is
   // the exercise's, of a hand that goes back by itself; tool: which of the arm's (ArmParameters).
   std::int32_t value = 0;
-  TissueTable tissues{};   // tissues: the new table
+  // tissues: the new table, which stays as it is and where it is as long as the command, or an
+  // event with it, is looked at.
+  const TissueTable* tissues = nullptr;
   std::int32_t arm = -1;   // clutch_on and what comes after it
   Quat rotation{1, 0, 0, 0};
 };

@@ -83,30 +83,29 @@ Status match(const DicomSegmentation& seg, const Volume& ct, const StructureRequ
 // Of a label map that says in two ways how it lies in the patient (volume_files.h): what was
 // answered, else the one that puts it on the CT's voxels. Empty: none of them alone does, and the
 // choice is `open`.
-std::string formOf(const std::filesystem::path& file, const Volume& ct, const Answers& answers,
+std::string formOf(const VolumeFileHeader& header, const Volume& ct, const Answers& answers,
                    std::optional<Finding>& said, std::optional<Choice>& open) {
   constexpr const char* kCode = "FORMS_DIFFER";
   constexpr double kSame = 0.1;  // of a voxel
   if (const std::string given = answerTo(answers, kCode); !given.empty()) return given;
-  const Result<VolumeFileHeader> header = readVolumeFileHeader(file);
-  if (!header || header->forms.empty()) return "";
+  if (header.forms.empty()) return "";
   const Vec3& mm = ct.geometry.spacing_mm;
   double least_mm = kSame * std::min({mm.x, mm.y, mm.z});
   std::string nearest;
-  for (const VolumeFileHeader::Form& form : header->forms) {
+  for (const VolumeFileHeader::Form& form : header.forms) {
     const double apart_mm = cornersFrom_mm(form.geometry, ct.geometry);
     if (apart_mm > least_mm) continue;
     least_mm = apart_mm;
     nearest = form.name;
   }
   if (nearest.empty()) {
-    open = Choice{kCode, header->contradiction, {"refuse"}, {}};
-    for (const VolumeFileHeader::Form& form : header->forms) open->options.push_back(form.name);
+    open = Choice{kCode, header.contradiction, {"refuse"}, {}};
+    for (const VolumeFileHeader::Form& form : header.forms) open->options.push_back(form.name);
     return "";
   }
   said = Finding{kCode,
                  "notice",
-                 header->contradiction,
+                 header.contradiction,
                  {},
                  "The " + nearest + " puts it on the CT's voxels, and was taken"};
   return nearest;
@@ -143,7 +142,10 @@ void sayHidden(StructureFit& fit, int hidden) {
 
 struct StructureFile::Read {
   std::filesystem::path file;
-  std::optional<std::string> kind;  // dicomKind()
+  // Once they are known: dicomKind(), isFractional(), the header of a label map.
+  std::optional<std::string> kind;
+  std::optional<bool> fractional;
+  std::optional<VolumeFileHeader> header;
   // What was read, and for which answer.
   std::optional<DicomSegmentation> dicom;
   double threshold = 0.0;
@@ -151,6 +153,7 @@ struct StructureFile::Read {
   std::string form;
 
   Status readKind(const Progress& progress);
+  Result<bool> isOfShares(const Progress& progress);
   Status readMap(const std::string& with_form, const Progress& progress);
   Status readDicom(double with_threshold, const Progress& progress);
   Result<StructureFit> fitMap(const Volume& ct, const StructureRequest& request,
@@ -167,6 +170,16 @@ Status StructureFile::Read::readKind(const Progress& progress) {
   }
   kind = std::move(found);
   return {};
+}
+
+Result<bool> StructureFile::Read::isOfShares(const Progress& progress) {
+  if (fractional) return *fractional;
+  const Result<bool> read = isFractional(file, progress);
+  if (progress.cancelled()) {
+    return Error{"CANCELLED", "Reading the segmentation was cancelled", "", ""};
+  }
+  if (read) fractional = *read;
+  return read;
 }
 
 Status StructureFile::Read::readMap(const std::string& with_form, const Progress& progress) {
@@ -193,9 +206,16 @@ Result<StructureFit> StructureFile::Read::fitMap(const Volume& ct, const Structu
                                                  std::optional<Choice>& open,
                                                  const Progress& progress) {
   std::optional<Finding> said;
-  const std::string with_form = formOf(file, ct, request.answers, said, open);
+  if (!header) {
+    if (Result<VolumeFileHeader> read = readVolumeFileHeader(file)) header = *std::move(read);
+  }
+  // What has no header that can be read is for who reads the rest to say.
+  const std::string with_form =
+      formOf(header.value_or(VolumeFileHeader()), ct, request.answers, said, open);
   if (Status read = readMap(with_form, Progress(progress, 0.0, 0.5)); !read) return read.error();
-  Segmentation segmentation = *map;
+  // A copy where a person may be asked, and it is fitted once more.
+  Segmentation segmentation =
+      request.ask_person ? *map : *std::exchange(map, std::optional<Segmentation>());
   const int hidden = hideNames(segmentation, request);
   Result<StructureFit> fit = fitStructures(std::move(segmentation), ct, request.answers,
                                            request.ask_all, Progress(progress, 0.5, 1.0), &open);
@@ -211,10 +231,11 @@ Result<StructureFit> StructureFile::Read::fitDicom(const Volume& ct,
   if (Status read = readDicom(request.threshold, Progress(progress, 0.0, 0.5)); !read) {
     return read.error();
   }
-  Segmentation segmentation = dicom->segmentation;
-  const int hidden = hideNames(segmentation, request);
   std::optional<Choice> answered;
   if (Status of = match(*dicom, ct, request, answered, open); !of) return of.error();
+  Segmentation segmentation =
+      request.ask_person ? dicom->segmentation : std::exchange(dicom->segmentation, {});
+  const int hidden = hideNames(segmentation, request);
   Result<StructureFit> fit = fitStructures(std::move(segmentation), ct, request.answers,
                                            request.ask_all, Progress(progress, 0.5, 1.0), &open);
   if (!fit) return fit;
@@ -281,7 +302,7 @@ Result<StructureAnswer> StructureFile::fit(const Volume& ct, const StructureRequ
   const std::string share = answerTo(request.answers, kThreshold);
   if (!share.empty()) wanted.threshold = parseDecimal(share).value_or(wanted.threshold);
   if (dicom && request.ask_person && share.empty()) {
-    const Result<bool> fractional = isFractional(read_->file, progress);
+    const Result<bool> fractional = read_->isOfShares(progress);
     if (!fractional) return fractional.error();
     if (*fractional) {
       return StructureAnswer(StructureAsked{
@@ -292,7 +313,7 @@ Result<StructureAnswer> StructureFile::fit(const Volume& ct, const StructureRequ
   std::optional<Choice> open;
   Result<StructureFit> fit = dicom ? read_->fitDicom(ct, wanted, open, progress)
                                    : read_->fitMap(ct, wanted, open, progress);
-  if (!fit && open && request.ask_person) {
+  if (!fit && open && open->code == fit.error().code && request.ask_person) {
     return StructureAnswer(askedOption(*std::move(open)));
   }
   if (!fit) return fit.error();

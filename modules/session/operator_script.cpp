@@ -134,7 +134,8 @@ ScriptCommand readCommand(JsonReader& item, const Exercise& exercise, TissueSet&
     if (Status valid = validate(tissues, item.file()); !valid) {
       item.fail("tissues", valid.error().what + " (" + valid.error().where + ")");
     }
-    out.command.tissues = tissueTable(tissues);
+    out.tissues = std::make_shared<const TissueTable>(tissueTable(tissues));
+    out.command.tissues = out.tissues.get();
   }
   return out;
 }

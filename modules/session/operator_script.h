@@ -4,6 +4,7 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -32,6 +33,7 @@ struct ScriptHand {
 struct ScriptCommand {
   double time_s = 0.0;
   Command command;
+  std::shared_ptr<const TissueTable> tissues{};  // that the command points to
 };
 
 struct OperatorScript {

@@ -8,7 +8,7 @@ namespace trephine {
 PokeCurves::PokeCurves(std::size_t arms, double rate_hz)
     : arms_(arms), end_ticks_(std::size_t(std::lround(kEnd_s * rate_hz))) {}
 
-void PokeCurves::add(const TickRecord& record) {
+void PokeCurves::tick(const TickRecord& record) {
   for (std::size_t arm = 0; arm < arms_; ++arm) {
     const ArmRecord& now = record.arms[arm];
     if (!isFinite(now.patient_position_mm)) continue;

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "haptics/haptic_types.h"
+#include "training/record_sink.h"
 
 namespace trephine {
 
@@ -25,7 +26,7 @@ struct PokeCurve {
   std::vector<PokePoint> points;
 };
 
-class PokeCurves {
+class PokeCurves : public RecordSink {
  public:
   static constexpr std::size_t kKept = 3;  // of those that have ended
   // A step that is worth a point; longer pokes keep every other one.
@@ -36,7 +37,7 @@ class PokeCurves {
 
   PokeCurves(std::size_t arms, double rate_hz);
 
-  void add(const TickRecord& record);
+  void tick(const TickRecord& record) override;
   // The oldest first; those that go on last.
   const std::vector<PokeCurve>& curves() const { return curves_; }
 

@@ -93,9 +93,11 @@ Status Session::set(const Placement& placed, const SessionOptions& options) {
   if (options.poke) {
     exercise_.tissues = tooToughToCut(std::move(exercise_.tissues));
     exercise_.removal = RemovalKind::work;
-    poke_curves_.emplace(exercise_.arms.size(), exercise_.rate_hz);
+    poke_curves_ = std::make_unique<PokeCurves>(exercise_.arms.size(), exercise_.rate_hz);
+    sinks_.push_back(poke_curves_.get());
   }
-  controllers_.emplace_back(controllerName(exercise_.controller));
+  meter_ = std::make_unique<RunMeter>(exercise_);
+  sinks_.push_back(meter_.get());
 
   std::vector<LoopDevice> devices;
   rig_ = options.rig;
@@ -144,7 +146,6 @@ Status Session::set(const Placement& placed, const SessionOptions& options) {
     engine_->oper.setReach(i, {exercise_.arms[i].max_force_N, {size_m[0], size_m[1], size_m[2]}});
   }
   if (options.hands_outside && !options.script) beginOutside();
-  statistics_.resize(exercise_.arms.size());
 
   if (!options.recording.empty()) {
     recording_file_ = options.recording;
@@ -154,6 +155,7 @@ Status Session::set(const Placement& placed, const SessionOptions& options) {
         SessionRecorder::create(options.recording, header, exercise_.arms.size());
     if (!recorder) return recorder.error();
     recorder_ = *std::move(recorder);
+    sinks_.push_back(recorder_.get());
   }
   return {};
 }
@@ -303,8 +305,7 @@ void Session::leaveBehind(std::size_t held, bool watchdog_ended) {
   std::string names;
   const std::uint64_t tick = loop_->ticks();
   const auto add = [&](const Event& event) {
-    if (recorder_) recorder_->add(event);
-    note(event);
+    tellSinks([&](RecordSink& sink) { sink.event(event); });
   };
   if (loop_->silenceIsPending()) add({tick, EventKind::silenced, -1, 0, {}});
   for (std::size_t arm : stuck.arms) {
@@ -418,7 +419,8 @@ Status Session::setTissues(const TissueSet& wanted) {
   // Colours, opacities and names are the window's alone: the tick hears of what it uses.
   const TissueTable table = tissueTable(tissues);
   if (table != tissueTable(exercise_.tissues) &&
-      !loop_->commands().push({CommandKind::tissues, 0, table})) {
+      !loop_->commands().push({CommandKind::tissues, 0, &engine_->tissues.emplace_back(table)})) {
+    engine_->tissues.pop_back();
     return Error{"BUSY", "Too many changes are waiting", "the haptic loop", "Try again"};
   }
   exercise_.tissues = tissues;
@@ -432,33 +434,20 @@ const LoopState& Session::state() {
 
 RunReport Session::report() const {
   RunReport report;
-  report.controllers = controllers_;
-  report.ticks = loop_->ticks();
-  report.rate_hz = exercise_.rate_hz;
-  const double voxel_mm3 = grid_->geometry().voxelVolume_mm3();
-  for (std::size_t t = 0; t < exercise_.tissues.tissues.size(); ++t) {
-    report.removed_mm3.emplace_back(exercise_.tissues.tissues[t].id, 0.0);
-  }
-  for (std::size_t i = 0; i < exercise_.arms.size(); ++i) {
-    RunReport::Arm arm{exercise_.arms[i].name, statistics_[i], 0.0};
-    for (std::size_t t = 0; t < report.removed_mm3.size(); ++t) {
-      const std::uint64_t voxels = core_->journal().removed(int(i), int(t));
-      report.removed_mm3[t].second += double(voxels) * voxel_mm3;
-      report.removed_voxels += voxels;
-    }
-    arm.removed_mm3 = double(core_->journal().paid(int(i))) * voxel_mm3 / kVoxelShares;
-    report.arms.push_back(arm);
-  }
+  report.done = meter_->metrics();
+  report.done.ticks = loop_->ticks();  // also those whose records found no room
+  setRemoved(report.done, exercise_, core_->journal(), grid_->geometry());
   report.structures_cut = structures_cut_;
-  report.faults = faults_;
   report.warnings = warnings_;
-  report.memory_locked = memoryLocked();
-  if (report.memory_locked == false) report.memory_not_locked = engine_->locked->reason();
-  report.missed_deadlines = loop_->missed();
-  report.nonfinite = core_->nonFinite();
-  report.events_dropped = loop_->dropped();
-  report.recorder_behind_ms = 1e3 * double(most_behind_ticks_) / exercise_.rate_hz;
-  report.tick_ns = loop_->tickDurations().summary();
+  std::ranges::copy(report.done.warnings, std::back_inserter(report.warnings));
+  MachineHealth& machine = report.machine;
+  machine.memory_locked = memoryLocked();
+  if (machine.memory_locked == false) machine.memory_not_locked = engine_->locked->reason();
+  machine.missed_deadlines = loop_->missed();
+  machine.nonfinite = core_->nonFinite();
+  machine.events_dropped = loop_->dropped();
+  machine.recorder_behind_ms = 1e3 * double(most_behind_ticks_) / exercise_.rate_hz;
+  machine.tick_ns = loop_->tickDurations().summary();
   report.volume_sha256_before = sha256_before_;
   report.volume_sha256 = sha256_after_;
   report.recording = recording_file_.string();

@@ -25,9 +25,10 @@
 #include "session/live_operator.h"
 #include "session/operator_script.h"
 #include "session/poke_curves.h"
-#include "session/run_statistics.h"
-#include "training/paused_ticks.h"
+#include "session/run_report.h"
+#include "training/run_metrics.h"
 #include "training/session_recorder.h"
+#include "training/session_view.h"
 #include "volume/grid.h"
 #include "volume/journal_file.h"
 
@@ -45,20 +46,21 @@ struct SessionOptions {
   Rig rig{};  // what moves the arms; those that it lacks are simulated
 };
 
-class Session {
+class Session : public SessionView {
  public:
   // Takes a copy of the voxels of the case, opens the devices, starts the recording. Errors of all
   // of these, the placement's, OUT_OF_MEMORY; nothing is left behind on one. Any thread.
   static Result<std::unique_ptr<Session>> create(const Placement& placed,
                                                  const SessionOptions& options);
-  ~Session();
+  ~Session() override;
   Session(const Session&) = delete;
   Session& operator=(const Session&) = delete;
 
-  const Exercise& exercise() const { return exercise_; }  // maps fixed, forces within the arms' limits
+  // Maps fixed, forces within the arms' limits.
+  const Exercise& exercise() const override { return exercise_; }
   const Rig& rig() const { return rig_; }        // with the dynamics of its devices
   const std::vector<PlacedLandmark>& landmarks() const { return landmarks_; }
-  Grid& grid() { return *grid_; }
+  Grid& grid() override { return *grid_; }
   // What was cut, also when the session is gone.
   std::shared_ptr<const Grid> carved() const { return grid_; }
   const TrephineCapabilities& capabilities(std::size_t arm) const { return capabilities_[arm]; }
@@ -156,16 +158,12 @@ class Session {
   bool changeTool(std::size_t arm, std::size_t tool);
 
   // The newest state of the loop. Owner thread.
-  const LoopState& state();
-  // The strokes that began so far, those undone among them, as far as they are known: within 50 ms.
-  struct Stroke {
-    double second = 0.0;  // of the session, without pauses, as LoopState counts them
-    std::int32_t arm = 0;
-  };
-  std::vector<Stroke> strokes() const;
+  const LoopState& state() override;
+  // The strokes that began so far, as far as they are known: within 50 ms.
+  std::vector<StrokeBegin> strokes() const;
   // Of a session for poking: its last pokes, as far as they are known: within 50 ms.
   std::vector<PokeCurve> pokes() const;
-  bool isPoke() const { return poke_curves_.has_value(); }
+  bool isPoke() const { return poke_curves_ != nullptr; }
   // What became of the recording so far.
   Status recordingStatus() const;
   // How much of the session is not on disk yet; 0 where nothing is recorded any more. Owner thread.
@@ -184,7 +182,6 @@ class Session {
   std::uint64_t drainTicks() const;
   bool push(CommandKind kind);
   void leaveBehind(std::size_t held, bool watchdog_ended);
-  void note(const Event& event);
   void holdHands(bool hold);
   WorkspaceMap map(std::size_t arm) const;  // as clutching left it
   void beginOutside();
@@ -192,6 +189,13 @@ class Session {
   void stopPushing();
   void record();  // the recorder thread
   void drain();
+  // Recorder thread; the owner where there is none, and after it.
+  template <class Add>
+  void tellSinks(Add add) {
+    const std::lock_guard lock(sinks_mutex_);
+    for (RecordSink* sink : sinks_) add(*sink);
+  }
+  void logWarnings();
   void flush();
   // So much of the session may wait to be written. Counted in ticks, not on the recorder's clock: a
   // recorder that gets to run seldom must not put off what it then finds waiting.
@@ -220,10 +224,7 @@ class Session {
   std::unique_ptr<SessionRecorder> recorder_;
   bool recording_ended_ = false;
   std::unique_ptr<JournalFile> journal_file_;
-  std::vector<ArmStatistics> statistics_;
-  std::vector<ArmFault> faults_;
-  std::vector<Warning> warnings_;
-  std::vector<std::string> controllers_;                       // one after the other
+  std::vector<Warning> warnings_;  // of the case and the exercise
   std::chrono::steady_clock::time_point last_flush_ = std::chrono::steady_clock::now();
   std::uint64_t unflushed_ticks_ = 0, most_behind_ticks_ = 0;  // the recorder's
   std::atomic<std::uint64_t> flushed_ticks_{0};
@@ -238,11 +239,14 @@ class Session {
   std::atomic<bool> stop_recorder_{false};
   std::thread haptic_thread_, watchdog_thread_, recorder_thread_;
   std::optional<Error> left_behind_;
-  std::vector<Stroke> strokes_;
-  std::optional<PokeCurves> poke_curves_;  // of a session for poking
-  PausedTicks paused_;                // the recorder's
+  // What is made of the records, each a sink of the recorder's thread; what the owner reads of them
+  // meanwhile is behind the mutex.
+  std::unique_ptr<RunMeter> meter_;
+  std::unique_ptr<PokeCurves> poke_curves_;  // of a session for poking
+  std::vector<RecordSink*> sinks_;
+  std::size_t logged_ = 0;  // of the meter's warnings
   mutable std::mutex failure_mutex_;  // recorder and owner only, never the tick
-  mutable std::mutex strokes_mutex_;  // so too, and of the pokes
+  mutable std::mutex sinks_mutex_;    // so too
   std::optional<Error> failure_;
 };
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <condition_variable>
+#include <deque>
 
 #include "base/rt/thread.h"
 #include "haptics/watchdog.h"
@@ -17,6 +18,8 @@ struct Session::Engine {
         loop(core, std::move(devices), &oper),
         watchdog(loop) {}
 
+  // What the tissues have been set to: those that commands point to stay.
+  std::deque<TissueTable> tissues;
   rt::ParameterSet<LiveHands> live_hands;
   LiveOperator oper;
   HapticLoop loop;

@@ -1,7 +1,6 @@
 // The recorder thread of a session: from the loop's rings to the file.
 #include <algorithm>
 #include <chrono>
-#include <cmath>
 #include <new>
 
 #include "base/log.h"
@@ -17,8 +16,6 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr auto kDrainEvery = 20ms;
-constexpr std::size_t kMostFaults = 1000;     // in a report
-constexpr std::size_t kMostStrokes = 10'000;  // to be shown
 
 }  // namespace
 
@@ -42,23 +39,14 @@ void Session::drain() {
     try {
       TickRecord record;
       while (unflushed_ticks_ < slice && (more = loop_->records().pop(record))) {
-        for (std::size_t i = 0; i < statistics_.size(); ++i) statistics_[i].add(record.arms[i]);
-        if (recorder_) recorder_->add(record);
-        if (poke_curves_) {
-          const std::lock_guard lock(strokes_mutex_);
-          poke_curves_->add(record);
-        }
+        tellSinks([&](RecordSink& sink) { sink.tick(record); });
         ++unflushed_ticks_;
       }
       CarveRecord carve;
-      while (loop_->carves().pop(carve)) {
-        if (recorder_) recorder_->add(carve);
-      }
+      while (loop_->carves().pop(carve)) tellSinks([&](RecordSink& sink) { sink.carve(carve); });
       Event event;
-      while (loop_->events().pop(event)) {
-        if (recorder_) recorder_->add(event);
-        note(event);
-      }
+      while (loop_->events().pop(event)) tellSinks([&](RecordSink& sink) { sink.event(event); });
+      logWarnings();
     } catch (const std::exception&) {
       const Error error{"OUT_OF_MEMORY", "The recorder ran out of memory", "the recording",
                         "Close other programs; what was recorded until now is kept"};
@@ -72,38 +60,9 @@ void Session::drain() {
   }
 }
 
-// For the report. Recorder thread, and the owner once that has ended.
-void Session::note(const Event& event) {
-  const Command& command = event.command;
-  if (event.kind == EventKind::command && command.kind == CommandKind::controller &&
-      controllers_.size() < kMostFaults) {
-    const std::string name(controllerName(ControllerKind(command.value)));
-    if (name != controllers_.back()) controllers_.push_back(name);
-  }
-  paused_.add(event);
-  if (event.arm < 0) return;
-  if (event.kind == EventKind::stroke_began) {
-    std::lock_guard lock(strokes_mutex_);
-    if (strokes_.size() < kMostStrokes) {
-      strokes_.push_back({double(event.tick - paused_.ended()) / exercise_.rate_hz, event.arm});
-    }
-    return;
-  }
-  const auto warn = [&](const Warning& warning) {
-    if (warnings_.size() < kMostFaults) warnings_.push_back(warning);
-    spdlog::warn("{}", warning.text);
-  };
-  const std::string& arm = exercise_.arms[std::size_t(event.arm)].name;
-  if (event.kind == EventKind::starts_in_tissue) {
-    warn(startsInTissue(arm, names(exercise_.laws, LawKind::elastic)));
-  } else if (event.kind == EventKind::let_go) {
-    warn({"LET_GO",
-          "The tool of the " + arm + " arm was hooked behind solid tissue " +
-              plainNumber(std::round(double(event.tick) / exercise_.rate_hz * 10.0) / 10.0) +
-              " s after the start, while the arm was free: it was let go"});
-  }
-  if (event.kind != EventKind::fault) return;
-  if (faults_.size() < kMostFaults) faults_.push_back({event.tick, event.arm, event.value});
+void Session::logWarnings() {
+  const std::vector<Warning>& warnings = meter_->metrics().warnings;
+  for (; logged_ < warnings.size(); ++logged_) spdlog::warn("{}", warnings[logged_].text);
 }
 
 void Session::flush() {
@@ -127,13 +86,13 @@ void Session::noteFailure(const Error& error) {
   spdlog::error("{}. {}.", error.what, error.next);  // `where` may name a folder
 }
 
-std::vector<Session::Stroke> Session::strokes() const {
-  std::lock_guard lock(strokes_mutex_);
-  return strokes_;
+std::vector<StrokeBegin> Session::strokes() const {
+  const std::lock_guard lock(sinks_mutex_);
+  return meter_->metrics().strokes;
 }
 
 std::vector<PokeCurve> Session::pokes() const {
-  std::lock_guard lock(strokes_mutex_);
+  const std::lock_guard lock(sinks_mutex_);
   return poke_curves_ ? poke_curves_->curves() : std::vector<PokeCurve>();
 }
 

@@ -11,7 +11,7 @@
 
 namespace trephine {
 
-constexpr int kRecordingVersion = 8;  // no older one is read
+constexpr int kRecordingVersion = 9, kOldestRecording = 8;  // those between are read
 
 struct RecordingHeader {
   Json exercise;                 // toJson(RecordedExercise) with fixed maps and the controller at the start

@@ -89,7 +89,6 @@ std::vector<RecordField> fieldsOfEvents() {
           field("value", at.value, Type::u32),
           field("command", at.command.kind, Type::i32),
           field("command_value", at.command.value, Type::i32),
-          field("tissue_count", at.command.tissues.count, Type::i32),
           field("command_arm", at.command.arm, Type::i32),
           {"command_rotation_xyzw", offsetIn(&at, &at.command.rotation), Type::f64, 4}};
 }
@@ -150,14 +149,41 @@ hid_t compoundType(std::span<const RecordField> fields, std::size_t size) {
 }
 
 hid_t eventType() {
-  const Event at{};
-  const hid_t event = compoundType(eventFields(), sizeof(Event));
+  const EventRow at{};
+  const hid_t event = compoundType(eventFields(), sizeof(EventRow));
+  H5Tinsert(event, "tissue_table", offsetIn(&at, &at.tissue_table), H5T_NATIVE_INT32);
+  return event;
+}
+
+namespace {
+
+hid_t tissuesType() {
   const hid_t tissue = compoundType(fieldsOfTissues(), sizeof(TissueClass));
   const hsize_t count = kMaxTissues;
   const hid_t tissues = H5Tarray_create2(tissue, 1, &count);
-  H5Tinsert(event, "tissues", offsetIn(&at, &at.command.tissues.classes), tissues);
-  H5Tclose(tissues);
   H5Tclose(tissue);
+  return tissues;
+}
+
+}  // namespace
+
+hid_t tissueTableType() {
+  const TissueTable at{};
+  const hid_t table = H5Tcreate(H5T_COMPOUND, sizeof(TissueTable));
+  H5Tinsert(table, "count", offsetIn(&at, &at.count), H5T_NATIVE_INT32);
+  const hid_t tissues = tissuesType();
+  H5Tinsert(table, "tissues", offsetIn(&at, &at.classes), tissues);
+  H5Tclose(tissues);
+  return table;
+}
+
+hid_t eventWithTissuesType() {
+  const EventWithTissues at{};
+  const hid_t event = compoundType(eventFields(), sizeof(EventWithTissues));
+  H5Tinsert(event, "tissue_count", offsetIn(&at, &at.tissues.count), H5T_NATIVE_INT32);
+  const hid_t tissues = tissuesType();
+  H5Tinsert(event, "tissues", offsetIn(&at, &at.tissues.classes), tissues);
+  H5Tclose(tissues);
   return event;
 }
 

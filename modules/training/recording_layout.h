@@ -34,9 +34,22 @@ std::span<const RecordField> tickFields();   // TickRow
 std::span<const RecordField> carveFields();  // CarveRecord
 std::span<const RecordField> eventFields();  // Event, but for the tissues of its command
 
+// The row of the dataset "events".
+struct EventRow {
+  Event event{};
+  std::int32_t tissue_table = -1;  // row of the dataset "tissue_tables"; -1: none
+};
+// That of version 8, which held the table itself.
+struct EventWithTissues {
+  Event event{};
+  TissueTable tissues{};
+};
+
 // HDF5 memory types; the caller closes them with H5Tclose.
 hid_t compoundType(std::span<const RecordField> fields, std::size_t size);
-hid_t eventType();
+hid_t eventType();             // EventRow
+hid_t eventWithTissuesType();  // EventWithTissues
+hid_t tissueTableType();       // TissueTable
 
 // Row of the dataset "end".
 struct EndRow {

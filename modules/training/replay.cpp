@@ -79,7 +79,9 @@ Json eventJson(const Event& event) {
 }
 
 bool same(const Event& a, const Event& b) {
-  return !compare(eventFields(), a, b, a.tick, a.arm) && a.command.tissues == b.command.tissues;
+  const TissueTable *of_a = a.command.tissues, *of_b = b.command.tissues;
+  const bool tissues = of_a == of_b || (of_a && of_b && *of_a == *of_b);
+  return tissues && !compare(eventFields(), a, b, a.tick, a.arm);
 }
 
 // The recorded events of this tick against those of the core: strokes, faults, what was let go.
@@ -163,14 +165,118 @@ Result<RecordedLabels> recordedLabels(const RecordingHeader& header, const Tissu
 
 }  // namespace
 
-Result<ReplayResult> replay(const SessionReader& recording, const Volume& volume,
-                            const LabelMap* labels, const Progress& progress,
-                            const std::string& sha256) {
+struct ReplayedSession::Run {
+  Run(const SessionReader& of, const RecordedExercise& recorded, RecordedLabels fitted,
+      const Volume& volume)
+      : recording(of),
+        exercise(recorded.exercise),
+        labels(std::move(fitted)),
+        // The same voxels may come from a file that rounds their place.
+        grid(Volume{of.header().geometry, volume.hu}, labels.placed),
+        core(hapticParameters(exercise, recorded.rig), *grid.takeWriter()) {}
+
+  const SessionReader& recording;
+  Exercise exercise;
+  RecordedLabels labels;
+  Grid grid;
+  HapticCore core;
+  std::unique_ptr<JournalFile> journal_file;
+  std::vector<Event> events;
+  std::vector<CarveRecord> carves;
+  std::vector<TickRecord> block;  // ticks of the recording from block_first on
+  std::uint64_t block_first = 0, ticks = 0;
+  std::size_t next_event = 0, next_carve = 0;
+  std::vector<Command> commands;  // of a tick
+  TickRecord replayed;
+  LoopState state;
+  std::optional<ReplayDifference> first_difference;
+  bool failed = false;  // a step ended in an error
+
+  Status readBlock();
+  Status tick(RecordSink* sink);
+  TickInput inputOf(const TickRecord& recorded);
+  void compareTick(const TickRecord& recorded, std::size_t first_event);
+};
+
+// The tick that comes next is in it afterwards.
+Status ReplayedSession::Run::readBlock() {
+  constexpr std::uint64_t kBlock = 4096;
+  if (ticks < block_first + block.size()) return {};
+  auto read = recording.ticks(ticks, std::min(kBlock, recording.tickCount() - ticks));
+  if (!read) return read.error();
+  block = *std::move(read);
+  block_first = ticks;
+  return {};
+}
+
+// What the core was given, and with `commands` what it was told; next_event moves on.
+TickInput ReplayedSession::Run::inputOf(const TickRecord& recorded) {
+  TickInput input{recorded.tick, recorded.late_ns, recorded.journal, false, {}};
+  for (std::size_t i = 0; i < recording.armCount(); ++i) {
+    const ArmRecord& arm = recorded.arms[i];
+    input.arms[i] = {arm.device_position_m, arm.device_orientation, arm.buttons, arm.flags};
+  }
+  commands.clear();
+  for (; next_event < events.size() && events[next_event].tick <= recorded.tick; ++next_event) {
+    const Event& event = events[next_event];
+    if (event.kind == EventKind::command) commands.push_back(event.command);
+    if (event.kind == EventKind::silenced) input.silenced = true;
+  }
+  return input;
+}
+
+void ReplayedSession::Run::compareTick(const TickRecord& recorded, std::size_t first_event) {
+  auto& difference = first_difference;
+  for (std::size_t i = 0; !difference && i < recording.armCount(); ++i) {
+    difference = compare(armFields(), recorded.arms[i], replayed.arms[i], recorded.tick, int(i));
+  }
+  if (!difference) difference = compareCarves(carves, next_carve, core.carves(), recorded.tick);
+  if (!difference) {
+    difference = compareEvents(std::span(events).subspan(first_event, next_event - first_event),
+                               core.events(), recorded.tick);
+  }
+}
+
+ReplayedSession::ReplayedSession(std::unique_ptr<Run> run) : run_(std::move(run)) {}
+ReplayedSession::~ReplayedSession() = default;
+
+const Exercise& ReplayedSession::exercise() const {
+  return run_->exercise;
+}
+
+const LoopState& ReplayedSession::state() {
+  return run_->state;
+}
+
+Grid& ReplayedSession::grid() {
+  return run_->grid;
+}
+
+std::uint64_t ReplayedSession::ticks() const {
+  return run_->ticks;
+}
+
+const std::optional<ReplayDifference>& ReplayedSession::firstDifference() const {
+  return run_->first_difference;
+}
+
+const std::shared_ptr<const LabelMap>& ReplayedSession::structures() const {
+  return run_->labels.structures;
+}
+
+void ReplayedSession::setRemovedIn(RunMetrics& metrics) const {
+  setRemoved(metrics, run_->exercise, run_->core.journal(), run_->grid.geometry());
+}
+
+Result<std::unique_ptr<ReplayedSession>> ReplayedSession::open(const SessionReader& recording,
+                                                               const Volume& volume,
+                                                               const LabelMap* labels,
+                                                               const std::string& sha256) {
   const RecordingHeader& header = recording.header();
   if (volume.geometry.size != header.geometry.size ||
       (sha256.empty() ? volumeSha256(volume) : sha256) != header.volume_sha256) {
-    return Error{"WRONG_CASE", "The case is not the one that was recorded: its voxels differ", "--case",
-                 "Give the folder that the session was run on"};
+    return Error{"WRONG_CASE", "The case is not the one that was recorded: its voxels differ",
+                 "--case", "Give the folder that the session was run on"};
   }
   if (recording.end() && recording.end()->dropped > 0) {
     return Error{"NOT_REPLAYABLE",
@@ -180,91 +286,115 @@ Result<ReplayResult> replay(const SessionReader& recording, const Volume& volume
   }
   const Result<RecordedExercise> recorded = parseRecordedExercise(header.exercise, "the recording");
   if (!recorded) return recorded.error();
-  const Exercise& exercise = recorded->exercise;
   Result<std::vector<Event>> events = recording.events();
   if (!events) return events.error();
   Result<std::vector<CarveRecord>> carves = recording.carves();
   if (!carves) return carves.error();
-
-  Result<RecordedLabels> fitted = recordedLabels(header, exercise.tissues, labels);
+  Result<RecordedLabels> fitted = recordedLabels(header, recorded->exercise.tissues, labels);
   if (!fitted) return fitted.error();
-
   const double needed_mb = exerciseMb(volume.geometry.voxelCount());
   if (Status enough = enoughMemory(needed_mb, "The replay", "the case"); !enough) {
     return enough.error();
   }
-  // The same voxels may come from a file that rounds their place.
-  Grid grid(Volume{header.geometry, volume.hu}, fitted->placed);
-  HapticCore core(hapticParameters(exercise, recorded->rig), *grid.takeWriter());
   const Result<std::filesystem::path> temporary = temporaryFolder();
   if (!temporary) return temporary.error();
   Result<std::unique_ptr<JournalFile>> journal_file = JournalFile::create(*temporary);
   if (!journal_file) return journal_file.error();
-  ReplayResult result;
-  result.cut_short = !recording.end();
-  std::size_t next_event = 0, next_carve = 0;
-  std::vector<Command> commands;
-  constexpr std::uint64_t kBlock = 4096;
-  const std::uint64_t total = recording.tickCount();
-  for (std::uint64_t first = 0; first < total && !result.first_difference; first += kBlock) {
-    progress.at(double(first) / double(total), "Replaying");
-    if (progress.cancelled()) return Error{"CANCELLED", "The replay was cancelled", "", ""};
-    Result<std::vector<TickRecord>> block = recording.ticks(first, std::min(kBlock, total - first));
-    if (!block) return block.error();
-    for (const TickRecord& recorded : *block) {
-      if (recorded.tick != result.ticks) {
-        return Error{"NOT_REPLAYABLE",
-                     "The recorder fell behind: tick " + std::to_string(result.ticks) + " is missing",
-                     "the recording", "Record again on a machine with less load"};
-      }
-      TickInput input{recorded.tick, recorded.late_ns, recorded.journal, false, {}};
-      for (std::size_t i = 0; i < recording.armCount(); ++i) {
-        const ArmRecord& arm = recorded.arms[i];
-        input.arms[i] = {arm.device_position_m, arm.device_orientation, arm.buttons, arm.flags};
-      }
-      commands.clear();
-      const std::size_t first_event = next_event;
-      for (; next_event < events->size() && (*events)[next_event].tick <= recorded.tick; ++next_event) {
-        const Event& event = (*events)[next_event];
-        if (event.kind == EventKind::command) commands.push_back(event.command);
-        if (event.kind == EventKind::silenced) input.silenced = true;
-      }
-      if (Status served = serveJournal(core, **journal_file, recorded.tick, recorded.journal);
-          !served) {
-        return served.error();
-      }
-      TickRecord replayed;
-      core.tick(input, commands.data(), commands.size(), replayed);
-      ++result.ticks;
-      auto& difference = result.first_difference;
-      for (std::size_t i = 0; !difference && i < recording.armCount(); ++i) {
-        difference =
-            compare(armFields(), recorded.arms[i], replayed.arms[i], recorded.tick, int(i));
-      }
-      if (!difference) difference = compareCarves(*carves, next_carve, core.carves(), recorded.tick);
-      if (!difference) {
-        const std::span all(*events);
-        difference = compareEvents(all.subspan(first_event, next_event - first_event),
-                                   core.events(), recorded.tick);
-      }
-      if (difference) break;
+  auto run = std::make_unique<Run>(recording, *recorded, *std::move(fitted), volume);
+  run->journal_file = *std::move(journal_file);
+  run->events = *std::move(events);
+  run->carves = *std::move(carves);
+  return std::unique_ptr<ReplayedSession>(new ReplayedSession(std::move(run)));
+}
+
+Status ReplayedSession::Run::tick(RecordSink* sink) {
+  if (Status read = readBlock(); !read) return read;
+  const TickRecord& recorded = block[std::size_t(ticks - block_first)];
+  if (recorded.tick != ticks) {
+    return Error{"NOT_REPLAYABLE",
+                 "The recorder fell behind: tick " + std::to_string(ticks) + " is missing",
+                 "the recording", "Record again on a machine with less load"};
+  }
+  const std::size_t first_event = next_event;
+  const TickInput input = inputOf(recorded);
+  if (Status served = serveJournal(core, *journal_file, recorded.tick, recorded.journal);
+      !served) {
+    return served;
+  }
+  core.tick(input, commands.data(), commands.size(), replayed);
+  ++ticks;
+  setState(state, core, replayed);
+  state.ticks = ticks;
+  if (sink) {
+    sink->tick(replayed);
+    for (const CarveRecord& carve : core.carves()) sink->carve(carve);
+    for (const Event& event : core.events()) sink->event(event);
+  }
+  compareTick(recorded, first_event);
+  return {};
+}
+
+Result<bool> ReplayedSession::step(RecordSink* sink) {
+  Run& run = *run_;
+  if (run.failed || run.first_difference || run.ticks == run.recording.tickCount()) return false;
+  if (Status done = run.tick(sink); !done) {
+    run.failed = true;
+    return done.error();
+  }
+  return !run.first_difference;
+}
+
+void ReplayedSession::tellRest(RecordSink& sink) const {
+  const Run& run = *run_;
+  for (std::size_t n = run.next_event; n < run.events.size(); ++n) sink.event(run.events[n]);
+}
+
+std::optional<ReplayDifference> ReplayedSession::differenceAtEnd(
+    const std::string& volume_sha256) const {
+  const Run& run = *run_;
+  if (!run.recording.end()) return {};  // cut short, it may know of more than of its last tick
+  if (auto left = whatIsLeft(std::span(run.events).subspan(run.next_event),
+                             std::span(run.carves).subspan(run.next_carve), run.ticks)) {
+    return left;
+  }
+  const std::string& recorded = run.recording.end()->volume_sha256;
+  if (recorded == volume_sha256) return {};
+  return ReplayDifference{run.ticks, -1, "volume_sha256", recorded, volume_sha256};
+}
+
+Result<ReplayResult> replay(const SessionReader& recording, const Volume& volume,
+                            const LabelMap* labels, const Progress& progress,
+                            const std::string& sha256) {
+  auto opened = ReplayedSession::open(recording, volume, labels, sha256);
+  if (!opened) return opened.error();
+  ReplayedSession& session = **opened;
+  RunMeter meter(session.exercise());
+  constexpr std::uint64_t kLook = 4096;  // ticks
+  for (bool more = true; more;) {
+    if (session.ticks() % kLook == 0) {
+      progress.at(double(session.ticks()) / double(std::max<std::uint64_t>(1, recording.tickCount())),
+                  "Replaying");
+      if (progress.cancelled()) return Error{"CANCELLED", "The replay was cancelled", "", ""};
     }
+    const Result<bool> stepped = session.step(&meter);
+    if (!stepped) return stepped.error();
+    more = *stepped;
   }
-  // A recording that was cut short may know of more than of its last whole tick.
-  if (!result.first_difference && !result.cut_short) {
-    result.first_difference = whatIsLeft(std::span(*events).subspan(next_event),
-                                         std::span(*carves).subspan(next_carve), result.ticks);
-  }
-  result.volume_sha256 = slabsSha256(slabsOf(grid));
-  if (fitted->structures) {
-    result.structures_cut = cutStructures(*fitted->structures, volume, grid);
-  }
-  if (!result.first_difference && recording.end() &&
-      recording.end()->volume_sha256 != result.volume_sha256) {
-    result.first_difference = ReplayDifference{result.ticks, -1, "volume_sha256",
-                                               recording.end()->volume_sha256, result.volume_sha256};
+  ReplayResult result;
+  result.ticks = session.ticks();
+  result.cut_short = !recording.end();
+  result.volume_sha256 = slabsSha256(slabsOf(session.grid()));
+  result.first_difference = session.firstDifference();
+  if (!result.first_difference) {
+    result.first_difference = session.differenceAtEnd(result.volume_sha256);
   }
   result.identical = !result.first_difference;
+  if (session.structures()) {
+    result.structures_cut = cutStructures(*session.structures(), volume, session.grid());
+  }
+  if (result.identical) session.tellRest(meter);
+  result.metrics = meter.metrics();
+  session.setRemovedIn(result.metrics);
   return result;
 }
 

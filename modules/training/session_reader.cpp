@@ -27,6 +27,9 @@ namespace {
 // damage.
 constexpr unsigned kReadAttempts = 24, kOneReadAttempt = 1;
 
+// The last version in which an event held its table of tissues.
+constexpr int kTissuesInEvents = 8;
+
 hsize_t rowCount(hid_t dataset) {
   const hid_t space = H5Dget_space(dataset);
   hsize_t size = 0;
@@ -98,7 +101,8 @@ int readVersion(hid_t file) {
 
 std::vector<std::string> datasetNames() {
   std::vector<std::string> names{"format", "build",          "scene",  "volume", "head_sha256",
-                                 "ticks",  "removed_voxels", "events", "end"};
+                                 "ticks",  "removed_voxels", "events", "tissue_tables",
+                                 "end"};
   for (std::size_t arm = 0; arm < std::size_t(kMaxArms); ++arm) {
     names.push_back(armDatasetName(arm));
   }
@@ -131,12 +135,19 @@ void makePlainLines(Json& json) {
 struct SessionReader::File {
   std::filesystem::path path;
   hid_t file = -1;
-  hid_t ticks = -1, carves = -1, events = -1;
+  int version = 0;
+  hid_t ticks = -1, carves = -1, events = -1, tissue_tables = -1;
   std::vector<hid_t> arms;
   std::uint64_t tick_count = 0;
   RecordingHeader header;
   std::optional<RecordingEnd> end;
+  // The events, and the tables that they point to, which stay where they are; read once.
+  mutable bool events_read = false;
+  mutable std::vector<Event> known_events;
+  mutable std::vector<TissueTable> tables;
 
+  Status readEvents() const;
+  Status readEventsWithTissues() const;
   // Ticks [first, first + count) of ticks and arms; false where they cannot be read.
   bool read(std::uint64_t first, std::uint64_t count, std::vector<TickRecord>& out) const {
     std::vector<TickRow> rows(count);
@@ -163,7 +174,7 @@ struct SessionReader::File {
   }
   ~File() {
     for (hid_t arm : arms) H5Dclose(arm);
-    for (hid_t dataset : {ticks, carves, events}) {
+    for (hid_t dataset : {ticks, carves, events, tissue_tables}) {
       if (dataset >= 0) H5Dclose(dataset);
     }
     if (file >= 0) H5Fclose(file);
@@ -234,13 +245,14 @@ Result<std::unique_ptr<SessionReader>> SessionReader::open(const std::filesystem
                      std::to_string(kRecordingVersion),
                  path.string(), "Open it with a newer Trephine"};
   }
-  if (version < kRecordingVersion) {
+  if (version < kOldestRecording) {
     return Error{"OLDER_VERSION",
                  "The recording has version " + std::to_string(version) +
                      " of trephine.session, and this program reads from " +
-                     std::to_string(kRecordingVersion) + " on",
+                     std::to_string(kOldestRecording) + " on",
                  path.string(), "Open it with the Trephine that made it"};
   }
+  f.version = version;
   const auto exercise = readText(f.file, "scene");
   const auto volume = readText(f.file, "volume");
   const auto build = readText(f.file, "build");
@@ -265,12 +277,15 @@ Result<std::unique_ptr<SessionReader>> SessionReader::open(const std::filesystem
   f.ticks = openOwnDataset(f.file, "ticks");
   f.carves = openOwnDataset(f.file, "removed_voxels");
   f.events = openOwnDataset(f.file, "events");
+  const bool apart = version > kTissuesInEvents;
+  if (apart) f.tissue_tables = openOwnDataset(f.file, "tissue_tables");
   for (std::size_t i = 0; i < std::size_t(kMaxArms); ++i) {
     const hid_t arm = openOwnDataset(f.file, armDatasetName(i).c_str());
     if (arm < 0) break;
     f.arms.push_back(arm);
   }
-  if (f.ticks < 0 || f.carves < 0 || f.events < 0 || f.arms.empty()) {
+  const bool tables = !apart || f.tissue_tables >= 0;
+  if (f.ticks < 0 || f.carves < 0 || f.events < 0 || !tables || f.arms.empty()) {
     return f.bad("The recording is incomplete: its tables are damaged");
   }
   hsize_t count = rowCount(f.ticks), most = count;
@@ -321,23 +336,87 @@ Result<std::vector<TickRecord>> SessionReader::ticks(std::uint64_t first, std::u
   return file_->bad("The recording is damaged from tick " + std::to_string(damaged) + " on");
 }
 
-Result<std::vector<Event>> SessionReader::events() const {
-  const Error damaged = file_->bad("The recording's events are damaged");
-  const hsize_t count = rowCount(file_->events);
-  if (!canHold(file_->events, count, sizeof(Event))) return damaged;
-  if (Status enough = roomFor(count, sizeof(Event)); !enough) return enough.error();
-  std::vector<Event> out(count);
-  if (!readRows(file_->events, eventType(), 0, out.size(), out.data())) return damaged;
-  for (const Event& event : out) {
-    const Command& command = event.command;
-    const bool controller_known =
-        command.kind != CommandKind::controller ||
-        (command.value >= 0 && std::size_t(command.value) < kControllerNames.size());
-    if (!controller_known || command.tissues.count < 0 || command.tissues.count > kMaxTissues) {
-      return file_->bad("The recording's events are damaged at tick " + std::to_string(event.tick));
-    }
+namespace {
+
+bool isKnown(const Command& command) {
+  const bool controller =
+      command.kind != CommandKind::controller ||
+      (command.value >= 0 && std::size_t(command.value) < kControllerNames.size());
+  return controller && (command.kind == CommandKind::tissues) == (command.tissues != nullptr);
+}
+
+bool isTable(const TissueTable& table) {
+  return table.count >= 0 && table.count <= kMaxTissues;
+}
+
+}  // namespace
+
+Status SessionReader::File::readEvents() const {
+  const Error damaged = bad("The recording's events are damaged");
+  const hsize_t count = rowCount(events);
+  // Beside a writer there may be tables of events that come later.
+  const hsize_t table_count = std::min(rowCount(tissue_tables), count);
+  if (!canHold(events, count, sizeof(EventRow)) ||
+      !canHold(tissue_tables, table_count, sizeof(TissueTable))) {
+    return damaged;
   }
-  return out;
+  const std::size_t all = sizeof(EventRow) + sizeof(Event);
+  if (Status enough = roomFor(count, all); !enough) return enough;
+  if (Status enough = roomFor(table_count, sizeof(TissueTable)); !enough) return enough;
+  std::vector<EventRow> rows(count);
+  tables.assign(table_count, TissueTable{});
+  if (!readRows(events, eventType(), 0, count, rows.data()) ||
+      !readRows(tissue_tables, tissueTableType(), 0, table_count, tables.data())) {
+    return damaged;
+  }
+  known_events.reserve(count);
+  for (EventRow& row : rows) {
+    row.event.command.tissues = nullptr;  // whatever the file's bytes make of it
+    if (row.tissue_table >= std::int64_t(table_count) || row.tissue_table < -1) return damaged;
+    if (row.tissue_table >= 0) {
+      row.event.command.tissues = &tables[std::size_t(row.tissue_table)];
+    }
+    known_events.push_back(row.event);
+  }
+  return {};
+}
+
+// Of version 8: a table in each row, which only a command for tissues means.
+Status SessionReader::File::readEventsWithTissues() const {
+  const Error damaged = bad("The recording's events are damaged");
+  const hsize_t count = rowCount(events);
+  if (!canHold(events, count, sizeof(EventWithTissues))) return damaged;
+  const std::size_t all = sizeof(EventWithTissues) + sizeof(TissueTable) + sizeof(Event);
+  if (Status enough = roomFor(count, all); !enough) return enough;
+  std::vector<EventWithTissues> rows(count);
+  if (!readRows(events, eventWithTissuesType(), 0, count, rows.data())) return damaged;
+  const auto means = [](const EventWithTissues& row) {
+    return row.event.kind == EventKind::command && row.event.command.kind == CommandKind::tissues;
+  };
+  tables.reserve(std::size_t(std::ranges::count_if(rows, means)));  // they stay where they are
+  known_events.reserve(count);
+  for (EventWithTissues& row : rows) {
+    row.event.command.tissues = nullptr;
+    if (means(row)) row.event.command.tissues = &tables.emplace_back(row.tissues);
+    known_events.push_back(row.event);
+  }
+  return {};
+}
+
+Result<std::vector<Event>> SessionReader::events() const {
+  const File& f = *file_;
+  if (f.events_read) return f.known_events;
+  f.tables.clear();
+  f.known_events.clear();
+  Status read = f.version > kTissuesInEvents ? f.readEvents() : f.readEventsWithTissues();
+  if (!read) return read.error();
+  if (!std::ranges::all_of(f.tables, isTable)) return f.bad("The recording's events are damaged");
+  for (const Event& event : f.known_events) {
+    if (isKnown(event.command)) continue;
+    return f.bad("The recording's events are damaged at tick " + std::to_string(event.tick));
+  }
+  f.events_read = true;
+  return f.known_events;
 }
 
 Result<std::vector<CarveRecord>> SessionReader::carves() const {

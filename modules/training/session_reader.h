@@ -34,6 +34,7 @@ class SessionReader {
 
   // Ticks [first, first + count). Errors: BAD_RECORDING, with the first tick that cannot be read.
   Result<std::vector<TickRecord>> ticks(std::uint64_t first, std::uint64_t count) const;
+  // The tables of tissues that they point to stay as long as the reader does.
   Result<std::vector<Event>> events() const;
   Result<std::vector<CarveRecord>> carves() const;
 

@@ -113,12 +113,14 @@ struct SessionRecorder::File {
   std::filesystem::path path;
   hid_t file = -1;
   int descriptor = -1;  // of the same file, to reserve room
-  Rows ticks, carves, events, end;
+  Rows ticks, carves, events, tissue_tables, end;
   std::vector<Rows> arms;
   std::vector<TickRow> new_ticks;
   std::vector<std::vector<ArmRecord>> new_arms;
   std::vector<CarveRecord> new_carves;
-  std::vector<Event> new_events;
+  std::vector<EventRow> new_events;
+  std::vector<TissueTable> new_tables;
+  std::int32_t table_count = 0;
   std::optional<Error> failure;
 
   // HDF5 leaves an unreadable file when the disk fills in the middle of a write. So the room for
@@ -126,7 +128,8 @@ struct SessionRecorder::File {
   bool reserve() {
     constexpr std::size_t kMetadata = 256 * 1024;
     std::size_t bytes = kMetadata + ticks.mostBytes(new_ticks.size()) +
-                        carves.mostBytes(new_carves.size()) + events.mostBytes(new_events.size());
+                        carves.mostBytes(new_carves.size()) + events.mostBytes(new_events.size()) +
+                        tissue_tables.mostBytes(new_tables.size());
     for (std::size_t i = 0; i < arms.size(); ++i) bytes += arms[i].mostBytes(new_arms[i].size());
     haddr_t used = 0;
     if (H5Fget_eoa(file, &used) < 0) return false;
@@ -167,7 +170,7 @@ struct SessionRecorder::File {
 
   void close() {
     for (Rows& rows : arms) rows.close();
-    for (Rows* rows : {&ticks, &carves, &events, &end}) rows->close();
+    for (Rows* rows : {&ticks, &carves, &events, &tissue_tables, &end}) rows->close();
     if (file >= 0) {
       H5Fclose(file);
       trim();
@@ -231,6 +234,7 @@ Result<std::unique_ptr<SessionRecorder>> SessionRecorder::create(const std::file
   ok = ok && f.carves.create(f.file, "removed_voxels",
                              compoundType(carveFields(), sizeof(CarveRecord)), 4096);
   ok = ok && f.events.create(f.file, "events", eventType(), 64);
+  ok = ok && f.tissue_tables.create(f.file, "tissue_tables", tissueTableType(), 8);
   ok = ok && f.end.create(f.file, "end", endType(), 1);
   f.descriptor = ::open(path.c_str(), O_WRONLY | O_CLOEXEC);
   if (!ok || f.descriptor < 0 || !f.reserve() || H5Fflush(f.file, H5F_SCOPE_GLOBAL) < 0 || H5Fstart_swmr_write(f.file) < 0) {
@@ -242,7 +246,7 @@ Result<std::unique_ptr<SessionRecorder>> SessionRecorder::create(const std::file
   return recorder;
 }
 
-void SessionRecorder::add(const TickRecord& record) {
+void SessionRecorder::tick(const TickRecord& record) {
   if (file_->failure) return;
   file_->new_ticks.push_back({record.tick, record.late_ns, record.journal});
   for (std::size_t i = 0; i < file_->new_arms.size(); ++i) {
@@ -250,12 +254,20 @@ void SessionRecorder::add(const TickRecord& record) {
   }
 }
 
-void SessionRecorder::add(const CarveRecord& carve) {
+void SessionRecorder::carve(const CarveRecord& carve) {
   if (!file_->failure) file_->new_carves.push_back(carve);
 }
 
-void SessionRecorder::add(const Event& event) {
-  if (!file_->failure) file_->new_events.push_back(event);
+void SessionRecorder::event(const Event& event) {
+  File& f = *file_;
+  if (f.failure) return;
+  EventRow row{event, -1};
+  if (event.command.tissues) {
+    f.new_tables.push_back(*event.command.tissues);
+    row.tissue_table = f.table_count++;
+    row.event.command.tissues = nullptr;  // HDF5 writes whole rows
+  }
+  f.new_events.push_back(row);
 }
 
 void SessionRecorder::abandon(const Error& why) {
@@ -267,7 +279,8 @@ Status SessionRecorder::flush() {
   if (f.failure || f.isGone()) return *f.failure;
   errno = 0;
   // Ticks last: a reader that finds a tick finds all that belongs to it.
-  bool ok = f.reserve() && f.events.append(f.new_events.data(), f.new_events.size()) &&
+  bool ok = f.reserve() && f.tissue_tables.append(f.new_tables.data(), f.new_tables.size()) &&
+            f.tissue_tables.flush() && f.events.append(f.new_events.data(), f.new_events.size()) &&
             f.carves.append(f.new_carves.data(), f.new_carves.size());
   for (std::size_t i = 0; ok && i < f.arms.size(); ++i) {
     ok = f.arms[i].append(f.new_arms[i].data(), f.new_arms[i].size()) && f.arms[i].flush();
@@ -275,6 +288,7 @@ Status SessionRecorder::flush() {
   ok = ok && f.events.flush() && f.carves.flush() &&
        f.ticks.append(f.new_ticks.data(), f.new_ticks.size()) && f.ticks.flush();
   f.new_events.clear();
+  f.new_tables.clear();
   f.new_carves.clear();
   f.new_ticks.clear();
   for (auto& rows : f.new_arms) rows.clear();

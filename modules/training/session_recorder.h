@@ -9,23 +9,24 @@
 
 #include "base/result.h"
 #include "haptics/haptic_types.h"
+#include "training/record_sink.h"
 #include "training/recording.h"
 
 namespace trephine {
 
-class SessionRecorder {
+class SessionRecorder : public RecordSink {
  public:
   // Errors: CANNOT_WRITE. A file that is already there is refused, never overwritten.
   static Result<std::unique_ptr<SessionRecorder>> create(const std::filesystem::path& file,
                                                          const RecordingHeader& header,
                                                          std::size_t arm_count);
-  ~SessionRecorder();
+  ~SessionRecorder() override;
   SessionRecorder(const SessionRecorder&) = delete;
   SessionRecorder& operator=(const SessionRecorder&) = delete;
 
-  void add(const TickRecord& record);
-  void add(const CarveRecord& carve);
-  void add(const Event& event);
+  void tick(const TickRecord& record) override;
+  void carve(const CarveRecord& carve) override;
+  void event(const Event& event) override;
 
   // Gives up after a row was lost: nothing more is written, so that no hole hides in the file.
   void abandon(const Error& why);

@@ -97,9 +97,9 @@ void run(const Exercise& exercise, const OperatorScript& script, const Rig& rig 
   const Status done = (*session)->freewheel(double(kTicks) / exercise.rate_hz);
   if (!done) return expectSaid(done.error());
   const RunReport report = (*session)->report();
-  require(report.nonfinite == 0, "what was accepted ends in a force that is not finite");
-  for (const RunReport::Arm& arm : report.arms) {
-    require(isFinite(arm.statistics.max_force_N) && isFinite(arm.statistics.energy_out_J),
+  require(report.machine.nonfinite == 0, "what was accepted ends in a force that is not finite");
+  for (const RunMetrics::Arm& arm : report.done.arms) {
+    require(isFinite(arm.max_force_N) && isFinite(arm.energy_out_J),
             "what was accepted ends in a force or an energy that is not finite");
   }
   toJson(report).dump();

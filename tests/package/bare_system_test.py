@@ -128,7 +128,7 @@ def older_files(home):
         "volume_sha256": hashlib.sha256(voxels).hexdigest(), "verdict": "", "structures": []}))
     recordings = storage / "sessions"
     recordings.mkdir()
-    shutil.copy(SOURCE / "tests/unit/training/data/version7.h5", recordings / "session-old.h5")
+    shutil.copy(SOURCE / "tests/system/data/version-8.h5", recordings / "session-old.h5")
 
 
 class Listeners(threading.Thread):
@@ -257,9 +257,8 @@ class BareSystem(unittest.TestCase):
         inside(f"dpkg -i /opt/bundle/{new.name}")
         self.assertEqual(inside(installed), version)
         print(f"upgrade {time.monotonic() - begun:.1f} s", flush=True)
-        case = "~/.local/share/trephine/cases/old-slab"
-        replayed = inside(f"trephine-lab replay ~/.local/share/trephine/sessions/session-old.h5 "
-                          f"--case {case}/volume.mha --json", USER)
+        replayed = inside("trephine-lab replay "
+                          "~/.local/share/trephine/sessions/session-old.h5 --json", USER)
         self.assertTrue(json.loads(replayed)["identical"])
         cases = json.loads(inside("trephine-lab storage list --open --json", USER))["cases"]
         self.assertEqual([(case["id"], case["problem"]) for case in cases], [("old-slab", None)])

@@ -162,6 +162,15 @@ class FirstTenSeconds(LabTest):
                 self.assert_touches_and_removes(first_ten_seconds(name, self.folder))
 
 
+class OlderRecordings(LabTest):
+    def test_a_recording_of_version_8_replays_identically(self):
+        # Other tissues, a stroke and its undo; each event held its table of tissues then.
+        recording = Path(__file__).parent / "data" / "version-8.h5"
+        replayed = lab("replay", recording)
+        self.assertTrue(replayed["identical"], replayed)
+        self.assertEqual(replayed["ticks"], 250)
+
+
 class SeedScenes(LabTest):
     """The paper's mode: every tick in a table beside the recording."""
 

@@ -7,6 +7,7 @@
 
 #include "base/file.h"
 #include "exercise/exercise.h"
+#include "library/stored_case.h"
 #include "ui/cases/report_file.h"
 #include "ui/common/actions.h"
 #include "ui/common/error_dialog.h"
@@ -14,7 +15,6 @@
 #include "ui/common/question.h"
 #include "ui/common/settings.h"
 #include "ui/common/words.h"
-#include "library/stored_case.h"
 #include "volume/phantom.h"
 
 namespace trephine {

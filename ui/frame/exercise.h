@@ -7,7 +7,7 @@
 #include "base/json.h"
 #include "base/progress.h"
 #include "exercise/policy.h"
-#include "session/run_statistics.h"
+#include "session/run_report.h"
 #include "ui/common/stall_meter.h"
 
 namespace trephine {

@@ -1,33 +1,51 @@
 #include "ui/prepare/prepare_workspace.h"
 
+#include <QFileDialog>
 #include <QHBoxLayout>
+#include <QMessageBox>
 #include <QTabBar>
 
 #include "ui/common/actions.h"
 #include "ui/common/placing.h"
+#include "ui/common/words.h"
 
 namespace trephine {
 
-PrepareWorkspace::PrepareWorkspace(AppContext& bench)
-    : Workspace(&bench),
-      app_(bench),
-      workstation_(bench.workstation()),
-      views_(&bench.views()),
-      view_(&bench.view()) {
-  save_in_case_ = makeAction(*bench.window(), Symbol::save, "saveInCase", tr("Save in the case"),
+PrepareWorkspace::PrepareWorkspace(AppContext& app)
+    : Workspace(&app), app_(app), workstation_(app.workstation()), views_(&app.views()) {
+  save_in_case_ = makeAction(*app.window(), Symbol::save, "saveInCase", tr("Save in the case"),
                              QKeySequence(Qt::CTRL | Qt::SHIFT | Qt::Key_S),
                              tr("Keep changed structures and tissues in the case"));
-  connect(save_in_case_, &QAction::triggered, this, [this] { saveInCase({}); });
-  tissues_ = new TissuePanel;
-  structures_ = new StructurePanel(editor_);
+  makePanels();
+  picture_ = new TissuePicture(app_, *tissue_panel_, *structure_panel_, editor_);
+  tissues_ = new TissueTab(app_, *tissue_panel_, editor_, *picture_);
+  thresholds_ = new ThresholdTab(app_, *histogram_, *tissue_panel_, *picture_);
+  poke_ = new PokeTab(app_, *tissue_panel_, *poke_plot_);
+  arms_ = new ArmsTab(app_, *tools_panel_);
+  exercise_ = new ExerciseTab(app_, *form_);
+  // Before the structures' own: what is open comes before what is made of it.
+  const auto labels = [this] {
+    tissue_panel_->setLabelsOpen(workstation_.placed()->labels != nullptr);
+  };
+  connect(&app_, &AppContext::caseShown, this, labels);
+  connect(&workstation_, &Workstation::structuresChanged, this, labels);
+  structures_ = new StructureTab(app_, *structure_panel_, editor_, *picture_);
+  connectTabs();
+  connectUndo();
+  showTab();
+}
+
+void PrepareWorkspace::makePanels() {
+  tissue_panel_ = new TissuePanel;
+  structure_panel_ = new StructurePanel(editor_);
+  tools_panel_ = new ToolsPanel;
+  form_ = new ExerciseForm;
   tabs_ = new QTabWidget;
   tabs_->setObjectName("prepareTabs");
   tabs_->setDocumentMode(true);
-  tabs_->insertTab(kTissueTab, scrolled(tissues_, "tissuePage"), tr("Tissues"));
-  tabs_->insertTab(kStructureTab, scrolled(structures_, "structurePage"), tr("Structures"));
-  auto* tools = new ToolsPanel;
-  form_ = new ExerciseForm;
-  tabs_->insertTab(kToolTab, scrolled(tools, "toolPage"), tr("Tools"));
+  tabs_->insertTab(kTissueTab, scrolled(tissue_panel_, "tissuePage"), tr("Tissues"));
+  tabs_->insertTab(kStructureTab, scrolled(structure_panel_, "structurePage"), tr("Structures"));
+  tabs_->insertTab(kToolTab, scrolled(tools_panel_, "toolPage"), tr("Tools"));
   tabs_->insertTab(kExerciseTab, scrolled(form_, "exercisePage"), tr("Exercise"));
   tabs_->setMinimumWidth(275);
   // Four names beside each other in a narrow column.
@@ -40,19 +58,49 @@ PrepareWorkspace::PrepareWorkspace(AppContext& bench)
   beside->addWidget(histogram_, 1);
   poke_plot_ = new PokePlot(below_);
   beside->addWidget(poke_plot_, 1);
-  connectTissues();
-  connectThresholds();
-  connectSets();
-  connectPoke();
-  arms_ = new ArmsTab(app_, *tools);
-  exercise_ = new ExerciseTab(app_, *form_);
-  exercise_->structuresInCase = [this] { return in_case_ == editor_.changes(); };
-  exercise_->saveInCase = [this](AppContext::Next then) { saveInCase(std::move(then)); };
-  connect(exercise_, &ExerciseTab::saved, this, [this] { tissues_touched_ = false; });
-  connect(exercise_, &ExerciseTab::labelsWanted, this, &PrepareWorkspace::askForLabels);
-  connectStructures();
-  connectExports();
-  showUndo();
+}
+
+void PrepareWorkspace::connectTabs() {
+  connect(&workstation_, &Workstation::exerciseChanged, this, &PrepareWorkspace::showExercise);
+  connect(tissues_, &TissueTab::edited, this, [this] {
+    structures_->noteTissues(true);
+    thresholds_->follow();
+  });
+  connect(tissues_, &TissueTab::setTaken, this, [this] {
+    structures_->noteTissues(true);
+    showExercise();
+  });
+  connect(thresholds_, &ThresholdTab::structuresNamed, form_, &ExerciseForm::setStructures);
+  form_->sets = [this] { return tissues_->setsOfWorkstation(); };
+  connect(poke_, &PokeTab::frontWanted, tabs_, [this] { tabs_->setCurrentIndex(kTissueTab); });
+  connect(structures_, &StructureTab::frontWanted, tabs_,
+          [this] { tabs_->setCurrentIndex(kStructureTab); });
+  structures_->entry().wantsOne = [this] { return exercise_->wantsOneEntry(); };
+  exercise_->structuresInCase = [this] { return structures_->inCase(); };
+  exercise_->saveInCase = [this](AppContext::Next then) {
+    structures_->saveInCase(std::move(then));
+  };
+  connect(exercise_, &ExerciseTab::saved, this, [this] { structures_->noteTissues(false); });
+  connect(exercise_, &ExerciseTab::labelsWanted, structures_, &StructureTab::askForLabels);
+  connect(save_in_case_, &QAction::triggered, this, [this] { structures_->saveInCase({}); });
+  connect(tabs_, &QTabWidget::currentChanged, this, &PrepareWorkspace::showTab);
+  app_.setGuard(AppContext::UnsavedWork::tissues,
+                [this](AppContext::Next go_on) { unlessTissuesStay(std::move(go_on)); });
+}
+
+void PrepareWorkspace::connectUndo() {
+  connect(&workstation_, &Workstation::editsChanged, this,
+          [this] { tissues_->showHistory(editsServe()); });
+  connect(structures_, &StructureTab::undoChanged, this, &PrepareWorkspace::showUndo);
+  connect(&app_, &AppContext::cutsChanged, this, &PrepareWorkspace::showUndo);
+  connect(app_.undoAction(), &QAction::triggered, this, [this] {
+    if (editsServe()) return workstation_.undoEdit();
+    if (!workstation_.session()) editor_.undo();
+  });
+  connect(app_.redoAction(), &QAction::triggered, this, [this] {
+    if (editsServe()) return workstation_.redoEdit();
+    if (!workstation_.session()) editor_.redo();
+  });
 }
 
 Workspace::Parts PrepareWorkspace::parts() {
@@ -66,16 +114,92 @@ void PrepareWorkspace::enter() {
   here_ = true;
   app_.setTrying(false);
   showTab();
-  showStructureTab();
-  (void)offerMissing();
+  (void)structures_->offerMissing();
 }
 
 void PrepareWorkspace::leave() {
   here_ = false;
   histogram_->letGo();
-  if (workstation_.isPoke()) workstation_.stop();
   showTab();
-  showStructureTab();
+  if (workstation_.isPoke()) workstation_.stop();
+}
+
+// What lies below the views is the tissues'.
+void PrepareWorkspace::showTab() {
+  const int tab = tabs_->currentIndex();
+  histogram_->setVisible(tab == kTissueTab);
+  poke_->show(here_, tab == kTissueTab);
+  arms_->show(here_ && tab == kToolTab);
+  exercise_->show(here_ && tab == kExerciseTab);
+  structures_->show(here_, tab == kStructureTab);
+}
+
+void PrepareWorkspace::showExercise() {
+  const std::optional<Exercise>& exercise = workstation_.exercise();
+  if (!exercise) return;
+  structure_panel_->setWanted(exercise->structures);
+  tissues_->showExercise();
+  views_->setAnatomy(exercise->anatomy);
+  thresholds_->refresh();
+  tissues_->showHistory(editsServe());
+}
+
+// While Prepare is shown without an exercise of Train, and not the structures.
+bool PrepareWorkspace::editsServe() const {
+  const bool practising = workstation_.session() && !workstation_.isPoke();
+  return here_ && !practising && !structures_->shown();
+}
+
+// Without an exercise they are the structures', while those are in front. Cuts that an exercise
+// left in the view are no step of theirs: there the panel's own buttons serve.
+void PrepareWorkspace::showUndo() {
+  if (editsServe()) return tissues_->showHistory(true);
+  if (workstation_.phase() == Workstation::Phase::running) return;
+  const bool serve = structures_->shown() && !app_.cutsUnsaved();
+  const auto undo = serve ? editor_.undoText() : std::nullopt;
+  const auto redo = serve ? editor_.redoText() : std::nullopt;
+  QAction *undo_action = app_.undoAction(), *redo_action = app_.redoAction();
+  undo_action->setEnabled(undo.has_value());
+  redo_action->setEnabled(redo.has_value());
+  undo_action->setToolTip(undo ? tr("Undo: %1").arg(*undo)
+                          : app_.cutsUnsaved()
+                              ? tr("The exercise has ended: its cuts stay until Reset")
+                              : tr("Takes back the last change; there is none"));
+  redo_action->setToolTip(redo ? tr("Redo: %1").arg(*redo)
+                               : tr("Brings back what was taken back; there is nothing"));
+}
+
+void PrepareWorkspace::unlessTissuesStay(AppContext::Next go_on) {
+  const bool exercise = workstation_.exerciseEdited();
+  if (!exercise && !workstation_.tissuesEdited()) return go_on();
+  auto* box = new QMessageBox(QMessageBox::Question, tr("Trephine"),
+                              exercise ? tr("The exercise has been changed and not saved.")
+                                       : tr("The tissues have been changed and not saved."),
+                              QMessageBox::Save | QMessageBox::Discard | QMessageBox::Cancel,
+                              app_.window());
+  box->setObjectName("unsavedTissues");
+  box->setAttribute(Qt::WA_DeleteOnClose);
+  box->setInformativeText(exercise ? tr("Save it? Discarded changes cannot be had back.")
+                          : structures_->isStored()
+                              ? tr("Save them in the case? Discarded changes cannot be had back.")
+                              : tr("Save them to a file? Discarded changes cannot be had back."));
+  box->setDefaultButton(QMessageBox::Save);
+  connect(box, &QMessageBox::finished, this,
+          [this, exercise, go_on = std::move(go_on)](int answer) {
+            if (answer == QMessageBox::Discard) return go_on();
+            if (answer != QMessageBox::Save) return;
+            // And what is changed while that is written.
+            if (exercise)
+              return exercise_->save(false, [this, go_on] { unlessTissuesStay(go_on); });
+            if (structures_->isStored()) return structures_->saveInCase(go_on);
+            QFileDialog* dialog =
+                app_.saveDialog(tr("Save tissues"), "tissues.json", tr("Tissues (*.json)"));
+            connect(dialog, &QFileDialog::fileSelected, this, [this, go_on](const QString& file) {
+              workstation_.saveTissues(toPath(file), go_on);
+            });
+            dialog->open();
+          });
+  box->open();
 }
 
 }  // namespace trephine

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 
+#include "library/stored_case.h"
 #include "training/replay.h"
 #include "ui/common/words.h"
-#include "library/stored_case.h"
 #include "volume/phantom.h"
 
 namespace trephine {

@@ -5,7 +5,7 @@
 #include <QLabel>
 #include <QPushButton>
 
-#include "session/run_statistics.h"
+#include "session/run_report.h"
 #include "ui/common/floating_card.h"
 #include "ui/train/exercise_panel.h"
 

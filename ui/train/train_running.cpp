@@ -250,17 +250,17 @@ void TrainWorkspace::showResult(Session& session, const RunReport& report) {
     result.goal = toQt(card->goal);
   }
   result.seconds = session.state().seconds;
-  for (const auto& [id, mm3] : report.removed_mm3) {
+  for (const auto& [id, mm3] : report.done.removed_mm3) {
     const Tissue* tissue = session.exercise().tissues.find(id);
     if (tissue) result.tissues.push_back({toQt(tissue->name), colours::of(tissue->colour), mm3});
   }
   result.structures = report.structures_cut;
-  for (std::size_t i = 0; i < report.arms.size(); ++i) {
-    result.ways.push_back({handName(session.exercise().arms[i]), report.arms[i].statistics.path_mm,
-                           report.arms[i].statistics.max_force_N});
+  for (std::size_t i = 0; i < report.done.arms.size(); ++i) {
+    result.ways.push_back({handName(session.exercise().arms[i]), report.done.arms[i].path_mm,
+                           report.done.arms[i].max_force_N});
   }
-  result.recorded = session.recordingStatus() && report.events_dropped == 0;
-  result.late = report.missed_deadlines;
+  result.recorded = session.recordingStatus() && report.machine.events_dropped == 0;
+  result.late = report.machine.missed_deadlines;
   recorded_ = result.recorded;
   result_shown_ = true;
   aside_ = false;
@@ -326,7 +326,7 @@ void TrainWorkspace::showRewind(const LoopState& state) {
   }
   if (const Session* session = workstation_.session()) {
     std::vector<RewindBar::Stroke> strokes;
-    for (const Session::Stroke& stroke : session->strokes()) {
+    for (const StrokeBegin& stroke : session->strokes()) {
       const auto arm = std::size_t(stroke.arm);
       strokes.push_back({stroke.second, colours::ofArm(session->exercise().arms[arm], arm)});
     }

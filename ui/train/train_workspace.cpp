@@ -314,7 +314,7 @@ void TrainWorkspace::sessionEnded(Session& session) {
   emit ratesChanged({});
   if (session.isPoke()) return;
   const RunReport report = session.report();
-  app_.exerciseEnded(report.removed_voxels > 0);
+  app_.exerciseEnded(report.done.removed_voxels > 0);
   if (std::exchange(back_from_trial_, false)) app_.showWholeCase();
   std::error_code ec;
   const bool any = std::filesystem::exists(report.recording, ec);

@@ -11,6 +11,7 @@
 
 #include "base/log.h"
 #include "exchange/exercise_folder.h"
+#include "library/stored_case.h"
 #include "ui/common/actions.h"
 #include "ui/common/error_dialog.h"
 #include "ui/common/event_loop.h"
@@ -18,7 +19,6 @@
 #include "ui/common/settings.h"
 #include "ui/common/words.h"
 #include "ui/views/saved_picture.h"
-#include "library/stored_case.h"
 
 namespace trephine {
 

@@ -24,7 +24,7 @@ ArmSettings armSettings() {
     const QStringList of = read(settingOf(name));
     if (of.size() != 4 || of[0].isEmpty()) continue;
     arms.chosen[name] = {of[0].toStdString(), of[1].toStdString(), of[2].toStdString(),
-                  of[3].toStdString()};
+                         of[3].toStdString()};
   }
   return arms;
 }

@@ -52,20 +52,34 @@ void Workstation::saveVolume(const std::filesystem::path& file, std::function<vo
 
 void Workstation::onChange(DeskChange change) {
   switch (change) {
-    case DeskChange::exercise: return emit exerciseChanged();
-    case DeskChange::edits: return emit editsChanged();
-    case DeskChange::locks: return emit locksChanged();
-    case DeskChange::controller: return emit controllerChanged();
-    case DeskChange::arms: return emit armsAnswered();
-    case DeskChange::case_opened: return emit caseOpened();
-    case DeskChange::case_named: return emit caseNamed();
-    case DeskChange::structures: return emit structuresChanged();
-    case DeskChange::placing_failed: return emit placingFailed();
-    case DeskChange::opening_ended: return emit openingEnded();
-    case DeskChange::phase: return emit phaseChanged();
-    case DeskChange::session_started: return emit sessionStarted();
-    case DeskChange::start_failed: return emit startFailed();
-    case DeskChange::saving_ended: return emit savingEnded();
+    case DeskChange::exercise:
+      return emit exerciseChanged();
+    case DeskChange::edits:
+      return emit editsChanged();
+    case DeskChange::locks:
+      return emit locksChanged();
+    case DeskChange::controller:
+      return emit controllerChanged();
+    case DeskChange::arms:
+      return emit armsAnswered();
+    case DeskChange::case_opened:
+      return emit caseOpened();
+    case DeskChange::case_named:
+      return emit caseNamed();
+    case DeskChange::structures:
+      return emit structuresChanged();
+    case DeskChange::placing_failed:
+      return emit placingFailed();
+    case DeskChange::opening_ended:
+      return emit openingEnded();
+    case DeskChange::phase:
+      return emit phaseChanged();
+    case DeskChange::session_started:
+      return emit sessionStarted();
+    case DeskChange::start_failed:
+      return emit startFailed();
+    case DeskChange::saving_ended:
+      return emit savingEnded();
   }
 }
 

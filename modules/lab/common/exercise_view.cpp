@@ -4,7 +4,7 @@
 
 namespace trephine {
 
-std::vector<ToolView> toolsOf(Session& session) {
+std::vector<ToolView> toolsOf(SessionView& session) {
   const Vec3 steel(0.75, 0.78, 0.82);
   const Exercise& exercise = session.exercise();
   const LoopState& state = session.state();

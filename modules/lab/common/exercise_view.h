@@ -10,7 +10,7 @@
 namespace trephine {
 
 // Where the loop has them; what is not finite is left out.
-std::vector<ToolView> toolsOf(Session& session);
+std::vector<ToolView> toolsOf(SessionView& session);
 // At the landmark that the exercise names; without one, all of it from before.
 void lookAtExercise(SceneRenderer& renderer, const Session& session);
 // The outline that is to be cut, if the exercise has one, on the surface of the whole volume.

@@ -184,9 +184,9 @@ Status runClosedLoop(const Subject& subject, double seconds, DeviceRow& row,
   if (lost_before) row.reports_lost = *subject.bench->lost() - *lost_before;
   if (Status stopped = (*session)->stop(); !stopped) return stopped;
   const RunReport report = (*session)->report();
-  row.ticks = report.ticks;
-  row.missed = report.missed_deadlines;
-  row.faults = report.faults.size();
+  row.ticks = report.done.ticks;
+  row.missed = report.machine.missed_deadlines;
+  row.faults = report.done.faults.size();
   row.page_faults = watch.pageFaults();
   std::vector<double> age_ms, answer_ms;
   for (std::size_t arm = 0; arm < subject.arms.size(); ++arm) {

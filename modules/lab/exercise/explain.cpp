@@ -18,7 +18,7 @@
 #include "render/scene_renderer.h"
 #include "session/arm_devices.h"
 #include "session/operator_script.h"
-#include "session/run_statistics.h"
+#include "session/run_report.h"
 #include "volume/case_memory.h"
 #include "volume/grid.h"
 #include "volume/phantom.h"

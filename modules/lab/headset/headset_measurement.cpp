@@ -428,7 +428,8 @@ Result<HeadsetMeasurement> measureHeadset(const HeadsetMeasureOptions& options, 
   measured.leaked_fds = entriesOf("/proc/self/fd") - descriptors;
   measured.leaked_threads = entriesOf("/proc/self/task") - threads;
   if (Status ended = rig.endExercise(); !ended) return ended.error();
-  for (const ArmFault& fault : rig.session().report().faults) {
+  const RunReport report = rig.session().report();
+  for (const ArmFault& fault : report.done.faults) {
     if (fault.fault != kFaultLate) continue;
     for (std::size_t i = 0; i + 1 < borders.size(); i += 2) {
       if (fault.tick < borders[i].first || fault.tick >= borders[i + 1].first) continue;

@@ -106,8 +106,8 @@ Status measureExercise(const char* file, const RenderSubject& subject, const Ren
   if (Status stopped = session.stop(); !stopped) return stopped;
   if (progress.cancelled()) return renderCancelled();
   const RunReport report = session.report();
-  delays.ticks += report.ticks;
-  delays.missed += report.missed_deadlines;
+  delays.ticks += report.done.ticks;
+  delays.missed += report.machine.missed_deadlines;
 
   RenderRow row;
   row.of_case = exercise->case_source;

@@ -77,7 +77,7 @@ Outcome hugeImpedance() {
     sample.position_m = 4e-3 * Vec3(std::cos(turn), std::sin(turn), std::sin(2.0 * turn));
     return sample;
   };
-  setup.commands = {{100, {CommandKind::tissues, 0, table(1e9, 1e9, 1e9)}},
+  setup.commands = {tissuesAt(100, table(1e9, 1e9, 1e9)),
                     {150, {CommandKind::pause, 0, {}}},
                     {200, {CommandKind::resume, 0, {}}}};
   const Run r = run(setup);

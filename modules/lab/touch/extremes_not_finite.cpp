@@ -32,9 +32,8 @@ Vec3 middle_m() {
 // would not start with it.
 Outcome badTable(double damping, double stiffness, double friction) {
   Setup setup;
-  setup.commands = {{0, {CommandKind::tissues, 0, table(damping, stiffness, friction)}},
-                    {kClear - 1, {CommandKind::tissues, 0, setup.tissues}},
-                    kClearFaults};
+  setup.commands = {tissuesAt(0, table(damping, stiffness, friction)),
+                    tissuesAt(kClear - 1, setup.tissues), kClearFaults};
   return faultThenWork(setup, kFaultNonFinite, 0);
 }
 

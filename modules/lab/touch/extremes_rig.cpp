@@ -154,6 +154,12 @@ Volume block(const Vec3& spacing_mm, std::int16_t hu) {
   return block({32, 32, 32}, spacing_mm, hu, {16, 16, 16});
 }
 
+TimedCommand tissuesAt(int tick, const TissueTable& tissues) {
+  auto kept = std::make_shared<const TissueTable>(tissues);
+  const Command command{CommandKind::tissues, 0, kept.get()};
+  return {tick, command, std::move(kept)};
+}
+
 TissueTable table(double damping, double stiffness, double friction, int hu_min, int hu_max) {
   TissueTable tissues;
   tissues.count = 1;

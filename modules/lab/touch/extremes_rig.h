@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -31,7 +32,10 @@ Sample stroke(int tick);
 struct TimedCommand {
   int tick = 0;
   Command command;
+  std::shared_ptr<const TissueTable> tissues{};  // that the command points to
 };
+// Other tissues from that tick on.
+TimedCommand tissuesAt(int tick, const TissueTable& tissues);
 
 // Nothing but `hu`; the patient's origin is the centre of voxel `origin`.
 Volume block(const Index3& size, const Vec3& spacing_mm, std::int16_t hu, const Index3& origin);

@@ -446,7 +446,7 @@ Result<std::vector<ExtremeRow>> measureTouchExtremes(const std::string& case_sou
   const Command to_bounded{CommandKind::controller, std::int32_t(ControllerKind::bounded), {}};
   TissueTable softer = boneOnly(true);
   softer.classes[0].stiffness_N_per_m = 700.0;
-  const Command tissue{CommandKind::tissues, 0, softer};
+  const Command tissue{CommandKind::tissues, 0, &softer};
   out.push_back(comesBack("resume inside bone", burr, ControllerKind::bounded, pause, resume));
   out.push_back(
       comesBack("switch to bounded inside bone", burr, ControllerKind::off, {}, to_bounded));

@@ -154,11 +154,11 @@ class PointerGuiTest : public test::WindowTest {
     }
     workstation().stop();
     QTRY_VERIFY_WITH_TIMEOUT(workstation().phase() == Workstation::Phase::ready, kLong_ms);
-    for (const auto& [tissue, mm3] : report.removed_mm3) {
+    for (const auto& [tissue, mm3] : report.done.removed_mm3) {
       run.cut.of_mm3[tissue] = mm3;
       run.removed_mm3 += mm3;
     }
-    for (const ArmFault& fault : report.faults) {
+    for (const ArmFault& fault : report.done.faults) {
       QFAIL(qPrintable(QString("fault %1 at tick %2").arg(fault.fault).arg(fault.tick)));
     }
     run.cut.carved = workstation().carved();

@@ -136,9 +136,10 @@ void expectTheForceBack(ControllerKind before, Happening happen) {
 }
 
 std::vector<Command> otherStiffness(const Pressed& pressed, double times) {
-  Command command{CommandKind::tissues, 0, table(pressed.tissue)};
-  command.tissues.classes[0].stiffness_N_per_m *= times;
-  return {command};
+  static std::deque<TissueTable> tables;  // they stay
+  TissueTable& other = tables.emplace_back(table(pressed.tissue));
+  other.classes[0].stiffness_N_per_m *= times;
+  return {{CommandKind::tissues, 0, &other}};
 }
 
 TEST(Force, IsBackSoonAndSteadilyAfterAPauseInContact) {

@@ -181,7 +181,7 @@ TEST(HapticCore, NoChangeRaisesTheForceFasterThanTheSlewLimit) {
   TissueTable hard = test::boneTable(200.0, 5000.0, 50.0);
   ASSERT_EQ(hard.count, 1);
   const std::vector<Command> changes{{CommandKind::controller, 1, {}},
-                                     {CommandKind::tissues, 0, hard},
+                                     {CommandKind::tissues, 0, &hard},
                                      {CommandKind::clear_faults, 0, {}},
                                      {CommandKind::resume, 0, {}}};
   for (const Command& change : changes) {
@@ -240,10 +240,10 @@ TEST(HapticCore, ATissueEditThatMovesNoVoxelChangesNothingThatIsCut) {
     Bench bench(p);
     for (int i = 0; i < 3000; ++i) {
       std::vector<Command> commands;
+      TissueTable same_voxels = p.tissues;
       if (edited && i % 20 == 0) {
-        TissueTable same_voxels = p.tissues;
         same_voxels.classes[0].rupture_N = i;  // no law of this exercise reads it
-        commands.push_back({CommandKind::tissues, 0, same_voxels});
+        commands.push_back({CommandKind::tissues, 0, &same_voxels});
       }
       bench.at({0.001 * i, 0, 1 - 0.002 * i}, commands);
     }

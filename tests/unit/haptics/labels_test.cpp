@@ -179,8 +179,9 @@ TEST(Labels, AChangeOfTissuesMayMoveATissueToAnotherLabelAndAllocatesNothing) {
   HapticParameters p = burring(liver());
   p.tissues.classes[kLiver].cuttable = 0;
   LabelledBench bench(p, halves());
-  Command other{CommandKind::tissues, 0, p.tissues};
-  other.tissues.classes[kLiver].label = 6;
+  TissueTable moved = p.tissues;
+  moved.classes[kLiver].label = 6;
+  const Command other{CommandKind::tissues, 0, &moved};
   EXPECT_EQ(bench.at({-10, 0, 0}).tissue_class, kLiver);
   TickInput input;
   input.tick = bench.tick;

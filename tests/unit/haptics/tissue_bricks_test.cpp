@@ -69,12 +69,12 @@ TEST(HapticCore, KnowsWhichBricksAreEmptyAfterAnUndoAndAfterAnEditOfRanges) {
   EXPECT_EQ(unknown(), 0u);
   TissueTable wider = p.tissues;
   wider.classes[0].hu_min = 100;
-  bench.at({0, 0, 8}, {{CommandKind::tissues, 0, wider}});
+  bench.at({0, 0, 8}, {{CommandKind::tissues, 0, &wider}});
   EXPECT_GT(unknown(), 4u);
   for (int i = 0; i < 8; ++i) bench.at({0, 0, 8});
   EXPECT_EQ(unknown(), 0u);
   wider.classes[0].damping_Ns_per_m = 3.0;
-  bench.at({0, 0, 8}, {{CommandKind::tissues, 0, wider}});
+  bench.at({0, 0, 8}, {{CommandKind::tissues, 0, &wider}});
   EXPECT_EQ(unknown(), 0u) << "its damping moves no voxel";
 }
 

@@ -83,6 +83,41 @@ TEST(StructureImporter, AnotherStudyThatLiesOnTheCtIsAskedAbout) {
   EXPECT_TRUE(importStructures(other.seg, own.volume, of({})));
 }
 
+TEST(StructureImporter, APersonsAnswersNeedNoFileAnyMore) {
+  const test::TemporaryFolder folder;
+  const Written own = write(belly(), folder / "a");
+  const Written other = write(belly(Vec3(0.4, 0.0, 0.0), 7), folder / "b");
+  StructureFile file(other.seg);
+  StructureRequest request = of(own.ids);
+  request.ask_person = true;
+  const auto asked = file.fit(own.volume, request);
+  ASSERT_TRUE(asked) << asked.error().sentence();
+  const auto* question = std::get_if<StructureAsked>(&*asked);
+  ASSERT_TRUE(question);
+  EXPECT_EQ(question->kind, StructureAsked::Kind::option);
+  EXPECT_EQ(question->choice.code, "OTHER_FRAME");
+  EXPECT_EQ(question->choice.options, std::vector<std::string>{"keep"});
+  // It has everything by now, also of a file that is not there any more.
+  ASSERT_TRUE(std::filesystem::remove(other.seg));
+  request.answers["OTHER_FRAME"] = "keep";
+  const auto fit = file.fit(own.volume, request);
+  ASSERT_TRUE(fit) << fit.error().sentence();
+  ASSERT_TRUE(std::holds_alternative<StructureFit>(*fit));
+  EXPECT_EQ(std::get<StructureFit>(*fit).choices.size(), 1u);
+}
+
+TEST(StructureImporter, ACancelledLookAtAHeaderIsNoDamage) {
+  const test::TemporaryFolder folder;
+  const Written own = write(belly(), folder / "a");
+  StructureFile file(own.seg);
+  StructureRequest request = of(own.ids);
+  request.ask_person = true;
+  Progress progress;
+  progress.cancel();
+  EXPECT_EQ(file.fit(own.volume, request, progress).error().code, "CANCELLED");
+  EXPECT_TRUE(file.fit(own.volume, request)) << "and it can be read again";
+}
+
 TEST(StructureImporter, ASegmentationOfAnotherPatientIsRefused) {
   const test::TemporaryFolder folder;
   const Written own = write(belly(), folder / "a");

@@ -49,7 +49,7 @@ TEST(Session, CutsATissueOnlyWhereItsLabelIsAndReplaysWithThatLabelMapAlone) {
   ASSERT_TRUE(session.ok()) << session.error().sentence();
   ASSERT_TRUE((*session)->freewheel(10.0).ok());
   const RunReport report = (*session)->report();
-  EXPECT_GT(report.removed_mm3.back().second, 100.0);
+  EXPECT_GT(report.done.removed_mm3.back().second, 100.0);
   const Volume before = smallHead(), after = (*session)->grid().snapshot();
   for (std::size_t i = 0; i < before.hu.size(); ++i) {
     if (before.hu[i] == 1200 && labels->labels[i] == 8) {

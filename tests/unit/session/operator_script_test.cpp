@@ -53,8 +53,8 @@ TEST(ScriptOperator, GivesEachCommandOnceAtItsTime) {
     while (oper.command(tick, command)) {
       given.emplace_back(tick, command.kind);
       if (command.kind == CommandKind::tissues) {
-        EXPECT_EQ(command.tissues.classes[3].damping_Ns_per_m, 3.0);
-        EXPECT_EQ(command.tissues.classes[3].stiffness_N_per_m, 900.0) << "the rest stays";
+        EXPECT_EQ(command.tissues->classes[3].damping_Ns_per_m, 3.0);
+        EXPECT_EQ(command.tissues->classes[3].stiffness_N_per_m, 900.0) << "the rest stays";
       }
     }
   }
@@ -79,7 +79,7 @@ TEST(OperatorScript, ChangesEachNumberThatATissueHasAndNoOther) {
     ASSERT_TRUE(read.ok()) << read.error().sentence();
     TissueTable expected = before;
     expected.classes[3].*number.in_tick = 77.0;
-    EXPECT_EQ(read->commands[2].command.tissues, expected) << number.key;
+    EXPECT_EQ(*read->commands[2].command.tissues, expected) << number.key;
 
     const auto plainly = parseOperatorScript(json, "script.json", plain);
     const bool has = number.of(plain.tissues.tissues[3]);

@@ -392,7 +392,7 @@ TEST(PointerHand, AnUndoTakesThePushAwayAndTheToolComesOut) {
   const ArmRecord& arm = session.state().record.arms[kArm];
   EXPECT_EQ(arm.tool_state, 0u) << "out, and ready";
   EXPECT_EQ(arm.tissue_class, -1);
-  EXPECT_EQ(session.report().removed_voxels, 0u) << "and cut nothing since";
+  EXPECT_EQ(session.report().done.removed_voxels, 0u) << "and cut nothing since";
 }
 
 TEST(PointerHand, InTissueThatCameBackItComesOutFirstHoweverItIsPushed) {

@@ -57,7 +57,7 @@ Done done(const PointerTask& task, double rate_hz, const std::filesystem::path& 
   for (const PointerUser& user : users) EXPECT_TRUE(user.allTaken());
   out.report = session.report();
   out.carved = session.carved();
-  for (const auto& [tissue, mm3] : out.report.removed_mm3) {
+  for (const auto& [tissue, mm3] : out.report.done.removed_mm3) {
     out.of_mm3[tissue] = mm3;
     out.removed_mm3 += mm3;
   }
@@ -67,9 +67,9 @@ Done done(const PointerTask& task, double rate_hz, const std::filesystem::path& 
     EXPECT_LT(glm::length(arm.sent_N), 0.05) << task.name;
     EXPECT_EQ(arm.tissue_class, -1) << task.name;
   }
-  for (const auto& arm : out.report.arms) EXPECT_LE(arm.statistics.max_force_N, 3.3);
-  EXPECT_EQ(out.report.events_dropped, 0u);
-  EXPECT_EQ(out.report.nonfinite, 0u);
+  for (const auto& arm : out.report.done.arms) EXPECT_LE(arm.max_force_N, 3.3);
+  EXPECT_EQ(out.report.machine.events_dropped, 0u);
+  EXPECT_EQ(out.report.machine.nonfinite, 0u);
   return out;
 }
 

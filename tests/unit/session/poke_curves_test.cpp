@@ -21,9 +21,9 @@ TickRecord pressedTo(double depth_mm, double N_per_mm, std::int32_t tissue = 2) 
 
 // Down to a depth and out again, then in the air for 0.2 s.
 void poke(PokeCurves& curves, double to_mm, double N_per_mm, std::int32_t tissue = 2) {
-  for (double d = -0.5; d < to_mm; d += 0.01) curves.add(pressedTo(d, N_per_mm, tissue));
-  for (double d = to_mm; d > -0.5; d -= 0.01) curves.add(pressedTo(d, N_per_mm, tissue));
-  for (int n = 0; n < 200; ++n) curves.add(pressedTo(-0.5, N_per_mm, tissue));
+  for (double d = -0.5; d < to_mm; d += 0.01) curves.tick(pressedTo(d, N_per_mm, tissue));
+  for (double d = to_mm; d > -0.5; d -= 0.01) curves.tick(pressedTo(d, N_per_mm, tissue));
+  for (int n = 0; n < 200; ++n) curves.tick(pressedTo(-0.5, N_per_mm, tissue));
 }
 
 TEST(PokeCurves, HoldForceAgainstDepthAlongTheTool) {
@@ -45,7 +45,7 @@ TEST(PokeCurves, HoldForceAgainstDepthAlongTheTool) {
 TEST(PokeCurves, ThreeThatHaveEndedAreKeptAndTheOneThatGoesOn) {
   PokeCurves curves(1, kRate_hz);
   for (int tissue = 0; tissue < 5; ++tissue) poke(curves, 2.0, 0.5, tissue);
-  for (double d = -0.5; d < 1.0; d += 0.01) curves.add(pressedTo(d, 0.5, 7));
+  for (double d = -0.5; d < 1.0; d += 0.01) curves.tick(pressedTo(d, 0.5, 7));
   ASSERT_EQ(curves.curves().size(), 4u);
   for (std::size_t i = 0; i < 3; ++i) {
     EXPECT_TRUE(curves.curves()[i].ended);
@@ -59,9 +59,9 @@ TEST(PokeCurves, NamesTheTissueWhereItPushedBackMost) {
   const auto through = [](double depth_mm) {
     return pressedTo(depth_mm, depth_mm < 1.0 ? 0.1 : 1.0, depth_mm < 1.0 ? 0 : 3);
   };
-  for (double d = -0.5; d < 2.0; d += 0.01) curves.add(through(d));
-  for (double d = 2.0; d > -0.5; d -= 0.01) curves.add(through(d));
-  for (int n = 0; n < 200; ++n) curves.add(through(-0.5));
+  for (double d = -0.5; d < 2.0; d += 0.01) curves.tick(through(d));
+  for (double d = 2.0; d > -0.5; d -= 0.01) curves.tick(through(d));
+  for (int n = 0; n < 200; ++n) curves.tick(through(-0.5));
   ASSERT_EQ(curves.curves().size(), 1u);
   EXPECT_EQ(curves.curves()[0].tissue, 3) << "not the skin above it";
 }
@@ -73,14 +73,14 @@ TEST(PokeCurves, AGrazeIsNoPokeAndAToolThatWaitsBeginsNone) {
   for (int n = 0; n < 100; ++n) {
     TickRecord record = pressedTo(2.0, 0.5);
     record.arms[0].tool_state = kToolWaits;
-    curves.add(record);
+    curves.tick(record);
   }
   EXPECT_TRUE(curves.curves().empty());
 }
 
 TEST(PokeCurves, AnHourInTissueKeepsItsBounds) {
   PokeCurves curves(1, kRate_hz);
-  for (int n = 0; n < 100'000; ++n) curves.add(pressedTo(n % 2 == 0 ? 1.0 : 3.0, 0.5));
+  for (int n = 0; n < 100'000; ++n) curves.tick(pressedTo(n % 2 == 0 ? 1.0 : 3.0, 0.5));
   ASSERT_EQ(curves.curves().size(), 1u);
   EXPECT_LE(curves.curves()[0].points.size(), PokeCurves::kMostPoints);
   EXPECT_GT(curves.curves()[0].points.size(), PokeCurves::kMostPoints / 4);
@@ -92,7 +92,7 @@ TEST(PokeCurves, EachArmHasItsOwnAndWhatIsNoNumberIsNoPoint) {
     TickRecord record = pressedTo(d, 0.5);
     record.arms[1] = pressedTo(2.0 * d, 0.25, 1).arms[0];
     if (d > 1.0) record.arms[1].patient_position_mm.x = std::nan("");
-    curves.add(record);
+    curves.tick(record);
   }
   ASSERT_EQ(curves.curves().size(), 2u);
   for (const PokeCurve& curve : curves.curves()) {

@@ -38,7 +38,7 @@ TEST(Recorder, ThatComesLateWritesWhatWaitsBeforeItReturns) {
   });
   ASSERT_TRUE((*session)->freewheel(10.0, look).ok());
   EXPECT_GE(looks, 3);
-  EXPECT_LT((*session)->report().recorder_behind_ms, 1000.0);
+  EXPECT_LT((*session)->report().machine.recorder_behind_ms, 1000.0);
 }
 
 // The two ends of a pipe: who reads it waits until the other is written to.
@@ -67,8 +67,8 @@ TEST(Recorder, ThatWasHeldUpCountsItAndLosesNothing) {
   std::signal(SIGUSR1, SIG_DFL);
   for (const int end : held_up) ::close(end);
   const RunReport report = (*session)->report();
-  EXPECT_GE(report.recorder_behind_ms, 1500.0);
-  EXPECT_EQ(report.events_dropped, 0u);
+  EXPECT_GE(report.machine.recorder_behind_ms, 1500.0);
+  EXPECT_EQ(report.machine.events_dropped, 0u);
   const auto result = replay(**SessionReader::open(folder / "s.h5"), ball());
   ASSERT_TRUE(result.ok()) << result.error().sentence();
   EXPECT_TRUE(result->identical) << result->first_difference->field;

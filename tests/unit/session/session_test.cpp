@@ -19,23 +19,36 @@ using test::scripted;
 using test::smallHead;
 using test::waitUntil;
 
+// As it was while it ran, in the replay, and, but for what is removed, from the file alone.
+void expectTheSameMetrics(const RunMetrics& live, const ReplayResult& replayed,
+                          const SessionReader& file) {
+  EXPECT_TRUE(replayed.metrics == live);
+  const auto read = metricsOf(file);
+  ASSERT_TRUE(read.ok()) << read.error().sentence();
+  RunMetrics without = live;
+  without.removed_mm3.clear();
+  without.removed_voxels = 0;
+  for (RunMetrics::Arm& arm : without.arms) arm.removed_mm3 = 0.0;
+  EXPECT_TRUE(*read == without);
+}
+
 TEST(Session, BothArmsCutBoneWithinTheForceLimitAndItReplaysIdentically) {
   test::TemporaryFolder folder;
   auto session = Session::create(test::placed(cranium(), smallHead()), scripted(folder / "s.h5"));
   ASSERT_TRUE(session.ok()) << session.error().sentence();
   ASSERT_TRUE((*session)->freewheel(10.0).ok());
   const RunReport report = (*session)->report();
-  EXPECT_EQ(report.ticks, 10000u);
-  ASSERT_EQ(report.arms.size(), 2u);
-  for (const auto& arm : report.arms) {
+  EXPECT_EQ(report.done.ticks, 10000u);
+  ASSERT_EQ(report.done.arms.size(), 2u);
+  for (const auto& arm : report.done.arms) {
     EXPECT_GT(arm.removed_mm3, 100.0) << arm.name;
-    EXPECT_GT(arm.statistics.max_force_N, 1.0) << arm.name;
-    EXPECT_LE(arm.statistics.max_force_N, 3.3) << arm.name;
+    EXPECT_GT(arm.max_force_N, 1.0) << arm.name;
+    EXPECT_LE(arm.max_force_N, 3.3) << arm.name;
   }
-  EXPECT_EQ(report.removed_mm3.back().first, "bone");
-  EXPECT_GT(report.removed_mm3.back().second, 200.0);
-  EXPECT_EQ(report.events_dropped, 0u);
-  EXPECT_EQ(report.nonfinite, 0u);
+  EXPECT_EQ(report.done.removed_mm3.back().first, "bone");
+  EXPECT_GT(report.done.removed_mm3.back().second, 200.0);
+  EXPECT_EQ(report.machine.events_dropped, 0u);
+  EXPECT_EQ(report.machine.nonfinite, 0u);
   EXPECT_NE(report.volume_sha256, report.volume_sha256_before);
 
   auto reader = SessionReader::open(folder / "s.h5");
@@ -44,6 +57,7 @@ TEST(Session, BothArmsCutBoneWithinTheForceLimitAndItReplaysIdentically) {
   ASSERT_TRUE(result.ok()) << result.error().sentence();
   EXPECT_TRUE(result->identical) << result->first_difference->field;
   EXPECT_EQ(result->volume_sha256, report.volume_sha256);
+  expectTheSameMetrics(report.done, *result, **reader);
 }
 
 TEST(Session, FreewheelsToTheSameVoxelsTwice) {
@@ -86,15 +100,15 @@ TEST(Session, RunsInRealTimeTakesLiveInputAndReplaysIdentically) {
   }));
   ASSERT_TRUE(session.stop().ok());
   const RunReport report = session.report();
-  EXPECT_GT(report.arms[1].statistics.contact_ticks, 0u);
-  EXPECT_GT(report.arms[1].statistics.max_force_N, 0.0);
-  EXPECT_EQ(report.controllers, (std::vector<std::string>{"bounded", "off"}));
+  EXPECT_GT(report.done.arms[1].contact_ticks, 0u);
+  EXPECT_GT(report.done.arms[1].max_force_N, 0.0);
+  EXPECT_EQ(report.done.controllers, (std::vector<std::string>{"bounded", "off"}));
   EXPECT_NE(toText(report).find("controller 'bounded', later 'off'\n"), std::string::npos);
 
   const auto result = replay(**SessionReader::open(folder / "s.h5"), smallHead());
   ASSERT_TRUE(result.ok()) << result.error().sentence();
   EXPECT_TRUE(result->identical) << result->first_difference->field;
-  EXPECT_EQ(result->ticks, report.ticks);
+  EXPECT_EQ(result->ticks, report.done.ticks);
 }
 
 // A freewheeling session of two arms that is spoken to every 256 ticks, as a window would.
@@ -208,6 +222,8 @@ TEST(Session, UndoRewindAndParametersWhileItCutsLeaveARecordingThatReplaysIdenti
   ASSERT_TRUE(result.ok()) << result.error().sentence();
   EXPECT_TRUE(result->identical) << result->first_difference->field;
   EXPECT_EQ(result->ticks, 4000u);
+  EXPECT_FALSE(session.report().done.strokes.empty());
+  expectTheSameMetrics(session.report().done, *result, **reader);
 }
 
 // The right hand takes a burr in air, wishes its blade back in the bone, and has it once it is out.
@@ -272,7 +288,7 @@ TEST(Session, APokeCutsNothingWhateverIsEditedAndTellsForceAgainstDepth) {
   ASSERT_TRUE(session->setTissues(softer).ok());
   ASSERT_TRUE(session->freewheel(10.0).ok());
   const RunReport report = session->report();
-  EXPECT_EQ(report.removed_voxels, 0u);
+  EXPECT_EQ(report.done.removed_voxels, 0u);
   EXPECT_EQ(report.volume_sha256, report.volume_sha256_before);
   EXPECT_TRUE(report.recording.empty());
   const std::vector<PokeCurve> pokes = session->pokes();
@@ -302,7 +318,7 @@ TEST(Session, APokeIsFeltAsTheExerciseIsUntilThatCuts) {
         forces_N.push_back(glm::length(session->state().record.arms[arm].demanded_N));
       }
     });
-    EXPECT_EQ(session->report().removed_voxels, 0u);
+    EXPECT_EQ(session->report().done.removed_voxels, 0u);
     return forces_N;
   };
   const std::vector<double> exercise_N = felt(tough, false), poke_N = felt(cranium(), true);
@@ -416,8 +432,8 @@ TEST(Session, NamesTheArmsThatWereLostInItsReport) {
   auto session = *Session::create(test::placed(exercise, smallHead()), options);
   ASSERT_TRUE(session->freewheel(0.5).ok());
   const RunReport report = session->report();
-  ASSERT_EQ(report.faults.size(), 2u);
-  EXPECT_EQ(report.faults[0].tick, 300u);
+  ASSERT_EQ(report.done.faults.size(), 2u);
+  EXPECT_EQ(report.done.faults[0].tick, 300u);
   const Json json = toJson(report);
   EXPECT_EQ(json["faults"][0], (Json{{"tick", 300}, {"arm", "left"}, {"fault", "lost"}}));
   EXPECT_EQ(json["faults"][1]["arm"], "right");
@@ -426,7 +442,7 @@ TEST(Session, NamesTheArmsThatWereLostInItsReport) {
 
   auto sound = *Session::create(test::placed(exercise, smallHead()), scripted());
   ASSERT_TRUE(sound->freewheel(0.5).ok());
-  EXPECT_TRUE(sound->report().faults.empty());
+  EXPECT_TRUE(sound->report().done.faults.empty());
   EXPECT_EQ(toJson(sound->report())["faults"], Json::array());
 }
 
@@ -449,8 +465,8 @@ TEST(Session, OneArmsDeviceIsLostTheOtherGoesOnAndTheRecordingReplays) {
   auto session = *Session::create(of, options);
   ASSERT_TRUE(session->freewheel(1.2).ok());
   const RunReport report = session->report();
-  ASSERT_EQ(report.faults.size(), 2u) << "once more after the first clearing";
-  EXPECT_EQ(report.faults[0].tick, 300u);
+  ASSERT_EQ(report.done.faults.size(), 2u) << "once more after the first clearing";
+  EXPECT_EQ(report.done.faults[0].tick, 300u);
   session.reset();
   const auto reader = *SessionReader::open(folder / "s.h5");
   const std::vector<TickRecord> ticks = *reader->ticks(0, 1200);
@@ -567,7 +583,7 @@ TEST(Session, AStallIsAFaultInTheReportAndReplaysIdentically) {
   ASSERT_TRUE(session->stop().ok());
   EXPECT_FALSE(session->leftBehind());
   const RunReport report = session->report();
-  ASSERT_GE(report.faults.size(), 2u);
+  ASSERT_GE(report.done.faults.size(), 2u);
   EXPECT_EQ(toJson(report)["faults"][0]["fault"], "late");
   const auto events = (*SessionReader::open(folder / "s.h5"))->events();
   EXPECT_TRUE(std::any_of(events->begin(), events->end(), [](const Event& e) {
@@ -609,8 +625,8 @@ TEST(Session, TwoArmsThatShareVoxelsShareTheirVolumeInTheReport) {
   ASSERT_TRUE(session->freewheel(10.0).ok());
   const RunReport report = session->report();
   double of_arms = 0.0, of_tissues = 0.0;
-  for (const auto& arm : report.arms) of_arms += arm.removed_mm3;
-  for (const auto& [tissue, mm3] : report.removed_mm3) of_tissues += mm3;
+  for (const auto& arm : report.done.arms) of_arms += arm.removed_mm3;
+  for (const auto& [tissue, mm3] : report.done.removed_mm3) of_tissues += mm3;
   EXPECT_NEAR(of_arms, of_tissues, 1e-6 * of_tissues);
 }
 

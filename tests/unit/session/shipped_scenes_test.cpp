@@ -12,7 +12,7 @@
 #include "exercise/exercise_structures.h"
 #include "case/placement.h"
 #include "session/energy_watch.h"
-#include "session/run_statistics.h"
+#include "session/run_report.h"
 #include "session/session.h"
 #include "support.h"
 #include "training/session_reader.h"
@@ -106,8 +106,8 @@ std::vector<Seen> see(const Recorded& run) {
       const ArmRecord& arm = tick.arms[i];
       Seen& of = seen[i];
       of.arm = run.exercise.arms[i].name;
-      of.removed_mm3 = run.report.arms[i].removed_mm3;
-      for (const auto& [tissue, mm3] : run.report.removed_mm3) {
+      of.removed_mm3 = run.report.done.arms[i].removed_mm3;
+      for (const auto& [tissue, mm3] : run.report.done.removed_mm3) {
         if (tissue == "liver") of.liver_mm3 = mm3;
       }
       of.touched += arm.tissue_class >= 0;
@@ -273,7 +273,7 @@ TEST(ShippedExercises, BeginWithTheToolsOutsideOfTissueInTheWindow) {
     auto session = Session::create(of, {{}, {}, true});
     ASSERT_TRUE(session.ok()) << session.error().sentence();
     ASSERT_TRUE((*session)->freewheel(0.5).ok());
-    EXPECT_EQ((*session)->report().removed_voxels, 0u) << name;
+    EXPECT_EQ((*session)->report().done.removed_voxels, 0u) << name;
     const TickRecord& record = (*session)->state().record;
     for (std::size_t i = 0; i < exercise.arms.size(); ++i) {
       EXPECT_EQ(record.arms[i].tissue_class, -1) << name << ", " << exercise.arms[i].name;

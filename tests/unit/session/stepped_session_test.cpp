@@ -33,9 +33,9 @@ TEST(SteppedSession, ComesToTheSameInPiecesOfAnyLength) {
   EXPECT_EQ(pieces->state().ticks, 3000u) << "it is over";
   ASSERT_TRUE(pieces->stop().ok());
   const RunReport report = pieces->report();
-  EXPECT_GT(report.removed_voxels, 0u);
+  EXPECT_GT(report.done.removed_voxels, 0u);
   EXPECT_EQ(report.volume_sha256, whole->report().volume_sha256);
-  EXPECT_EQ(report.missed_deadlines, 0u);
+  EXPECT_EQ(report.machine.missed_deadlines, 0u);
   const auto again = replay(**SessionReader::open(folder.path() / "s.h5"), smallHead());
   ASSERT_TRUE(again.ok()) << again.error().sentence();
   EXPECT_TRUE(again->identical);

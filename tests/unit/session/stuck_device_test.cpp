@@ -61,8 +61,8 @@ TEST(StuckDevice, IsLeftBehindByStopAndNotOfferedAgain) {
   EXPECT_EQ(test::threadsNamed("haptic").size(), 1u) << "the call still blocks";
 
   const RunReport report = session->report();
-  EXPECT_EQ(report.ticks, 300u);
-  ASSERT_GE(report.faults.size(), 2u);
+  EXPECT_EQ(report.done.ticks, 300u);
+  ASSERT_GE(report.done.faults.size(), 2u);
   EXPECT_EQ(toJson(report)["faults"].back()["fault"], "stuck");
   const std::string voxels = volumeSha256(session->grid().snapshot());
 
@@ -77,6 +77,7 @@ TEST(StuckDevice, IsLeftBehindByStopAndNotOfferedAgain) {
   const auto result = replay(**reader, block());
   ASSERT_TRUE(result.ok()) << result.error().sentence();
   EXPECT_TRUE(result->identical) << result->first_difference->field;
+  EXPECT_EQ(result->metrics.faults, report.done.faults) << "also the one of no tick";
 
   // It wakes after the session is gone, and ends without a trace: the voxels stay.
   const std::shared_ptr<const Grid> carved = session->carved();

@@ -81,7 +81,8 @@ void makeNumbers(hid_t file, const char* name, hid_t properties) {
 TEST(ForeignRecording, WithAnExternalOrASoftLinkIsRefused) {
   test::TemporaryFolder elsewhere;
   ASSERT_EQ(::mkfifo((elsewhere / "pipe").c_str(), 0600), 0);  // opening it would wait for ever
-  for (const char* name : {"format", "scene", "ticks", "arm0", "removed_voxels", "events", "end"}) {
+  for (const char* name : {"format", "scene", "ticks", "arm0", "removed_voxels", "events",
+                           "tissue_tables", "end"}) {
     SCOPED_TRACE(name);
     isForeignWhere(name, [&](hid_t file) {
       H5Lcreate_external((elsewhere / "pipe").c_str(), "/x", file, name, H5P_DEFAULT, H5P_DEFAULT);
@@ -363,34 +364,56 @@ std::string endOfEdited(const char* table, hid_t type,
   return endOfReplay(folder / "edited.h5");
 }
 
+std::string endOfEditedEvents(const std::function<void(std::vector<EventRow>&)>& change) {
+  return endOfEdited<EventRow>("events", eventType(), change);
+}
+
+EventRow rowOf(const Event& event, std::int32_t table = -1) {
+  return {event, table};
+}
+
 TEST(Recording, WhoseEventsWereEmptiedOrEditedDiffers) {
-  const auto edited = [](const std::function<void(std::vector<Event>&)>& change) {
-    return endOfEdited<Event>("events", eventType(), change);
-  };
+  const auto& edited = endOfEditedEvents;
   EXPECT_EQ(edited([](auto&) {}), "identical");
   EXPECT_EQ(edited([](auto& e) { e.clear(); }), "differs");
   EXPECT_EQ(edited([](auto& e) { e.pop_back(); }), "differs");
-  EXPECT_EQ(edited([](auto& e) { e[0].kind = EventKind(99); }), "differs");
-  EXPECT_EQ(edited([](auto& e) { e[0].tick += 1; }), "differs");
-  EXPECT_EQ(edited([](auto& e) { e[0].arm = 3; }), "differs");
-  EXPECT_EQ(edited([](auto& e) { e.back().tick = std::uint64_t(-1); }), "differs");
+  EXPECT_EQ(edited([](auto& e) { e[0].event.kind = EventKind(99); }), "differs");
+  EXPECT_EQ(edited([](auto& e) { e[0].event.tick += 1; }), "differs");
+  EXPECT_EQ(edited([](auto& e) { e[0].event.arm = 3; }), "differs");
+  EXPECT_EQ(edited([](auto& e) { e.back().event.tick = std::uint64_t(-1); }), "differs");
   EXPECT_EQ(edited([](auto& e) {
-              e.push_back({std::uint64_t(-1), EventKind(99), 0, 0, {}});
+              e.push_back(rowOf({std::uint64_t(-1), EventKind(99), 0, 0, {}}));
             }),
             "differs");
   EXPECT_EQ(edited([](auto& e) {
-              e.insert(e.begin(), Event{0, EventKind::starts_in_tissue, 0, 0, {}});
+              e.insert(e.begin(), rowOf({0, EventKind::starts_in_tissue, 0, 0, {}}));
             }),
             "differs");
 }
 
+// A command for tissues has a table, and nothing else has one.
+TEST(Recording, WhoseTablesOfTissuesCannotBeIsDamaged) {
+  const Event tissues{2000, EventKind::command, -1, 0, {CommandKind::tissues}};
+  const Event undo{2000, EventKind::command, -1, 0, {CommandKind::undo}};
+  for (const EventRow& row : {rowOf(tissues, -1), rowOf(tissues, -2), rowOf(tissues, 99),
+                              rowOf(tissues, 0), rowOf(undo, 0)}) {
+    EXPECT_EQ(endOfEditedEvents([&](auto& e) { e.push_back(row); }), "BAD_RECORDING")
+        << row.tissue_table;
+  }
+}
+
+TEST(Recording, WhichHasMoreTablesOfTissuesThanEventsIsReadAsFarAsItsEventsGo) {
+  EXPECT_EQ(endOfEdited<TissueTable>("tissue_tables", tissueTableType(),
+                                     [](auto& tables) { tables.resize(1000); }),
+            "identical");
+}
+
 // An arm that was left behind is told of in the tick that did not come.
 TEST(Recording, OfAnArmThatWasLeftBehindReplays) {
-  EXPECT_EQ(endOfEdited<Event>("events", eventType(),
-                               [](auto& e) {
-                                 e.push_back({1000, EventKind::silenced, -1, 0, {}});
-                                 e.push_back({1000, EventKind::fault, 0, kFaultStuck, {}});
-                               }),
+  EXPECT_EQ(endOfEditedEvents([](auto& e) {
+              e.push_back(rowOf({1000, EventKind::silenced, -1, 0, {}}));
+              e.push_back(rowOf({1000, EventKind::fault, 0, kFaultStuck, {}}));
+            }),
             "identical");
 }
 

@@ -25,12 +25,12 @@ void record(const fs::path& file, const std::vector<std::uint64_t>& pauses_and_r
       Event event;
       event.tick = t;
       event.command.kind = next % 2 == 0 ? CommandKind::pause : CommandKind::resume;
-      (*recorder)->add(event);
+      (*recorder)->event(event);
       ++next;
     }
     TickRecord tick;
     tick.tick = t;
-    (*recorder)->add(tick);
+    (*recorder)->tick(tick);
   }
   ASSERT_TRUE((*recorder)->finish({200, 0, 0, ""}));
 }

@@ -66,9 +66,9 @@ inline void recordRun(const std::filesystem::path& file, std::uint64_t ticks, bo
     if (t == 2600) commands.push_back({CommandKind::controller, 0, {}});
     TickRecord record;
     core.tick(input, commands.data(), commands.size(), record);
-    (*recorder)->add(record);
-    for (const CarveRecord& c : core.carves()) (*recorder)->add(c);
-    for (const Event& e : core.events()) (*recorder)->add(e);
+    (*recorder)->tick(record);
+    for (const CarveRecord& c : core.carves()) (*recorder)->carve(c);
+    for (const Event& e : core.events()) (*recorder)->event(e);
     if (t % 500 == 499) {
       ASSERT_TRUE((*recorder)->flush().ok());
     }

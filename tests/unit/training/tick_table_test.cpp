@@ -27,7 +27,7 @@ std::filesystem::path recordTwoTicks(const test::TemporaryFolder& folder, const 
     at.proxy_position_mm = {10.5, -20.0, 1.0 / 3.0};
     at.tool_state = kToolHeld;
     at.controller_parts = 65;
-    (*recorder)->add(record);
+    (*recorder)->tick(record);
   }
   EXPECT_TRUE((*recorder)->finish({2, 0, 0, ""}).ok());
   return file;

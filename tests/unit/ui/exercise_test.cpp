@@ -30,7 +30,7 @@ TEST(ProcessStart, LiesInThePastAndNotFar) {
 
 TEST(ExerciseAnswer, HoldsWhatRunPrintsAndTheWindowsFigures) {
   ExerciseOutcome outcome;
-  outcome.report.controllers = {"seed"};
+  outcome.report.done.controllers = {"seed"};
   outcome.frames = 3;
   outcome.frame_median_ms = 4.0;
   outcome.frame_p99_ms = 5.0;

@@ -218,7 +218,7 @@ TEST_F(WorkstationTest, WhatIsEditedWhileAnExerciseStartsIsFeltInIt) {
                                       [](const Event& event) { return event.command.kind; });
   ASSERT_NE(told, events->end());
   EXPECT_EQ(told->tick, 0u);
-  EXPECT_EQ(told->command.tissues.classes[tissues.tissues.size() - 1].damping_Ns_per_m, 20.0);
+  EXPECT_EQ(told->command.tissues->classes[tissues.tissues.size() - 1].damping_Ns_per_m, 20.0);
 }
 
 class PlacedTest : public WorkstationTest {

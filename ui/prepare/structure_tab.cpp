@@ -1,20 +1,13 @@
-// The structures: between their panel, the editor, the slices and the workstation.
+#include "ui/prepare/structure_tab.h"
+
 #include <QFileDialog>
 #include <QFileInfo>
-#include <QInputDialog>
 #include <QMessageBox>
 #include <QPushButton>
 #include <utility>
 
-#include "base/range.h"
-#include "exercise/entry_point.h"
-#include "imaging/segmentation/overlap_order.h"
-#include "imaging/structure_importer.h"
-#include "tissue/tissue_edits.h"
 #include "ui/common/question.h"
 #include "ui/common/words.h"
-#include "ui/prepare/prepare_workspace.h"
-#include "ui/structures/overlap_dialog.h"
 #include "ui/structures/structure_report.h"
 #include "volume/segmentation.h"
 
@@ -25,16 +18,28 @@ constexpr int kSettled_ms = 500;  // after the last change the exercise is place
 constexpr double kStructureOpacity = 0.4;
 }  // namespace
 
-void PrepareWorkspace::connectStructures() {
-  connect(structures_, &StructurePanel::toolChosen, views_, &FourUp::setTool);
-  connect(structures_, &StructurePanel::brushChanged, this,
-          [this] { views_->setBrushRadius(structures_->brushRadius_mm()); });
-  connect(structures_, &StructurePanel::openWanted, this, &PrepareWorkspace::askForLabels);
-  connect(structures_, &StructurePanel::saveWanted, this, &PrepareWorkspace::askToSaveStructures);
-  connect(views_, &FourUp::toolChanged, this, &PrepareWorkspace::structureToolChanged);
+StructureTab::StructureTab(AppContext& app, StructurePanel& structures, StructureEditor& editor,
+                           TissuePicture& picture)
+    : QObject(&app),
+      app_(app),
+      workstation_(app.workstation()),
+      views_(&app.views()),
+      view_(&app.view()),
+      structures_(structures),
+      editor_(editor),
+      picture_(picture),
+      exports_(app, structures, editor),
+      questions_(app),
+      entry_(app) {
+  connect(&structures_, &StructurePanel::toolChosen, views_, &FourUp::setTool);
+  connect(&structures_, &StructurePanel::brushChanged, this,
+          [this] { views_->setBrushRadius(structures_.brushRadius_mm()); });
+  connect(&structures_, &StructurePanel::openWanted, this, &StructureTab::askForLabels);
+  connect(&structures_, &StructurePanel::saveWanted, this, [this] { saveThen({}); });
+  connect(views_, &FourUp::toolChanged, this, &StructureTab::toolChanged);
   connect(views_, &FourUp::structureClicked, this, [this](SliceTool tool, const Vec3& at_mm) {
     if (tool == SliceTool::grow) {
-      editor_.growAt(at_mm, structures_->name(), structures_->growing());
+      editor_.growAt(at_mm, structures_.name(), structures_.growing());
     } else if (tool == SliceTool::piece) {
       editor_.keepPieceAt(at_mm);
     }
@@ -43,39 +48,31 @@ void PrepareWorkspace::connectStructures() {
   connect(&editor_, &StructureEditor::boxChanged, this, [this] { views_->setBox(editor_.box()); });
   connect(views_, &FourUp::strokeBegan, this, [this](const Vec3& at_mm, int across) {
     const SliceTool tool = views_->tool();
-    const Brush brush = structures_->brush(tool, across);
+    const Brush brush = structures_.brush(tool, across);
     if (tool == SliceTool::wall) return editor_.beginWall(at_mm, brush);
-    editor_.beginStroke(at_mm, brush, structures_->name());
+    editor_.beginStroke(at_mm, brush, structures_.name());
   });
-  connect(views_, &FourUp::entryChosen, this, &PrepareWorkspace::placeEntry);
-  connect(views_, &FourUp::entryLeft, this, &PrepareWorkspace::leaveEntry);
   connect(views_, &FourUp::strokeMoved, &editor_, &StructureEditor::moveStroke);
   connect(views_, &FourUp::strokeEnded, &editor_, &StructureEditor::endStroke);
-  connect(views_, &FourUp::structureKey, this, &PrepareWorkspace::structureKey);
+  connect(views_, &FourUp::structureKey, this, &StructureTab::key);
   connect(views_, &FourUp::nothingThere, this, [this] {
-    structures_->say(tr("Nothing solid is seen there: ghosts are passed through."));
+    structures_.say(tr("Nothing solid is seen there: ghosts are passed through."));
   });
-  connect(structures_, &StructurePanel::lookWanted, this, &PrepareWorkspace::structureLookWanted);
-  connect(structures_, &StructurePanel::opacityWanted, this, [this](int label, double per_mm) {
-    structure_looks_[label].opacity = per_mm;
-    showSeen();
-  });
-  connect(structures_, &StructurePanel::colourChosen, this, [this](int label, const Vec3& colour) {
-    structure_looks_[label].colour = colour;
-    showSeen();
-  });
-  connect(structures_, &StructurePanel::decided, this, [this] { view_->setFocus(); });
+  connect(&structures_, &StructurePanel::lookWanted, &picture_, &TissuePicture::setLook);
+  connect(&structures_, &StructurePanel::opacityWanted, &picture_, &TissuePicture::setOpacity);
+  connect(&structures_, &StructurePanel::colourChosen, &picture_, &TissuePicture::setColour);
+  connect(&structures_, &StructurePanel::decided, this, [this] { view_->setFocus(); });
   connect(&editor_, &StructureEditor::changed, this, [this](const VoxelBox& box) {
     if (views_->mirror().labels() == editor_.map()) views_->labelsChanged(box);
     settled_.start();
   });
   connect(&editor_, &StructureEditor::listChanged, this, [this] {
     if (views_->mirror().labels() == editor_.map()) views_->showLabels(editor_.map());  // colours
-    showLabelsInUse();
+    showLabels();
     settled_.start();
   });
   connect(&editor_, &StructureEditor::stateChanged, this, [this] {
-    showUndo();
+    emit undoChanged();
     settled_.start();
   });
   connect(&editor_, &StructureEditor::failed, &app_, &AppContext::report);
@@ -83,54 +80,39 @@ void PrepareWorkspace::connectStructures() {
   settled_.setObjectName("structuresSettled");
   settled_.setSingleShot(true);
   settled_.setInterval(kSettled_ms);
-  connect(&settled_, &QTimer::timeout, this, [this] { (void)takeStructures(); });
+  connect(&settled_, &QTimer::timeout, this, [this] { (void)take(); });
   app_.setGuard(AppContext::UnsavedWork::structures,
-                [this](AppContext::Next go_on) { unlessStructuresAreLost(std::move(go_on)); });
+                [this](AppContext::Next go_on) { unlessLost(std::move(go_on)); });
   app_.setBeforeStart([this](AppContext::Next go_on) { beforeStart(std::move(go_on)); });
-  connect(app_.undoAction(), &QAction::triggered, this, [this] {
-    if (editsServe()) return workstation_.undoEdit();
-    if (!workstation_.session()) editor_.undo();
-  });
-  connect(app_.redoAction(), &QAction::triggered, this, [this] {
-    if (editsServe()) return workstation_.redoEdit();
-    if (!workstation_.session()) editor_.redo();
-  });
-  connect(&app_, &AppContext::cutsChanged, this, &PrepareWorkspace::showUndo);
-  connect(&app_, &AppContext::caseShown, this, [this] {
-    tissues_->setLabelsOpen(workstation_.placed()->labels != nullptr);
-    openStructures();
-  });
+  connect(&app_, &AppContext::caseShown, this, &StructureTab::showOpened);
   connect(&workstation_, &Workstation::phaseChanged, this, [this] {
     const Workstation::Phase phase = workstation_.phase();
     editor_.setLocked(phase == Workstation::Phase::ready || phase == Workstation::Phase::empty
                           ? QString()
                           : tr("Structures cannot be changed while an exercise runs: it was "
                                "started on them."));
-    showUndo();
-    showLabelsInUse();
+    emit undoChanged();
+    showLabels();
   });
   connect(&workstation_, &Workstation::exerciseReported, this, [this](const RunReport& report) {
     QStringList cut;
     for (const std::string& line : linesOf(report.structures_cut)) cut << toQt(line);
-    structures_->say(cut.isEmpty() ? QString()
+    structures_.say(cut.isEmpty() ? QString()
                                    : tr("In the last exercise:") + '\n' + cut.join('\n'));
   });
-  connect(&workstation_, &Workstation::structuresChanged, this, &PrepareWorkspace::showStructures);
-  connect(&workstation_, &Workstation::placingFailed, this, &PrepareWorkspace::placingFailed);
-  connect(&workstation_, &Workstation::asked, this, &PrepareWorkspace::askAboutStructures);
-  connect(tabs_, &QTabWidget::currentChanged, this, [this] {
-    showTab();
-    showStructureTab();
-  });
-  views_->setBrushRadius(structures_->brushRadius_mm());
+  connect(&workstation_, &Workstation::structuresChanged, this, &StructureTab::showPlaced);
+  connect(&workstation_, &Workstation::placingFailed, this, &StructureTab::placingFailed);
+  views_->setBrushRadius(structures_.brushRadius_mm());
 }
 
-bool PrepareWorkspace::structuresShown() const {
-  return here_ && tabs_->currentIndex() == kStructureTab && editor_.hasCase();
+void StructureTab::show(bool here, bool in_front) {
+  here_ = here;
+  in_front_ = in_front;
+  showViews();
 }
 
 // What was made or changed is what the next exercise runs on. True where nothing waits any more.
-bool PrepareWorkspace::takeStructures() {
+bool StructureTab::take() {
   if (!editor_.hasCase() || workstation_.isOpening()) return false;
   if (workstation_.phase() != Workstation::Phase::ready) return true;
   const std::shared_ptr<const LabelMap> made = editor_.takeEdited();
@@ -140,26 +122,25 @@ bool PrepareWorkspace::takeStructures() {
 }
 
 // The exercise was placed in other structures: made here, or read.
-void PrepareWorkspace::showStructures() {
+void StructureTab::showPlaced() {
   const Case& of = *workstation_.currentCase();
   if (of.structures != own_structures_) {
-    structure_looks_.clear();
+    picture_.forgetLooks();
     editor_.setCase(of.volume, of.structures);
     in_case_.reset();
     own_structures_ = of.structures;
     QStringList words;
     for (const Warning& warning : of.structure_warnings) words << toQt(warning.text);
-    structures_->say(words.join('\n'));
-    tabs_->setCurrentIndex(kStructureTab);
-    showStructureReport();
+    structures_.say(words.join('\n'));
+    emit frontWanted();
+    showReport();
   }
   if (app_.carved() && !app_.cutsUnsaved()) app_.showWholeCase();
-  tissues_->setLabelsOpen(workstation_.placed()->labels != nullptr);
-  showStructureTab();
-  showEntry();
-  if (std::exchange(entry_asked_, false)) app_.lookAtCase();
+  showViews();
+  entry_.show();
+  if (entry_.takeAsked()) app_.lookAtCase();
   // Not by a dialog: it would come with every stroke.
-  if (const auto& why = workstation_.placed()->error) structures_->say(toQt(why->sentence()));
+  if (const auto& why = workstation_.placed()->error) structures_.say(toQt(why->sentence()));
   settled_.start();  // what was changed meanwhile
   if (AppContext::Next start = std::exchange(start_when_placed_, {})) {
     QMetaObject::invokeMethod(
@@ -168,16 +149,16 @@ void PrepareWorkspace::showStructures() {
 }
 
 // Nothing waits for it any more, and nothing that was made is lost.
-void PrepareWorkspace::placingFailed() {
-  entry_asked_ = false;
+void StructureTab::placingFailed() {
+  (void)entry_.takeAsked();
   start_when_placed_ = {};
   own_structures_ = workstation_.currentCase()->structures;
   editor_.giveBack();
-  showEntry();
+  entry_.show();
 }
 
 // Of those that came from a file: beside the window, which goes on.
-void PrepareWorkspace::showStructureReport() {
+void StructureTab::showReport() {
   const Case& of = *workstation_.currentCase();
   if (auto* before = app_.window()->findChild<StructureReport*>())
     before->close();  // of another file
@@ -186,27 +167,27 @@ void PrepareWorkspace::showStructureReport() {
 }
 
 // Of a case that was opened.
-void PrepareWorkspace::openStructures() {
+void StructureTab::showOpened() {
   const Case& of = *workstation_.currentCase();
-  if (of.structures != own_structures_) showStructureReport();
+  if (of.structures != own_structures_) showReport();
   if (of.structures != own_structures_ || !editor_.isOf(of.volume)) {  // not another exercise alone
-    structure_looks_.clear();
+    picture_.forgetLooks();
     views_->setTool(SliceTool::window);  // what was in hand was for another case
-    structures_->suitVoxels(of.volume->geometry.spacing_mm);
+    structures_.suitVoxels(of.volume->geometry.spacing_mm);
     editor_.setCase(of.volume, of.structures);
     in_case_ = editor_.changes();
     tissues_touched_ = false;
   }
   own_structures_ = of.structures;
-  structures_->setWanted(workstation_.exercise()->structures);
-  structures_->setSourceAtHand(sourceAtHand());
-  showStructureTab();
-  showEntry();
+  structures_.setWanted(workstation_.exercise()->structures);
+  structures_.setSourceAtHand(exports_.sourceAtHand());
+  showViews();
+  entry_.show();
   if (here_) (void)offerMissing();
 }
 
 // What is missing is offered to be made at once. False: the exercise lacks nothing that could be.
-bool PrepareWorkspace::offerMissing() {
+bool StructureTab::offerMissing() {
   const std::optional<Placement>& of = workstation_.placed();
   if (!of || workstation_.session()) return false;
   bool lacks = false;
@@ -215,26 +196,38 @@ bool PrepareWorkspace::offerMissing() {
     lacks = lacks || warning.code == "LACKS_STRUCTURE";
   }
   if (!lacks) return false;
-  tabs_->setCurrentIndex(kStructureTab);
+  emit frontWanted();
   views_->setTool(SliceTool::grow);
-  structures_->say(tr("The exercise needs the structure \"%1\", which the case lacks: click into "
+  structures_.say(tr("The exercise needs the structure \"%1\", which the case lacks: click into "
                       "it, well inside. Or start at once: tissue is then told by its HU.")
-                       .arg(structures_->name()));
+                       .arg(structures_.name()));
   return true;
 }
 
-void PrepareWorkspace::makeMissing() {
+void StructureTab::makeMissing() {
   app_.go(Place::prepare);
-  tabs_->setCurrentIndex(kStructureTab);
+  emit frontWanted();
   views_->setTool(SliceTool::grow);
-  structures_->offerWanted();
+  structures_.offerWanted();
+}
+
+// The views show what the panel of structures lists while it is in front, else what the exercise
+// runs on, with the shells that its tissues asked for.
+void StructureTab::showLabels() {
+  const Case* of = workstation_.currentCase();
+  if (!of || !(views_->mirror().volume().geometry == of->volume->geometry)) return;
+  const bool practising = workstation_.phase() != Workstation::Phase::ready;
+  const std::shared_ptr<const LabelMap> wanted =
+      shown() && !practising ? editor_.map() : workstation_.placed()->labels;
+  if (wanted != views_->mirror().labels()) views_->showLabels(wanted);
+  picture_.show();
 }
 
 // The slices show what the panel lists while it is in front, else what the exercise runs on.
-void PrepareWorkspace::showStructureTab() {
-  showLabelsInUse();
-  showUndo();
-  if (structuresShown()) {
+void StructureTab::showViews() {
+  showLabels();
+  emit undoChanged();
+  if (shown()) {
     if (views_->colours().overlay() != Overlay::labels) {
       views_->setOverlay(Overlay::labels, kStructureOpacity);
     }
@@ -246,13 +239,13 @@ void PrepareWorkspace::showStructureTab() {
   }
 }
 
-void PrepareWorkspace::structureToolChanged(SliceTool tool) {
+void StructureTab::toolChanged(SliceTool tool) {
   if (isForStructures(tool) && !here_) {
     views_->setTool(SliceTool::window);
     return app_.say(tr("Structures are made in Prepare (Ctrl+2)."));
   }
-  if (isForStructures(tool)) tabs_->setCurrentIndex(kStructureTab);
-  structures_->showTool(tool);
+  if (isForStructures(tool)) emit frontWanted();
+  structures_.showTool(tool);
   if (tool == SliceTool::entry) {
     app_.say(
         tr("Click where the exercise enters; drag to where the instrument comes from. Del: back to "
@@ -260,146 +253,31 @@ void PrepareWorkspace::structureToolChanged(SliceTool tool) {
   }
 }
 
-// --- The entry point ---
-
-void PrepareWorkspace::placeEntry(const Vec3& at_mm, const Vec3& from_mm) {
-  const Case* of = workstation_.currentCase();
-  if (workstation_.phase() != Workstation::Phase::ready || !of) {
-    return app_.say(tr("The entry point cannot be changed while an exercise runs: stop it first."));
-  }
-  const Exercise& exercise = *workstation_.exercise();
-  const Landmark* landmark = entryLandmark(exercise);
-  if (!landmark) return app_.say(tr("This exercise is fixed in its own patient."));
-  Vec3 outward = from_mm - at_mm;
-  if (!(glm::length(outward) > 0.0)) {
-    const auto out = outwardAt(*of->volume, workstation_.placedTissues(),
-                               workstation_.placed()->labels.get(), landmark->tissue, at_mm);
-    const auto before = workstation_.viewLandmark();
-    outward = out ? *out : before ? before->rotation * Vec3(0.0, 0.0, 1.0) : Vec3(0.0, -1.0, 0.0);
-  }
-  const Landmark entry = placedAt(*landmark, at_mm, glm::normalize(outward));
-  app_.unlessLost({AppContext::UnsavedWork::cuts}, [this, entry] {
-    entry_asked_ = workstation_.placeEntry(entry);
-    if (entry_asked_ && exercise_->wantsOneEntry()) views_->setTool(SliceTool::window);
-    app_.say(entry_asked_ ? tr("The exercise enters here now. Del: back to its own place.")
-                          : tr("Busy: try again in a moment."));
-  });
-}
-
-void PrepareWorkspace::leaveEntry() {
-  if (!workstation_.entry()) return app_.say(tr("The exercise enters at its own place."));
-  app_.unlessLost({AppContext::UnsavedWork::cuts}, [this] {
-    entry_asked_ = workstation_.placeEntry({});
-    app_.say(entry_asked_ ? tr("The exercise enters at its own place again.")
-                          : tr("Busy: try again in a moment."));
-  });
-}
-
-void PrepareWorkspace::showEntry() {
-  const auto frame = workstation_.viewLandmark();
-  if (!frame) return views_->setEntry({});
-  views_->setEntry(SliceView::Entry{frame->position_mm, frame->rotation * Vec3(0.0, 0.0, 1.0)});
-}
-
-void PrepareWorkspace::structureKey(int key) {
+void StructureTab::key(int key) {
   if (!here_ && key != Qt::Key_V && key != Qt::Key_Escape) {
     return app_.say(tr("Structures are made in Prepare (Ctrl+2)."));
   }
   switch (key) {
     case Qt::Key_K:
-      tabs_->setCurrentIndex(kStructureTab);
+      emit frontWanted();
       return editor_.makeSkull();
     case Qt::Key_S:
-      tabs_->setCurrentIndex(kStructureTab);
-      return structures_->makeSkin();
+      emit frontWanted();
+      return structures_.makeSkin();
     case Qt::Key_V:
-      return structures_->nextLook();
+      return structures_.nextLook();
     case Qt::Key_Escape:
       return editor_.preview() ? editor_.leavePreview() : views_->setTool(SliceTool::window);
     case Qt::Key_BracketLeft:
     case Qt::Key_BracketRight:
-      return structures_->stepRadius(key == Qt::Key_BracketRight ? 1 : -1);
+      return structures_.stepRadius(key == Qt::Key_BracketRight ? 1 : -1);
     default:
       editor_.takePreview();
   }
 }
 
-// Without an exercise they are the structures', while those are in front. Cuts that an exercise
-// left in the view are no step of theirs: there the panel's own buttons serve.
-void PrepareWorkspace::showUndo() {
-  if (editsServe()) return showHistory();
-  if (workstation_.phase() == Workstation::Phase::running) return;
-  const bool serve = structuresShown() && !app_.cutsUnsaved();
-  const auto undo = serve ? editor_.undoText() : std::nullopt;
-  const auto redo = serve ? editor_.redoText() : std::nullopt;
-  QAction *undo_action = app_.undoAction(), *redo_action = app_.redoAction();
-  undo_action->setEnabled(undo.has_value());
-  redo_action->setEnabled(redo.has_value());
-  undo_action->setToolTip(undo ? tr("Undo: %1").arg(*undo)
-                          : app_.cutsUnsaved()
-                              ? tr("The exercise has ended: its cuts stay until Reset")
-                              : tr("Takes back the last change; there is none"));
-  redo_action->setToolTip(redo ? tr("Redo: %1").arg(*redo)
-                               : tr("Brings back what was taken back; there is nothing"));
-}
-
-// Without an answer nothing changes.
-void PrepareWorkspace::askAboutStructures(const StructureQuestion& question) {
-  switch (question.asked.kind) {
-    case StructureAsked::Kind::option: return askForOption(question.asked.choice);
-    case StructureAsked::Kind::order: return askForOrder(question.asked.names);
-    case StructureAsked::Kind::threshold: return askForThreshold();
-  }
-}
-
-void PrepareWorkspace::askForOption(const Choice& choice) {
-  const auto use = [this](const std::string& option) {
-    return [this, option] { workstation_.answer(option); };
-  };
-  const auto words = [](const std::string& option) {
-    return option == "ct"       ? tr("&Put it on the CT, voxel by voxel")
-           : option == "sform"  ? tr("Take its &sform")
-           : option == "qform"  ? tr("Take its &qform")
-           : option == "pixdim" ? tr("Take the steps of its &pixdim")
-                                : tr("&Use it all the same");
-  };
-  const std::vector<std::string>& options = choice.options;
-  QMessageBox* question =
-      ask(app_.window(), "structuresQuestion", toQt(choice.question) + '.',
-          tr("What is used as it is may be felt and cut in the wrong place."),
-          words(options.front()), use(options.front()));
-  for (std::size_t n = 1; n < options.size(); ++n) {
-    orElse(*question, "otherForm", words(options[n]), use(options[n]));
-  }
-}
-
-void PrepareWorkspace::askForOrder(const std::vector<std::string>& names) {
-  auto* dialog = new OverlapDialog(names, app_.window());
-  connect(dialog, &QDialog::accepted, this,
-          [this, dialog] { workstation_.answer(orderAnswer(dialog->order())); });
-  dialog->open();
-}
-
-void PrepareWorkspace::askForThreshold() {
-  auto* dialog = new QInputDialog(app_.window());
-  dialog->setObjectName("thresholdQuestion");
-  dialog->setAttribute(Qt::WA_DeleteOnClose);
-  dialog->setWindowTitle(tr("A fractional segmentation"));
-  dialog->setLabelText(
-      tr("The file says how much of each voxel a structure has, from 0 to 1.\n"
-         "A voxel is the structure's from this share on:"));
-  dialog->setInputMode(QInputDialog::DoubleInput);
-  dialog->setDoubleRange(0.0, 1.0);
-  dialog->setDoubleDecimals(2);
-  dialog->setDoubleStep(0.05);
-  dialog->setDoubleValue(StructureRequest().threshold);
-  connect(dialog, &QInputDialog::doubleValueSelected, this,
-          [this](double value) { workstation_.answer(plainNumber(value)); });
-  dialog->open();
-}
-
 // What was grown and reaches too far, perhaps, before an exercise runs on it.
-void PrepareWorkspace::askAboutPreview(AppContext::Next go_on) {
+void StructureTab::askAboutPreview(AppContext::Next go_on) {
   QMessageBox* question = ask(app_.window(), "previewQuestion",
                               tr("What was grown does not count yet, and may be too large."),
                               tr("Look at it in the slices first, or start with it or without."),
@@ -414,13 +292,13 @@ void PrepareWorkspace::askAboutPreview(AppContext::Next go_on) {
 }
 
 // An exercise runs on what was made a moment ago.
-void PrepareWorkspace::beforeStart(AppContext::Next go_on) {
+void StructureTab::beforeStart(AppContext::Next go_on) {
   if (editor_.busy()) {
     return app_.say(tr("A structure is being made: wait for it, or cancel it, and start then."));
   }
   if (editor_.preview() && editor_.preview()->leaked) return askAboutPreview(std::move(go_on));
   if (editor_.preview()) editor_.takePreview();
-  if (!takeStructures()) {
+  if (!take()) {
     return app_.say(tr("The structures are being put in place: try again in a moment."));
   }
   if (workstation_.isOpening()) {
@@ -430,7 +308,7 @@ void PrepareWorkspace::beforeStart(AppContext::Next go_on) {
   go_on();
 }
 
-void PrepareWorkspace::askForLabels() {
+void StructureTab::askForLabels() {
   if (workstation_.session()) {
     return app_.say(tr("An exercise is running: stop it, then open structures."));
   }
@@ -442,11 +320,7 @@ void PrepareWorkspace::askForLabels() {
   dialog->open();
 }
 
-void PrepareWorkspace::askToSaveStructures() {
-  saveStructuresThen({});
-}
-
-void PrepareWorkspace::saveStructuresThen(AppContext::Next then) {
+void StructureTab::saveThen(AppContext::Next then) {
   // As they are now: another case may come while the dialog stands.
   const std::shared_ptr<const LabelMap> copy = editor_.finished();
   if (!copy) return app_.say(tr("There is no structure to save."));
@@ -473,12 +347,12 @@ void PrepareWorkspace::saveStructuresThen(AppContext::Next then) {
   dialog->open();
 }
 
-bool PrepareWorkspace::isStored() const {
+bool StructureTab::isStored() const {
   const Case* of = workstation_.currentCase();
   return of && !of->stored.empty();
 }
 
-void PrepareWorkspace::saveInCase(AppContext::Next then) {
+void StructureTab::saveInCase(AppContext::Next then) {
   if (!isStored()) {
     return app_.say(tr("This case is not one of the library's: save to a file instead."));
   }
@@ -520,7 +394,7 @@ void PrepareWorkspace::saveInCase(AppContext::Next then) {
       });
 }
 
-void PrepareWorkspace::unlessStructuresAreLost(AppContext::Next go_on) {
+void StructureTab::unlessLost(AppContext::Next go_on) {
   if (!editor_.edited()) return go_on();
   QMessageBox* question = ask(app_.window(), "structuresUnsaved",
                               tr("The structures have been made or changed and not saved."),
@@ -530,7 +404,7 @@ void PrepareWorkspace::unlessStructuresAreLost(AppContext::Next go_on) {
            [this, go_on] { saveInCase(go_on); });
   }
   orElse(*question, "saveFirst", tr("&Save structures\u2026"),
-         [this, go_on = std::move(go_on)] { saveStructuresThen(go_on); });
+         [this, go_on = std::move(go_on)] { saveThen(go_on); });
 }
 
 }  // namespace trephine

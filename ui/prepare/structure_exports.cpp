@@ -1,4 +1,5 @@
-// Structures for other programs: DICOM, with the CT or for the one that they came from; a surface.
+#include "ui/prepare/structure_exports.h"
+
 #include <QFileDialog>
 #include <QMessageBox>
 
@@ -7,7 +8,6 @@
 #include "structures/surface.h"
 #include "ui/common/question.h"
 #include "ui/common/words.h"
-#include "ui/prepare/prepare_workspace.h"
 
 namespace trephine {
 
@@ -23,9 +23,15 @@ QString surfaceFileName(const std::string& structure) {
 
 }  // namespace
 
-void PrepareWorkspace::connectExports() {
-  connect(structures_, &StructurePanel::saveDicomWanted, this, [this] { askToSaveDicom(false); });
-  connect(structures_, &StructurePanel::saveForSourceWanted, this, [this] {
+StructureExports::StructureExports(AppContext& app, StructurePanel& structures,
+                                   StructureEditor& editor)
+    : QObject(&app),
+      app_(app),
+      workstation_(app.workstation()),
+      structures_(structures),
+      editor_(editor) {
+  connect(&structures_, &StructurePanel::saveDicomWanted, this, [this] { askToSaveDicom(false); });
+  connect(&structures_, &StructurePanel::saveForSourceWanted, this, [this] {
     ask(app_.window(), "sourceUidsQuestion",
         tr("The file will name the UIDs of the patient's own CT, so that it finds the patient "
            "where "
@@ -33,20 +39,18 @@ void PrepareWorkspace::connectExports() {
         tr("Give it only to whom the CT may be given. \"DICOM folder\" names nobody."),
         tr("&Choose a folder\u2026"), [this] { askToSaveDicom(true); });
   });
-  connect(structures_, &StructurePanel::saveSurfaceWanted, this,
-          &PrepareWorkspace::askToSaveSurface);
+  connect(&structures_, &StructurePanel::saveSurfaceWanted, this,
+          &StructureExports::askToSaveSurface);
 }
 
-// Of the case that was read by this window from DICOM, in the folder that was opened last; one of
-// the library's lies in a folder without it.
-bool PrepareWorkspace::sourceAtHand() const {
+bool StructureExports::sourceAtHand() const {
   const Case* of = workstation_.currentCase();
   const std::filesystem::path& source = app_.caseSource();
   return of && of->provenance && !of->provenance->source_ids.series.empty() && !source.empty() &&
          source.parent_path() != app_.storage() / "cases";
 }
 
-void PrepareWorkspace::askToSaveDicom(bool for_source) {
+void StructureExports::askToSaveDicom(bool for_source) {
   app_.askForNewFolder(
       "dicomDialog", tr("Save the DICOM files as a new folder"), "structures-dicom",
       [this, for_source,
@@ -57,7 +61,7 @@ void PrepareWorkspace::askToSaveDicom(bool for_source) {
       });
 }
 
-void PrepareWorkspace::saveDicom(const std::filesystem::path& folder, bool for_source) {
+void StructureExports::saveDicom(const std::filesystem::path& folder, bool for_source) {
   const Case* of = workstation_.currentCase();
   if (!of || !editor_.map() || (for_source && !sourceAtHand())) return;
   const std::shared_ptr<const LabelMap> map = editor_.finished();
@@ -87,11 +91,11 @@ void PrepareWorkspace::saveDicom(const std::filesystem::path& folder, bool for_s
         editor_.markSaved(changes);
         QStringList words;
         for (const std::string& note : *notes) words << toQt(note);
-        structures_->say(words.join('\n'));
+        structures_.say(words.join('\n'));
       });
 }
 
-void PrepareWorkspace::askToSaveSurface() {
+void StructureExports::askToSaveSurface() {
   const int label = editor_.current();
   const Structure* of = editor_.map() ? editor_.map()->find(label) : nullptr;
   if (!of) return;

@@ -1,21 +1,10 @@
-#include "session/run_statistics.h"
+#include "session/run_report.h"
 
-#include <algorithm>
 #include <cstdio>
 
 #include "base/utf8.h"
 
 namespace trephine {
-
-void ArmStatistics::add(const ArmRecord& record) {
-  max_force_N = std::max(max_force_N, glm::length(record.sent_N));
-  if (record.tissue_class >= 0) ++contact_ticks;
-  const Vec3& e = record.energy_out_J;
-  energy_out_J = std::max(energy_out_J, e.x + e.y + e.z);
-  if (!isFinite(record.proxy_position_mm)) return;
-  if (tip_mm) path_mm += glm::distance(record.proxy_position_mm, *tip_mm);
-  tip_mm = record.proxy_position_mm;
-}
 
 namespace {
 
@@ -54,29 +43,21 @@ Error memoryNotLocked(const std::string& reason) {
           "'unlimited' for it in /etc/security/limits.d, and log in again"};
 }
 
-Warning startsInTissue(const std::string& arm, bool barrier) {
-  return {
-      "STARTS_IN_TISSUE",
-      "The tool of the " + arm + " arm starts in tissue: " +
-          (barrier ? "it has no force and cuts nothing until it has been moved out"
-                   : "without the elastic law it feels and cuts it from the first moment")};
-}
-
 Json toJson(const RunReport& report) {
   Json arms = Json::array();
-  for (const RunReport::Arm& arm : report.arms) {
+  for (const RunMetrics::Arm& arm : report.done.arms) {
     arms.push_back({{"name", arm.name},
-                    {"max_force_N", arm.statistics.max_force_N},
-                    {"contact_ticks", arm.statistics.contact_ticks},
-                    {"energy_out_mJ", arm.statistics.energy_out_J * 1e3},
+                    {"max_force_N", arm.max_force_N},
+                    {"contact_ticks", arm.contact_ticks},
+                    {"energy_out_mJ", arm.energy_out_J * 1e3},
                     {"removed_mm3", arm.removed_mm3}});
   }
   Json removed = Json::object();
-  for (const auto& [tissue, mm3] : report.removed_mm3) removed[tissue] = mm3;
+  for (const auto& [tissue, mm3] : report.done.removed_mm3) removed[tissue] = mm3;
   Json faults = Json::array();
-  for (const ArmFault& f : report.faults) {
+  for (const ArmFault& f : report.done.faults) {
     faults.push_back({{"tick", f.tick},
-                      {"arm", report.arms[std::size_t(f.arm)].name},
+                      {"arm", report.done.arms[std::size_t(f.arm)].name},
                       {"fault", nameOf(f.fault).name}});
   }
   Json warnings = Json::array();
@@ -84,26 +65,26 @@ Json toJson(const RunReport& report) {
     warnings.push_back({{"code", w.code}, {"text", w.text}});
   }
   const auto file = [](const std::string& name) { return name.empty() ? Json(nullptr) : Json(name); };
-  return {{"controller", report.controllers.back()},
-          {"controllers", report.controllers},
-          {"ticks", report.ticks},
-          {"rate_hz", report.rate_hz},
+  return {{"controller", report.done.controllers.back()},
+          {"controllers", report.done.controllers},
+          {"ticks", report.done.ticks},
+          {"rate_hz", report.done.rate_hz},
           {"arms", arms},
           {"removed_mm3", removed},
-          {"removed_voxels", report.removed_voxels},
+          {"removed_voxels", report.done.removed_voxels},
           {"structures_cut", toJson(report.structures_cut)},
-          {"missed_deadlines", report.missed_deadlines},
+          {"missed_deadlines", report.machine.missed_deadlines},
           {"faults", faults},
           {"warnings", warnings},
-          {"memory_locked", report.memory_locked ? Json(*report.memory_locked) : Json(nullptr)},
-          {"nonfinite", report.nonfinite},
-          {"events_dropped", report.events_dropped},
-          {"recorder_behind_ms", report.recorder_behind_ms},
+          {"memory_locked", report.machine.memory_locked ? Json(*report.machine.memory_locked) : Json(nullptr)},
+          {"nonfinite", report.machine.nonfinite},
+          {"events_dropped", report.machine.events_dropped},
+          {"recorder_behind_ms", report.machine.recorder_behind_ms},
           {"tick_ns",
-           {{"median", report.tick_ns.median_ns},
-            {"p99", report.tick_ns.p99_ns},
-            {"p999", report.tick_ns.p999_ns},
-            {"max", report.tick_ns.max_ns}}},
+           {{"median", report.machine.tick_ns.median_ns},
+            {"p99", report.machine.tick_ns.p99_ns},
+            {"p999", report.machine.tick_ns.p999_ns},
+            {"max", report.machine.tick_ns.max_ns}}},
           {"volume_sha256_before", report.volume_sha256_before},
           {"volume_sha256", report.volume_sha256},
           {"recording", file(report.recording)},
@@ -119,45 +100,45 @@ std::string toText(const RunReport& report) {
     std::snprintf(line, sizeof(line), values...);
     text += line;
   };
-  add("%.1f s of touch at %.0f Hz, controller '%s'", double(report.ticks) / report.rate_hz,
-      report.rate_hz, report.controllers.front().c_str());
+  add("%.1f s of touch at %.0f Hz, controller '%s'", double(report.done.ticks) / report.done.rate_hz,
+      report.done.rate_hz, report.done.controllers.front().c_str());
   constexpr std::size_t kNamed = 4;
-  for (std::size_t i = 1; i < report.controllers.size() && i < kNamed; ++i) {
-    text += ", later '" + report.controllers[i] + "'";
+  for (std::size_t i = 1; i < report.done.controllers.size() && i < kNamed; ++i) {
+    text += ", later '" + report.done.controllers[i] + "'";
   }
-  if (report.controllers.size() > kNamed) text += " and so on";
+  if (report.done.controllers.size() > kNamed) text += " and so on";
   text += "\n";
-  for (const RunReport::Arm& arm : report.arms) {
+  for (const RunMetrics::Arm& arm : report.done.arms) {
     add("  %-6s  in tissue %.1f s, at most %.2f N, removed %.0f mm3\n", arm.name.c_str(),
-        double(arm.statistics.contact_ticks) / report.rate_hz, arm.statistics.max_force_N,
+        double(arm.contact_ticks) / report.done.rate_hz, arm.max_force_N,
         arm.removed_mm3);
   }
-  for (const auto& [tissue, mm3] : report.removed_mm3) {
+  for (const auto& [tissue, mm3] : report.done.removed_mm3) {
     if (mm3 > 0.0) add("  removed of %s: %.0f mm3\n", tissue.c_str(), mm3);
   }
   for (const std::string& cut : linesOf(report.structures_cut)) text += "  " + cut + "\n";
   add("  a tick took %.1f us (median), %.1f us (99 %%); %llu deadlines missed\n",
-      report.tick_ns.median_ns / 1e3, report.tick_ns.p99_ns / 1e3,
-      static_cast<unsigned long long>(report.missed_deadlines));
+      report.machine.tick_ns.median_ns / 1e3, report.machine.tick_ns.p99_ns / 1e3,
+      static_cast<unsigned long long>(report.machine.missed_deadlines));
   for (const Warning& warning : report.warnings) text += "  " + cleanUtf8(warning.text) + "\n";
   constexpr std::size_t kShown = 10;
-  for (std::size_t i = 0; i < report.faults.size(); ++i) {
+  for (std::size_t i = 0; i < report.done.faults.size(); ++i) {
     if (i == kShown) {
-      add("  and %zu more faults\n", report.faults.size() - kShown);
+      add("  and %zu more faults\n", report.done.faults.size() - kShown);
       break;
     }
-    const ArmFault& f = report.faults[i];
-    add("  FAULT at %.3f s, %s: %s\n", double(f.tick) / report.rate_hz,
-        report.arms[std::size_t(f.arm)].name.c_str(), nameOf(f.fault).words);
+    const ArmFault& f = report.done.faults[i];
+    add("  FAULT at %.3f s, %s: %s\n", double(f.tick) / report.done.rate_hz,
+        report.done.arms[std::size_t(f.arm)].name.c_str(), nameOf(f.fault).words);
   }
-  if (report.memory_locked == false) {
-    text += "  " + memoryNotLocked(report.memory_not_locked).sentence() + "\n";
+  if (report.machine.memory_locked == false) {
+    text += "  " + memoryNotLocked(report.machine.memory_not_locked).sentence() + "\n";
   }
   if (!report.recording.empty()) {
     text += "  session: " + cleanUtf8(report.recording) + "\n";
     constexpr double kUsual_ms = 500.0;  // it is written in slices of 0.25 s
-    if (report.recorder_behind_ms > kUsual_ms) {
-      add("  the recording was at most %.0f ms behind\n", report.recorder_behind_ms);
+    if (report.machine.recorder_behind_ms > kUsual_ms) {
+      add("  the recording was at most %.0f ms behind\n", report.machine.recorder_behind_ms);
     }
   }
   if (!report.picture.empty()) text += "  picture: " + cleanUtf8(report.picture) + "\n";

@@ -1,0 +1,198 @@
+// The desk without a window and without an event loop.
+#include "desk/desk.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <condition_variable>
+#include <filesystem>
+#include <functional>
+#include <mutex>
+#include <optional>
+#include <vector>
+
+#include "session/operator_script.h"
+#include "shells.h"
+#include "support.h"
+#include "training/session_reader.h"
+#include "volume/segmentation.h"
+
+namespace trephine {
+namespace {
+
+class DeskTest : public ::testing::Test, private DeskEvents {
+ protected:
+  // Takes what comes until that is so. False: it did not come.
+  bool until(const std::function<bool()>& condition) {
+    const auto end = std::chrono::steady_clock::now() + std::chrono::minutes(2);
+    while (!condition() && std::chrono::steady_clock::now() < end) {
+      {
+        std::unique_lock lock(mutex_);
+        woken_.wait_for(lock, std::chrono::milliseconds(10), [this] { return wake_; });
+        wake_ = false;
+      }
+      desk_.take();
+    }
+    return condition();
+  }
+  bool untilOpened() {
+    return until([this] { return !desk_.isOpening(); });
+  }
+  bool has(DeskChange change) const { return std::ranges::count(changes_, change) > 0; }
+
+  test::TemporaryFolder folder_;
+  std::vector<DeskChange> changes_;
+  std::vector<StructureQuestion> questions_;
+  std::optional<RunReport> report_;
+  std::optional<Error> failed_;
+
+ private:
+  void onChange(DeskChange change) override { changes_.push_back(change); }
+  void onOpeningProgress(double, const std::string&) override {}
+  void onSavingProgress(double, const std::string&) override {}
+  void onExerciseOpening(const Exercise&, const std::filesystem::path&) override {}
+  void onQuestion(const StructureQuestion& question) override { questions_.push_back(question); }
+  void onRecordingFailed(const Error& error) override { failed_ = error; }
+  void onSessionEnded(Session&) override {}
+  void onReport(const RunReport& report) override { report_ = report; }
+  void onSaved(const std::string&) override {}
+  void onFailure(const Error& error) override { failed_ = error; }
+
+  std::mutex mutex_;
+  std::condition_variable woken_;
+  bool wake_ = false;
+
+ protected:
+  Desk desk_{{},
+             *this,
+             [] { return ArmSettings(); },
+             [this] {
+               const std::lock_guard lock(mutex_);
+               wake_ = true;
+               woken_.notify_one();
+             }};
+};
+
+TEST_F(DeskTest, OpensACaseEditsItsExercisePractisesItAndTellsWhatWasDone) {
+  EXPECT_EQ(desk_.phase(), Desk::Phase::empty);
+  desk_.openPhantom("cranium");
+  EXPECT_TRUE(desk_.isOpening());
+  ASSERT_TRUE(untilOpened());
+  ASSERT_FALSE(failed_) << failed_->sentence();
+  EXPECT_EQ(desk_.phase(), Desk::Phase::ready);
+  EXPECT_TRUE(has(DeskChange::case_opened));
+  EXPECT_FALSE(desk_.takeMirror().hu.empty()) << "for the view";
+  EXPECT_FALSE(desk_.exerciseEdited());
+
+  const double rate_hz = desk_.exercise()->rate_hz;
+  ASSERT_TRUE(desk_.edit("rate", [&](Exercise& exercise) { exercise.rate_hz = 2.0 * rate_hz; }));
+  EXPECT_TRUE(desk_.exerciseEdited());
+  EXPECT_EQ(desk_.placed()->exercise.rate_hz, 2.0 * rate_hz) << "on the case at once";
+  desk_.undoEdit();
+  EXPECT_EQ(desk_.exercise()->rate_hz, rate_hz);
+  EXPECT_FALSE(desk_.exerciseEdited());
+
+  const auto script = readOperatorScript(desk_.exercise()->operator_file, *desk_.exercise());
+  ASSERT_TRUE(script.ok()) << script.error().sentence();
+  desk_.setStepped(true);
+  desk_.start(folder_.path(), *script, 1e9);
+  EXPECT_EQ(desk_.phase(), Desk::Phase::starting);
+  ASSERT_TRUE(until([&] { return desk_.session() || failed_; }));
+  ASSERT_FALSE(failed_) << failed_->sentence();
+  EXPECT_FALSE(desk_.edit("rate", [](Exercise& exercise) { exercise.rate_hz = 500.0; }))
+      << "not while it runs";
+  desk_.session()->advance(1.5);
+  desk_.stop();
+  EXPECT_EQ(desk_.session(), nullptr) << "its end has begun";
+  ASSERT_TRUE(until([&] { return desk_.phase() == Desk::Phase::ready; }));
+  EXPECT_FALSE(failed_) << failed_->sentence();
+  ASSERT_TRUE(report_);
+  EXPECT_EQ(report_->done.ticks, std::uint64_t(1.5 * rate_hz));
+  const auto recording = SessionReader::open(report_->recording);
+  ASSERT_TRUE(recording.ok()) << recording.error().sentence();
+  EXPECT_EQ((*recording)->tickCount(), report_->done.ticks);
+}
+
+TEST_F(DeskTest, WhatIsAskedAboutAFileIsAnsweredWithoutReadingItAgain) {
+  const Volume bone = test::shells(60, 1.5, {{40, 1200}});
+  desk_.openImported(caseOf(std::make_shared<const Volume>(bone)));
+  ASSERT_TRUE(untilOpened());
+  LabelMap map{bone.geometry, std::vector<std::uint8_t>(bone.hu.size()), {}};
+  for (std::size_t v = 0; v < map.labels.size(); ++v) map.labels[v] = bone.hu[v] > 1000 ? 1 : 0;
+  map.structures = {{1, "liver", Vec3(0.5, 0.25, 0.25)}};
+  const std::filesystem::path file = folder_ / "liver.seg.nrrd";
+  ASSERT_TRUE(writeSegmentation(map, file).ok());
+
+  desk_.useLabels(file);
+  ASSERT_TRUE(untilOpened());
+  EXPECT_FALSE(failed_) << failed_->sentence();
+  ASSERT_EQ(questions_.size(), 1u);
+  EXPECT_EQ(questions_[0].asked.choice.code, "HU_NOT_TISSUE");
+  EXPECT_EQ(questions_[0].asked.choice.options, std::vector<std::string>{"keep"});
+  EXPECT_EQ(desk_.placed()->labels, nullptr) << "not used yet";
+
+  ASSERT_TRUE(std::filesystem::remove(file));
+  desk_.answer("keep");
+  ASSERT_TRUE(untilOpened());
+  EXPECT_FALSE(failed_) << failed_->sentence();
+  ASSERT_TRUE(desk_.placed()->labels);
+  EXPECT_TRUE(desk_.placed()->labels->find("liver"));
+  desk_.answer("keep");
+  EXPECT_FALSE(desk_.isOpening()) << "nothing is asked any more";
+  ASSERT_TRUE(failed_);
+  EXPECT_EQ(failed_->code, "NOT_ASKED");
+}
+
+TEST_F(DeskTest, StructuresThatWereMadeMeanwhileLeaveTheQuestionAsItIs) {
+  const Volume bone = test::shells(60, 1.5, {{40, 1200}});
+  desk_.openImported(caseOf(std::make_shared<const Volume>(bone)));
+  ASSERT_TRUE(untilOpened());
+  LabelMap map{bone.geometry, std::vector<std::uint8_t>(bone.hu.size(), 1), {}};
+  map.structures = {{1, "liver", Vec3(0.5, 0.25, 0.25)}};
+  ASSERT_TRUE(writeSegmentation(map, folder_ / "liver.seg.nrrd").ok());
+  desk_.useLabels(folder_ / "liver.seg.nrrd");
+  ASSERT_TRUE(untilOpened());
+  ASSERT_EQ(questions_.size(), 1u);
+  map.structures = {{1, "skull", Vec3(1.0)}};
+  ASSERT_TRUE(desk_.useStructures(std::make_shared<const LabelMap>(map)));
+  ASSERT_TRUE(untilOpened());
+  ASSERT_TRUE(desk_.placed()->labels);
+  desk_.answer("keep");
+  ASSERT_TRUE(untilOpened());
+  EXPECT_FALSE(failed_) << failed_->sentence();
+  EXPECT_TRUE(desk_.placed()->labels->find("liver"));
+}
+
+TEST_F(DeskTest, AnAnswerAboutAnotherCaseIsRefusedInWords) {
+  const Volume bone = test::shells(60, 1.5, {{40, 1200}});
+  desk_.openImported(caseOf(std::make_shared<const Volume>(bone)));
+  ASSERT_TRUE(untilOpened());
+  LabelMap map{bone.geometry, std::vector<std::uint8_t>(bone.hu.size(), 1), {}};
+  map.structures = {{1, "liver", Vec3(0.5, 0.25, 0.25)}};
+  ASSERT_TRUE(writeSegmentation(map, folder_ / "liver.seg.nrrd").ok());
+  desk_.useLabels(folder_ / "liver.seg.nrrd");
+  ASSERT_TRUE(untilOpened());
+  ASSERT_EQ(questions_.size(), 1u);
+  desk_.openImported(caseOf(std::make_shared<const Volume>(bone)));
+  ASSERT_TRUE(untilOpened());
+  desk_.answer("keep");
+  EXPECT_FALSE(desk_.isOpening());
+  EXPECT_EQ(desk_.placed()->labels, nullptr);
+  ASSERT_TRUE(failed_);
+  EXPECT_EQ(failed_->code, "NOT_ASKED");
+}
+
+TEST_F(DeskTest, TwoThingsAreNotOpenedAtOnce) {
+  desk_.openPhantom("cranium");
+  desk_.openPhantom("abdomen");
+  ASSERT_TRUE(failed_);
+  EXPECT_EQ(failed_->code, "BUSY");
+  failed_.reset();
+  desk_.cancelOpening();
+  ASSERT_TRUE(untilOpened());
+  EXPECT_FALSE(failed_) << "who cancels is not told of it";
+  EXPECT_EQ(desk_.phase(), Desk::Phase::empty);
+}
+
+}  // namespace
+}  // namespace trephine

@@ -1,0 +1,81 @@
+// Structures: between their panel, their editor, the slices, the case and the workstation.
+#pragma once
+
+#include <QObject>
+#include <QTimer>
+#include <cstdint>
+#include <memory>
+#include <optional>
+
+#include "ui/prepare/entry_tool.h"
+#include "ui/prepare/structure_exports.h"
+#include "ui/prepare/structure_questions.h"
+#include "ui/prepare/tissue_picture.h"
+#include "ui/structures/structure_panel.h"
+#include "ui/work/app_context.h"
+
+namespace trephine {
+
+class StructureTab : public QObject {
+  Q_OBJECT
+ public:
+  StructureTab(AppContext& app, StructurePanel& structures, StructureEditor& editor,
+               TissuePicture& picture);
+
+  // `here`: its workspace is shown; `in_front`: so is its panel. The views show what the panel
+  // lists while it is in front.
+  void show(bool here, bool in_front);
+  bool shown() const { return here_ && in_front_ && editor_.hasCase(); }
+  // The structure that the exercise needs and the case lacks: with the tool that makes it. False:
+  // it lacks nothing that could be made.
+  bool offerMissing();
+  void makeMissing();
+  EntryTool& entry() { return entry_; }
+
+  // Structures and tissues, where they have been changed, into the case of the library.
+  bool isStored() const;
+  bool inCase() const { return in_case_ == editor_.changes(); }
+  void saveInCase(AppContext::Next then);
+  void noteTissues(bool touched) { tissues_touched_ = touched; }
+  void askForLabels();
+
+ signals:
+  void frontWanted();  // its panel
+  void undoChanged();  // of the editor, or whether it is the editor's turn
+
+ private:
+  bool take();
+  void beforeStart(AppContext::Next go_on);
+  void showOpened();
+  void showPlaced();
+  void placingFailed();
+  void showReport();
+  void showLabels();
+  void showViews();
+  void toolChanged(SliceTool tool);
+  void key(int key);
+  void askAboutPreview(AppContext::Next go_on);
+  void saveThen(AppContext::Next then);
+  void unlessLost(AppContext::Next go_on);
+
+  AppContext& app_;
+  Workstation& workstation_;
+  FourUp* views_;
+  ViewWidget* view_;
+  StructurePanel& structures_;
+  StructureEditor& editor_;
+  TissuePicture& picture_;
+  StructureExports exports_;
+  StructureQuestions questions_;
+  EntryTool entry_;
+  std::shared_ptr<const LabelMap> own_structures_;  // of the case, as the editor gave or got them
+  // What the library's case has, whatever was saved to files: the editor's changes() then, nothing
+  // for structures of another file; and whether tissues have been edited since.
+  std::optional<std::uint64_t> in_case_ = 0;
+  bool tissues_touched_ = false;
+  QTimer settled_;
+  AppContext::Next start_when_placed_;  // an exercise waits for its structures
+  bool here_ = false, in_front_ = false;
+};
+
+}  // namespace trephine

@@ -1,0 +1,256 @@
+#include "ui/prepare/tissue_tab.h"
+
+#include <QFileDialog>
+#include <algorithm>
+
+#include "base/file.h"
+#include "base/system.h"
+#include "exercise/arm_limits.h"
+#include "tissue/tissue_edits.h"
+#include "ui/common/words.h"
+#include "ui/work/arms_of_place.h"
+
+namespace trephine {
+
+namespace {
+
+// What an edit is called where it can be taken back: by what stands before the colon.
+constexpr std::pair<const char*, const char*> kEditWords[] = {
+    {"threshold", QT_TRANSLATE_NOOP("trephine::TissueTab", "HU of a tissue")},
+    {"hu", QT_TRANSLATE_NOOP("trephine::TissueTab", "HU of a tissue")},
+    {"opacity", QT_TRANSLATE_NOOP("trephine::TissueTab", "opacity")},
+    {"colour", QT_TRANSLATE_NOOP("trephine::TissueTab", "colour")},
+    {"name", QT_TRANSLATE_NOOP("trephine::TissueTab", "the name of a tissue")},
+    {"set name", QT_TRANSLATE_NOOP("trephine::TissueTab", "the name of the set")},
+    {"where", QT_TRANSLATE_NOOP("trephine::TissueTab", "where a tissue is")},
+    {"add tissue", QT_TRANSLATE_NOOP("trephine::TissueTab", "a new tissue")},
+    {"remove tissue", QT_TRANSLATE_NOOP("trephine::TissueTab", "a tissue removed")},
+    {"set", QT_TRANSLATE_NOOP("trephine::TissueTab", "another set of tissues")},
+    {"elsewhere", QT_TRANSLATE_NOOP("trephine::TissueTab", "the set for other cases")},
+    {"revert", QT_TRANSLATE_NOOP("trephine::TissueTab", "the set reverted")},
+    {"entry", QT_TRANSLATE_NOOP("trephine::TissueTab", "the entry point")},
+    {"landmark", QT_TRANSLATE_NOOP("trephine::TissueTab", "a landmark")},
+    {"add landmark", QT_TRANSLATE_NOOP("trephine::TissueTab", "a new landmark")},
+    {"remove landmark", QT_TRANSLATE_NOOP("trephine::TissueTab", "a landmark removed")},
+    {"tool", QT_TRANSLATE_NOOP("trephine::TissueTab", "a tool")},
+    {"add tool", QT_TRANSLATE_NOOP("trephine::TissueTab", "a new tool")},
+    {"remove tool", QT_TRANSLATE_NOOP("trephine::TissueTab", "a tool removed")},
+    {"arm", QT_TRANSLATE_NOOP("trephine::TissueTab", "an arm")},
+    {"workspace", QT_TRANSLATE_NOOP("trephine::TissueTab", "where an arm is")},
+    {"add arm", QT_TRANSLATE_NOOP("trephine::TissueTab", "a new arm")},
+    {"remove arm", QT_TRANSLATE_NOOP("trephine::TissueTab", "an arm removed")},
+    {"laws", QT_TRANSLATE_NOOP("trephine::TissueTab", "what is felt")},
+    {"controller", QT_TRANSLATE_NOOP("trephine::TissueTab", "the controller")},
+    {"force at", QT_TRANSLATE_NOOP("trephine::TissueTab", "where the force acts")},
+    {"removal", QT_TRANSLATE_NOOP("trephine::TissueTab", "how tissue is removed")},
+    {"rate_hz", QT_TRANSLATE_NOOP("trephine::TissueTab", "the rate")},
+    {"exercise name", QT_TRANSLATE_NOOP("trephine::TissueTab", "the name of the exercise")},
+    {"anatomy", QT_TRANSLATE_NOOP("trephine::TissueTab", "the part of the body")},
+    {"structures", QT_TRANSLATE_NOOP("trephine::TissueTab", "the structures it needs")},
+    {"operator", QT_TRANSLATE_NOOP("trephine::TissueTab", "the script")},
+    {"view landmark", QT_TRANSLATE_NOOP("trephine::TissueTab", "what is looked at")},
+    {"distance_mm", QT_TRANSLATE_NOOP("trephine::TissueTab", "the distance of the eye")},
+    {"looks", QT_TRANSLATE_NOOP("trephine::TissueTab", "the looks it begins with")},
+    {"card", QT_TRANSLATE_NOOP("trephine::TissueTab", "the card")},
+    {"card on", QT_TRANSLATE_NOOP("trephine::TissueTab", "the card")},
+    {"outline", QT_TRANSLATE_NOOP("trephine::TissueTab", "the outline")},
+    {"outline off", QT_TRANSLATE_NOOP("trephine::TissueTab", "the outline")},
+    {"outline closed", QT_TRANSLATE_NOOP("trephine::TissueTab", "the outline")},
+    {"width_mm", QT_TRANSLATE_NOOP("trephine::TissueTab", "the outline")},
+    {"locks", QT_TRANSLATE_NOOP("trephine::TissueTab", "what stays")},
+};
+
+QString editWords(const std::string& what) {
+  const std::string of = what.substr(0, what.find(':'));
+  for (const auto& [edit, words] : kEditWords) {
+    if (of == edit) return TissueTab::tr(words);
+  }
+  return TissueTab::tr("a number of a tissue");
+}
+
+// A file name that nobody has to escape.
+QString setFileName(const std::string& set) {
+  QString name;
+  for (const QChar c : toQt(set)) name += c.isLetterOrNumber() ? c.toLower() : QChar('-');
+  return (name.isEmpty() ? QStringLiteral("tissues") : name) + ".json";
+}
+
+}  // namespace
+
+TissueTab::TissueTab(AppContext& app, TissuePanel& tissues, StructureEditor& editor,
+                     TissuePicture& picture)
+    : QObject(&app),
+      app_(app),
+      workstation_(app.workstation()),
+      views_(&app.views()),
+      tissues_(tissues),
+      editor_(editor),
+      picture_(picture) {
+  connect(&tissues_, &TissuePanel::tissuesChanged, this, &TissueTab::edit);
+  connect(&tissues_, &TissuePanel::looksChanged, this, [this](const TissueLooks& looks) {
+    workstation_.setLooks(looks);
+    views_->setTissues(workstation_.placedTissues(), looks);
+    picture_.show();
+  });
+  for (const auto changed : {&Workstation::controllerChanged, &Workstation::armsAnswered}) {
+    connect(&workstation_, changed, this, [this] {
+      if (workstation_.exercise()) showRenderable(workstation_.controllerInForce());
+    });
+  }
+  connect(&workstation_, &Workstation::locksChanged, this, [this] {
+    tissues_.setLocked(
+        workstation_.isLocked(Lock::tissues)
+            ? tr("The tissues are locked. %1.").arg(unlockWords(workstation_.policy()))
+            : QString());
+  });
+  connect(&tissues_, &TissuePanel::editEnded, this, [this] { workstation_.closeEdit(); });
+  // They may be about to go.
+  connect(&workstation_, &Workstation::openingProgressed, this, [this] {
+    if (!workstation_.isPlacing()) tissues_.setEnabled(false);
+  });
+  connect(&workstation_, &Workstation::openingEnded, this, [this] { tissues_.setEnabled(true); });
+  connectSets();
+}
+
+void TissueTab::showExercise() {
+  const TissueSet& placed = workstation_.placedTissues();
+  tissues_.setTissues(workstation_.tissues(), workstation_.declaredTissues());
+  showRenderable(workstation_.exercise()->controller);
+  tissues_.setLooks(workstation_.looks());
+  editor_.setTissues(placed);
+  views_->setTissues(placed, workstation_.looks());
+  picture_.show();
+}
+
+void TissueTab::edit(const TissueSet& set, const QString& what) {
+  if (!workstation_.exercise()) return;  // there is no exercise yet that they could be of
+  picture_.yieldTo(set);
+  NewTissues wanted = workstation_.withTissues(set);
+  if (Status done = workstation_.edit(wanted.exercise, what.toStdString()); !done) {
+    tissues_.setTissues(workstation_.tissues(), workstation_.declaredTissues());
+    return app_.report(done.error());
+  }
+  if (!wanted.notes.empty()) app_.say(toQt(wanted.notes.front()) + '.');
+  const TissueSet& placed = workstation_.placedTissues();
+  editor_.setTissues(placed);
+  views_->setTissues(placed, workstation_.looks());
+  emit edited();
+}
+
+void TissueTab::showHistory(bool serve) {
+  const ExerciseHistory& edits = workstation_.edits();
+  const QString undo = edits.canUndo() ? editWords(edits.undoWhat()) : QString();
+  const QString redo = edits.canRedo() ? editWords(edits.redoWhat()) : QString();
+  tissues_.showHistory(undo, redo);
+  if (!serve) return;
+  QAction *undo_action = app_.undoAction(), *redo_action = app_.redoAction();
+  undo_action->setEnabled(!undo.isEmpty());
+  redo_action->setEnabled(!redo.isEmpty());
+  undo_action->setToolTip(undo.isEmpty() ? tr("Takes back the last change; there is none")
+                                         : tr("Undo: %1").arg(undo));
+  redo_action->setToolTip(redo.isEmpty() ? tr("Brings back what was taken back; there is nothing")
+                                         : tr("Redo: %1").arg(redo));
+}
+
+// --- Sets ---
+
+void TissueTab::connectSets() {
+  connect(&tissues_, &TissuePanel::newSetWanted, this, &TissueTab::newSet);
+  connect(&tissues_, &TissuePanel::duplicateWanted, this, &TissueTab::duplicateSet);
+  connect(&tissues_, &TissuePanel::importWanted, this, &TissueTab::askForSet);
+  connect(&tissues_, &TissuePanel::exportWanted, this, &TissueTab::askToExportSet);
+  connect(&tissues_, &TissuePanel::revertWanted, this, &TissueTab::revertSet);
+  connect(&tissues_, &TissuePanel::setWanted, this, &TissueTab::useSet);
+  connect(&tissues_, &TissuePanel::undoWanted, this, [this] { workstation_.undoEdit(); });
+  connect(&tissues_, &TissuePanel::redoWanted, this, [this] { workstation_.redoEdit(); });
+  connect(&tissues_, &TissuePanel::setsWanted, this,
+          [this] { tissues_.setSets(setsOfWorkstation()); });
+}
+
+// The product's, then a person's own, each by name.
+std::vector<std::pair<QString, std::filesystem::path>> TissueTab::setsOfWorkstation() const {
+  std::vector<std::pair<QString, std::filesystem::path>> sets;
+  for (const auto& folder : {resourceFolder() / "tissues", ownSets()}) {
+    const std::size_t first = sets.size();
+    std::error_code ec;
+    for (std::filesystem::directory_iterator at(folder, ec), end; !ec && at != end;
+         at.increment(ec)) {
+      if (at->path().extension() != ".json") continue;
+      const Result<TissueSet> set = readTissueSet(at->path());
+      if (set) sets.emplace_back(shownName(set->name), at->path());
+    }
+    std::sort(sets.begin() + std::ptrdiff_t(first), sets.end());
+  }
+  return sets;
+}
+
+std::filesystem::path TissueTab::ownSets() const {
+  return app_.storage() / "tissues";
+}
+
+// In the place of the exercise's: what landmarks lose by it is said.
+void TissueTab::takeSet(const TissueSet& set, const char* what) {
+  if (!workstation_.exercise()) return;
+  TissueSet own = set;
+  own.elsewhere_file.clear();
+  NewTissues wanted = workstation_.withTissues(own);
+  workstation_.closeEdit();
+  if (Status done = workstation_.edit(wanted.exercise, what); !done) {
+    return app_.report(done.error());
+  }
+  workstation_.closeEdit();
+  emit setTaken();
+  QStringList said{tr("The exercise has the tissues \"%1\" now.").arg(shownName(set.name))};
+  for (const std::string& note : wanted.notes) said << toQt(note) + '.';
+  app_.say(said.join(' '));
+}
+
+void TissueTab::newSet() {
+  takeSet(startingSet(tr("My tissues").toStdString()), "set");
+}
+
+void TissueTab::duplicateSet() {
+  if (!workstation_.exercise()) return;
+  TissueSet set = workstation_.tissues();
+  set.name = tr("Copy of %1").arg(toQt(set.name)).left(60).toStdString();
+  takeSet(set, "set");
+}
+
+void TissueTab::askForSet() {
+  app_.askForFile("importSetDialog", tr("Import tissues"), tr("Tissues (*.json)"),
+                  [this](const auto& file) { useSet(file); });
+}
+
+void TissueTab::useSet(const std::filesystem::path& file) {
+  const Result<TissueSet> set = readTissueSet(file);
+  if (!set) return app_.report(set.error());
+  takeSet(*set, "set");
+}
+
+// Among the sets of this workstation, unless another place is chosen.
+void TissueTab::askToExportSet() {
+  if (!workstation_.exercise()) return;
+  (void)makeFolder(ownSets());
+  QFileDialog* dialog = app_.saveDialog(
+      tr("Export tissues"), setFileName(workstation_.tissues().name), tr("Tissues (*.json)"));
+  dialog->setDirectory(toQt(ownSets()));
+  connect(dialog, &QFileDialog::fileSelected, this,
+          [this](const QString& file) { workstation_.saveTissues(toPath(file), [] {}); });
+  dialog->open();
+}
+
+void TissueTab::revertSet() {
+  if (!workstation_.exercise()) return;
+  if (!workstation_.tissuesEdited()) return app_.say(tr("The set is as its file has it."));
+  takeSet(workstation_.declaredTissues(), "revert");
+}
+
+void TissueTab::showRenderable(ControllerKind in_force) {
+  const Exercise& exercise = *workstation_.exercise();
+  tissues_.setRenderable(
+      armsLimit(withForceLimit(exercise, armSettings().most_N), workstation_.rig()),
+      [exercise](const Tissue& tissue) { return demandedOf(exercise, tissue); }, exercise.laws,
+      exercise.removal, in_force);
+}
+
+}  // namespace trephine
