@@ -717,7 +717,7 @@ class ExerciseGuiTest : public test::WindowTest {
     QTRY_VERIFY_WITH_TIMEOUT(workstation().phase() == Workstation::Phase::ready, kLong_ms);
     QCOMPARE(window_->place(), Place::prepare);
     // Of a trial no cut stays in the view.
-    QVERIFY(!window_->findChild<Bench*>()->carved());
+    QVERIFY(!window_->findChild<AppContext*>()->carved());
     QVERIFY(!workstation().carved());
     // Out, and in again elsewhere.
     find<QPushButton>("exportExercise")->click();
@@ -798,7 +798,7 @@ class ExerciseGuiTest : public test::WindowTest {
     std::filesystem::copy(exercises / "mine", exercises / "mine-77", all);
     std::filesystem::create_directories(exercises / "torn");
     QVERIFY(writeTextFile(exercises / "torn" / "scene.json", "{\"format\"").ok());
-    window_->findChild<Bench*>()->tellExercises();
+    window_->findChild<AppContext*>()->tellExercises();
     auto* list = find<QComboBox>("scenes");
     const auto rowOf = [&](const char* folder) {
       return list->findData(toQt(exercises / folder / "scene.json"));
@@ -812,7 +812,7 @@ class ExerciseGuiTest : public test::WindowTest {
     QVERIFY(!list->itemData(torn, Qt::ToolTipRole).toString().isEmpty());
     std::filesystem::remove_all(exercises / "mine-77");
     std::filesystem::remove_all(exercises / "torn");
-    window_->findChild<Bench*>()->tellExercises();
+    window_->findChild<AppContext*>()->tellExercises();
   }
 
   void changedStructuresAreAskedAboutBeforeAnExport() {
@@ -850,7 +850,7 @@ class ExerciseGuiTest : public test::WindowTest {
     const std::filesystem::path folder = storage() / "cases" / id;
     std::filesystem::rename(folder, storage() / "away");
     QSignalSpy failed(window_.get(), &MainWindow::failed);
-    window_->findChild<Bench*>()->openExercise(file, Place::prepare);
+    window_->findChild<AppContext*>()->openExercise(file, Place::prepare);
     QTRY_COMPARE_WITH_TIMEOUT(failed.count(), 1, kLong_ms);
     const Error error = failed[0][0].value<Error>();
     QVERIFY2(error.what.find("not on this workstation") != std::string::npos, error.what.c_str());
