@@ -37,7 +37,7 @@ const std::string* lacking(const Exercise& exercise, const LabelMap* labels) {
 
 Result<PlacedStructures> placeStructures(const Exercise& exercise,
                                          std::shared_ptr<const LabelMap> labels) {
-  PlacedStructures placed{std::move(labels)};
+  PlacedStructures placed{std::move(labels), {}, {}};
   if (const std::string* name = lacking(exercise, placed.labels.get())) {
     if (!exercise.tissues_elsewhere) {
       return Error{"NO_STRUCTURE",
