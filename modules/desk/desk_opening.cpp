@@ -14,6 +14,13 @@ bool sameIds(const TissueSet& a, const TissueSet& b) {
   return std::ranges::equal(a.tissues, b.tissues, {}, &Tissue::id, &Tissue::id);
 }
 
+// The exercise that is open stays, on a case that has other structures.
+OpenRequest ofStructures(OpenRequest request, const Case& of) {
+  request.same_exercise = request.structures_alone = true;
+  request.of = of;
+  return request;
+}
+
 }  // namespace
 
 bool Desk::mayOpen() {
@@ -157,9 +164,7 @@ void Desk::useLabels(const std::filesystem::path& file, const Answers& answers) 
           "Open the case first, then its label map"});
     return;
   }
-  OpenRequest request = requestOf(*exercise_, exercise_file_);
-  request.same_exercise = request.structures_alone = true;
-  request.of = placed_->patient;
+  OpenRequest request = ofStructures(requestOf(*exercise_, exercise_file_), placed_->patient);
   request.structures = std::make_shared<StructureFile>(file);
   request.answers = answers;
   open(std::move(request));
@@ -175,9 +180,7 @@ void Desk::answer(const std::string& option) {
   if (!mayOpen()) return;
   // On the exercise as it is by now.
   const StructureQuestion question = *std::exchange(question_, {});
-  OpenRequest request = requestOf(*exercise_, exercise_file_);
-  request.same_exercise = request.structures_alone = true;
-  request.of = placed_->patient;
+  OpenRequest request = ofStructures(requestOf(*exercise_, exercise_file_), placed_->patient);
   request.structures = question.request.structures;
   request.answers = question.request.answers;
   request.answers[question.asked.choice.code] = option;
@@ -193,10 +196,9 @@ bool Desk::useStructures(const std::shared_ptr<const LabelMap>& structures) {
 // The exercise on the open case with these structures; `of_edit`: its places were edited.
 void Desk::placeAgain(const std::shared_ptr<const LabelMap>& structures, bool of_edit) {
   const Case& of = placed_->patient;
-  OpenRequest request = requestOf(*exercise_, exercise_file_);
-  request.same_exercise = request.structures_alone = true;
-  request.of = structures == of.structures ? of : withStructures(of, structures);
-  open(std::move(request), Opening{true, of_edit, false});
+  open(ofStructures(requestOf(*exercise_, exercise_file_),
+                    structures == of.structures ? of : withStructures(of, structures)),
+       Opening{true, of_edit, false});
 }
 
 void Desk::open(OpenRequest request, const Opening& as) {

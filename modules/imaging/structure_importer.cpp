@@ -115,6 +115,10 @@ int hideNames(Segmentation& segmentation, const StructureRequest& request) {
   return request.hide_names ? request.hide_names(segmentation) : 0;
 }
 
+Error cancelled() {
+  return {"CANCELLED", "Reading the segmentation was cancelled", "", ""};
+}
+
 // Of DICOM that holds something else.
 Error noSegmentation(const std::string& kind, const std::filesystem::path& file) {
   constexpr const char* kContours = "1.2.840.10008.5.1.4.1.1.481.3";
@@ -165,9 +169,7 @@ struct StructureFile::Read {
 Status StructureFile::Read::readKind(const Progress& progress) {
   if (kind) return {};
   std::string found = dicomKind(file, progress);
-  if (progress.cancelled()) {
-    return Error{"CANCELLED", "Reading the segmentation was cancelled", "", ""};
-  }
+  if (progress.cancelled()) return cancelled();
   kind = std::move(found);
   return {};
 }
@@ -175,9 +177,7 @@ Status StructureFile::Read::readKind(const Progress& progress) {
 Result<bool> StructureFile::Read::isOfShares(const Progress& progress) {
   if (fractional) return *fractional;
   const Result<bool> read = isFractional(file, progress);
-  if (progress.cancelled()) {
-    return Error{"CANCELLED", "Reading the segmentation was cancelled", "", ""};
-  }
+  if (progress.cancelled()) return cancelled();
   if (read) fractional = *read;
   return read;
 }

@@ -38,9 +38,30 @@ class DeskTest : public ::testing::Test, private DeskEvents {
   bool untilOpened() {
     return until([this] { return !desk_.isOpening(); });
   }
+  void openBone() {
+    desk_.openImported(caseOf(std::make_shared<const Volume>(bone_)));
+    ASSERT_TRUE(untilOpened());
+  }
+  // Until something is asked about a file in which the bone is a liver.
+  void openABonyLiver() {
+    ASSERT_NO_FATAL_FAILURE(openBone());
+    ASSERT_TRUE(writeSegmentation(*structure("liver"), liver_).ok());
+    desk_.useLabels(liver_);
+    ASSERT_TRUE(untilOpened());
+    EXPECT_FALSE(failed_) << failed_->sentence();
+    ASSERT_EQ(questions_.size(), 1u);
+  }
+  std::shared_ptr<const LabelMap> structure(const std::string& name) const {
+    LabelMap map{bone_.geometry, std::vector<std::uint8_t>(bone_.hu.size()), {}};
+    for (std::size_t v = 0; v < map.labels.size(); ++v) map.labels[v] = bone_.hu[v] > 1000;
+    map.structures = {{1, name, Vec3(0.5, 0.25, 0.25)}};
+    return std::make_shared<const LabelMap>(std::move(map));
+  }
   bool has(DeskChange change) const { return std::ranges::count(changes_, change) > 0; }
 
   test::TemporaryFolder folder_;
+  const Volume bone_ = test::shells(60, 1.5, {{40, 1200}});
+  const std::filesystem::path liver_ = folder_ / "liver.seg.nrrd";
   std::vector<DeskChange> changes_;
   std::vector<StructureQuestion> questions_;
   std::optional<RunReport> report_;
@@ -114,24 +135,12 @@ TEST_F(DeskTest, OpensACaseEditsItsExercisePractisesItAndTellsWhatWasDone) {
 }
 
 TEST_F(DeskTest, WhatIsAskedAboutAFileIsAnsweredWithoutReadingItAgain) {
-  const Volume bone = test::shells(60, 1.5, {{40, 1200}});
-  desk_.openImported(caseOf(std::make_shared<const Volume>(bone)));
-  ASSERT_TRUE(untilOpened());
-  LabelMap map{bone.geometry, std::vector<std::uint8_t>(bone.hu.size()), {}};
-  for (std::size_t v = 0; v < map.labels.size(); ++v) map.labels[v] = bone.hu[v] > 1000 ? 1 : 0;
-  map.structures = {{1, "liver", Vec3(0.5, 0.25, 0.25)}};
-  const std::filesystem::path file = folder_ / "liver.seg.nrrd";
-  ASSERT_TRUE(writeSegmentation(map, file).ok());
-
-  desk_.useLabels(file);
-  ASSERT_TRUE(untilOpened());
-  EXPECT_FALSE(failed_) << failed_->sentence();
-  ASSERT_EQ(questions_.size(), 1u);
+  ASSERT_NO_FATAL_FAILURE(openABonyLiver());
   EXPECT_EQ(questions_[0].asked.choice.code, "HU_NOT_TISSUE");
   EXPECT_EQ(questions_[0].asked.choice.options, std::vector<std::string>{"keep"});
   EXPECT_EQ(desk_.placed()->labels, nullptr) << "not used yet";
 
-  ASSERT_TRUE(std::filesystem::remove(file));
+  ASSERT_TRUE(std::filesystem::remove(liver_));
   desk_.answer("keep");
   ASSERT_TRUE(untilOpened());
   EXPECT_FALSE(failed_) << failed_->sentence();
@@ -144,17 +153,8 @@ TEST_F(DeskTest, WhatIsAskedAboutAFileIsAnsweredWithoutReadingItAgain) {
 }
 
 TEST_F(DeskTest, StructuresThatWereMadeMeanwhileLeaveTheQuestionAsItIs) {
-  const Volume bone = test::shells(60, 1.5, {{40, 1200}});
-  desk_.openImported(caseOf(std::make_shared<const Volume>(bone)));
-  ASSERT_TRUE(untilOpened());
-  LabelMap map{bone.geometry, std::vector<std::uint8_t>(bone.hu.size(), 1), {}};
-  map.structures = {{1, "liver", Vec3(0.5, 0.25, 0.25)}};
-  ASSERT_TRUE(writeSegmentation(map, folder_ / "liver.seg.nrrd").ok());
-  desk_.useLabels(folder_ / "liver.seg.nrrd");
-  ASSERT_TRUE(untilOpened());
-  ASSERT_EQ(questions_.size(), 1u);
-  map.structures = {{1, "skull", Vec3(1.0)}};
-  ASSERT_TRUE(desk_.useStructures(std::make_shared<const LabelMap>(map)));
+  ASSERT_NO_FATAL_FAILURE(openABonyLiver());
+  ASSERT_TRUE(desk_.useStructures(structure("skull")));
   ASSERT_TRUE(untilOpened());
   ASSERT_TRUE(desk_.placed()->labels);
   desk_.answer("keep");
@@ -164,17 +164,8 @@ TEST_F(DeskTest, StructuresThatWereMadeMeanwhileLeaveTheQuestionAsItIs) {
 }
 
 TEST_F(DeskTest, AnAnswerAboutAnotherCaseIsRefusedInWords) {
-  const Volume bone = test::shells(60, 1.5, {{40, 1200}});
-  desk_.openImported(caseOf(std::make_shared<const Volume>(bone)));
-  ASSERT_TRUE(untilOpened());
-  LabelMap map{bone.geometry, std::vector<std::uint8_t>(bone.hu.size(), 1), {}};
-  map.structures = {{1, "liver", Vec3(0.5, 0.25, 0.25)}};
-  ASSERT_TRUE(writeSegmentation(map, folder_ / "liver.seg.nrrd").ok());
-  desk_.useLabels(folder_ / "liver.seg.nrrd");
-  ASSERT_TRUE(untilOpened());
-  ASSERT_EQ(questions_.size(), 1u);
-  desk_.openImported(caseOf(std::make_shared<const Volume>(bone)));
-  ASSERT_TRUE(untilOpened());
+  ASSERT_NO_FATAL_FAILURE(openABonyLiver());
+  ASSERT_NO_FATAL_FAILURE(openBone());
   desk_.answer("keep");
   EXPECT_FALSE(desk_.isOpening());
   EXPECT_EQ(desk_.placed()->labels, nullptr);
