@@ -52,6 +52,19 @@ class DevicesGuiTest : public test::TrainTest {
     const std::uint64_t begin = hd_->frames;
     QTRY_VERIFY_WITH_TIMEOUT(hd_->frames > begin + frames, kSoon_ms);
   }
+  // Presses the arm's button until the force that is tested for reaches `least_N`. A machine that
+  // stands still for a moment has the force taken away, as it must: then the test begins again.
+  void pullUp(double least_N) {
+    hd_->arms[0].buttons = 1;
+    QTRY_VERIFY_WITH_TIMEOUT(
+        [&] {
+          if (find<QLabel>("forceTest")->text().contains("was taken away")) {
+            find<QPushButton>("testForce")->click();
+          }
+          return force_N(0) > least_N;
+        }(),
+        kSoon_ms);
+  }
   void choose(const char* box, int index) {
     auto* of = find<QComboBox>(box);
     of->setCurrentIndex(index);
@@ -108,8 +121,7 @@ class DevicesGuiTest : public test::TrainTest {
     QTRY_VERIFY(find<QLabel>("forceTest")->text().contains("Hold the arm"));
     framesGoBy(1500);
     QCOMPARE(force_N(0), 0.0);
-    hd_->arms[0].buttons = 1;
-    QTRY_VERIFY_WITH_TIMEOUT(force_N(0) > 0.3, 5000);
+    pullUp(0.3);
     QVERIFY(hd_->arms[0].force_N[1] > 0.3);
     QTRY_VERIFY(find<QLabel>("forceTest")->text().contains("It pulls up"));
     picture("devices-force");
@@ -132,8 +144,7 @@ class DevicesGuiTest : public test::TrainTest {
     auto* test = find<QPushButton>("testForce");
     QTRY_VERIFY(test->isEnabled());
     test->click();
-    hd_->arms[0].buttons = 1;
-    QTRY_VERIFY_WITH_TIMEOUT(force_N(0) > 0.2, 5000);
+    pullUp(0.2);
     QTest::keyClick(dialog, Qt::Key_Escape);
     QVERIFY(dialog->isVisible());
     QTRY_COMPARE(force_N(0), 0.0);
@@ -167,8 +178,7 @@ class DevicesGuiTest : public test::TrainTest {
     auto* test = find<QPushButton>("testForce");
     QTRY_VERIFY(test->isEnabled());
     test->click();
-    hd_->arms[0].buttons = 1;
-    QTRY_VERIFY_WITH_TIMEOUT(force_N(0) > 0.2, 5000);
+    pullUp(0.2);
     QElapsedTimer clock;
     clock.start();
     closeDialog();
