@@ -18,8 +18,7 @@ struct RunArguments {
   std::string operator_file;  // empty: the exercise's default
   std::string arms_file;      // empty: the exercise's own devices
   std::optional<double> seconds;  // empty: as long as the script
-  std::optional<double> rate_hz;
-  std::string controller;  // empty: the exercise's
+  std::map<std::string, std::string> settings;  // of the exercise, by kTouchFields' keys
   std::string save_volume;
   std::string csv;  // empty: none
   std::string out;

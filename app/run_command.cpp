@@ -10,7 +10,7 @@
 #include "base/log.h"
 #include "desk/opening.h"
 #include "exercise/arms_file.h"
-#include "exercise/exercise_numbers.h"
+#include "exercise/exercise_fields.h"
 #include "exercise/names.h"
 #include "lab/exercise/exercise_picture.h"
 #include "session/arm_devices.h"
@@ -24,28 +24,33 @@ namespace {
 
 namespace fs = std::filesystem;
 
-Error locked(const std::string& what, const char* option) {
-  return {"LOCKED", "The workstation or the exercise locks " + what, option,
-          "Leave the option away"};
+// A setting of the command line, where nothing keeps it as it is.
+Status applySetting(const FieldOf<Exercise>& field, const std::string& text, const Locks& locks,
+                    Exercise& exercise) {
+  const FieldShape shape = shapeOf(field);
+  const std::string option = optionOf(shape.row);
+  const Result<FieldValue> value = parseField(shape, text, option);
+  if (!value) return value.error();
+  const auto lock = kindOf(kLockNames, shape.row.lock);
+  if (lock && locks.contains(*lock) && *value != valueOf(field, exercise)) {
+    return Error{"LOCKED", std::string("The workstation or the exercise locks the ") + shape.row.lock,
+                 option, "Leave the option away"};
+  }
+  setValue(field, exercise, *value);
+  return {};
 }
 
 // Puts the command line's choices into the exercise.
 Status applyChoices(const RunArguments& arguments, const Policy& policy, Exercise& exercise,
                     Rig& rig) {
   const Locks locks = locksOf(policy, exercise);
-  const bool other_rate = arguments.rate_hz.value_or(exercise.rate_hz) != exercise.rate_hz;
-  const bool other_controller =
-      !arguments.controller.empty() && arguments.controller != controllerName(exercise.controller);
-  if (other_rate && locks.contains(Lock::rate)) return locked("the rate", "--rate");
-  if (other_controller && locks.contains(Lock::controller)) {
-    return locked("the controller", "--controller");
+  for (const FieldOf<Exercise>& field : kTouchFields) {
+    const auto text = arguments.settings.find(field.row.key);
+    if (text == arguments.settings.end() || text->second.empty()) continue;
+    if (Status s = applySetting(field, text->second, locks, exercise); !s) return s;
   }
   if (!arguments.case_source.empty()) exercise = onCase(std::move(exercise), arguments.case_source);
   if (!arguments.labels.empty()) exercise.labels_file = arguments.labels;
-  if (arguments.rate_hz) exercise.rate_hz = *arguments.rate_hz;
-  if (!(exercise.rate_hz >= 100.0 && exercise.rate_hz <= 20000.0)) {
-    return Error{"BAD_ARGUMENT", "The rate must lie between 100 and 20000 Hz", "--rate", ""};
-  }
   if (!arguments.arms_file.empty()) {
     Result<std::vector<NamedDevice>> arms = readArmsFile(arguments.arms_file);
     if (!arms) return arms.error();
@@ -55,13 +60,7 @@ Status applyChoices(const RunArguments& arguments, const Policy& policy, Exercis
     Rig asked = rig;  // what is not there is said before a case is opened
     if (Status there = readArmDynamics(exercise, asked); !there) return there;
   }
-  if (arguments.controller.empty()) return {};
-  if (const auto kind = kindOf(kControllerNames, arguments.controller)) {
-    exercise.controller = *kind;
-    return {};
-  }
-  return Error{"BAD_ARGUMENT", "There is no controller '" + arguments.controller + "'",
-               "--controller", choices(kControllerNames)};
+  return {};
 }
 
 // A run writes over nothing: what it is to save goes to names that nothing has, neither now nor by

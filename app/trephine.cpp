@@ -14,7 +14,7 @@
 #include "base/system.h"
 #include "ui/common/colours.h"
 #include "ui/common/error_dialog.h"
-#include "ui/common/settings.h"
+#include "ui/common/preferences.h"
 #include "ui/common/words.h"
 #include "ui/frame/exercise.h"
 #include "ui/frame/main_window.h"
@@ -86,9 +86,8 @@ int run(int argc, char** argv) {
   }
   QApplication::setApplicationName("trephine");
   QApplication::setApplicationDisplayName("Trephine");
-  const colours::Theme theme =
-      read(settings::kTheme) == "light" ? colours::Theme::light : colours::Theme::dark;
-  colours::applyTheme(*application, theme, readWithin(settings::kTextScale, 80, 200));
+  const Preferences wanted = preferences();
+  colours::applyTheme(*application, wanted.theme, wanted.text_percent);
   if (!exercise.empty()) {
     ExerciseOptions options{exercise, arms, {}, out, policy};
     if (seconds > 0.0) options.seconds = seconds;

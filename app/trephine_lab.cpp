@@ -72,8 +72,12 @@ int run(int argc, char** argv) {
   run_command->add_option("--seconds", arguments.seconds, "How long; the script's length unless given");
   run_command->add_flag("--realtime", arguments.realtime,
                         "At the clock's pace, on a thread of its own; with real arms always");
-  run_command->add_option("--rate", arguments.rate_hz, "Ticks a second");
-  run_command->add_option("--controller", arguments.controller, "off, seed or bounded");
+  for (const FieldOf<Exercise>& field : kTouchFields) {
+    const FieldShape shape = shapeOf(field);
+    if (shape.kind == FieldKind::choices) continue;
+    run_command->add_option(optionOf(shape.row), arguments.settings[shape.row.key],
+                            shape.row.meaning);
+  }
   run_command->add_option("--save-volume", arguments.save_volume, "Save the carved volume")
       ->check(named);
   run_command

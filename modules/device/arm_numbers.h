@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <string>
 
-#include "base/number_row.h"
+#include "base/field.h"
 #include "device/arm_ranges.h"
 #include "device/trephine_device.h"
 
@@ -13,7 +13,7 @@ namespace trephine {
 
 // A number or, for each axis, numbers of TrephineCapabilities.
 struct CapabilityNumber {
-  NumberRow row;
+  FieldRow row;
   std::size_t offset;
   std::size_t count = 1;
 

@@ -5,7 +5,7 @@
 
 #include "base/json.h"
 #include "base/system.h"
-#include "exercise/exercise_numbers.h"
+#include "exercise/exercise_fields.h"
 
 namespace trephine {
 
@@ -23,7 +23,7 @@ ArmDevice readDevice(JsonReader& item, const fs::path& folder) {
   if (item.ok() && device.plugin.empty()) {
     item.fail("plugin", "It names no plugin", "Name one, such as simulated");
   }
-  readNumbers(item, kDeviceNumbers, device);
+  readFields(item, kDeviceFields, device);
   const std::string config = item.text("config", "");
   if (config.empty()) return device;
   device.config = (folder / config).lexically_normal().string();

@@ -1,6 +1,7 @@
 #include "exercise/exercise_card.h"
 
 #include "base/utf8.h"
+#include "exercise/exercise_fields.h"
 
 namespace trephine {
 
@@ -23,9 +24,7 @@ void checkText(JsonReader& reader, const char* key, const std::string& text, std
 
 CardText readText(JsonReader reader) {
   CardText text;
-  text.goal = reader.text("goal");
-  text.steps = reader.texts("steps", kCardSteps);
-  text.hands = reader.text("hands");
+  readFields(reader, kCardFields, text);
   if (!reader.ok()) return text;
   checkText(reader, "goal", text.goal, kCardGoal);
   if (text.steps.empty()) reader.fail("steps", "There is no step", "Say at least one");
@@ -35,7 +34,9 @@ CardText readText(JsonReader reader) {
 }
 
 Json toJson(const CardText& text) {
-  return {{"goal", text.goal}, {"steps", text.steps}, {"hands", text.hands}};
+  Json json;
+  writeFields(json, kCardFields, text);
+  return json;
 }
 
 }  // namespace

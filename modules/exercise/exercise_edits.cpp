@@ -176,4 +176,74 @@ Exercise asSaved(Exercise exercise, const Exercise& saved) {
   return exercise;
 }
 
+ToolDescription fitted(ToolDescription tool) {
+  if (tool.kind != ToolKind::burr) {
+    tool.shape = BurrShape::sphere;
+    return tool;
+  }
+  if (tool.shape == BurrShape::cylinder) tool.head_mm = std::max(tool.head_mm, 2.0 * tool.radius_mm);
+  const double head_mm =
+      tool.shape == BurrShape::cylinder ? tool.head_mm : 2.0 * tool.radius_mm;
+  tool.length_mm = std::max(tool.length_mm, head_mm + 1.0);
+  return tool;
+}
+
+ExerciseArm withInHand(ExerciseArm arm, const std::string& tool) {
+  const std::string before = std::exchange(arm.tool, tool);
+  std::erase(arm.other_tools, tool);
+  if (before != tool && arm.other_tools.size() + 1 < kMostTools) arm.other_tools.push_back(before);
+  return arm;
+}
+
+void renameLandmark(Exercise& exercise, std::size_t landmark, const std::string& name) {
+  const std::string before = std::exchange(exercise.landmarks[landmark].id, name);
+  const auto rename = [&](std::string& of) {
+    if (of == before) of = name;
+  };
+  for (ExerciseArm& arm : exercise.arms) rename(arm.map.landmark);
+  rename(exercise.view.landmark);
+  if (exercise.outline && exercise.outline->frame) rename(exercise.outline->frame->landmark);
+}
+
+void renameTool(Exercise& exercise, std::size_t tool, const std::string& name) {
+  const std::string before = std::exchange(exercise.tools[tool].id, name);
+  for (ExerciseArm& arm : exercise.arms) {
+    if (arm.tool == before) arm.tool = name;
+    std::ranges::replace(arm.other_tools, before, name);
+  }
+}
+
+void addLandmarkLike(Exercise& exercise, std::size_t landmark) {
+  Landmark more = exercise.landmarks[landmark];
+  int number = 2;
+  while (exercise.findLandmarkById("place-" + std::to_string(number))) ++number;
+  more.id = "place-" + std::to_string(number);
+  exercise.landmarks.push_back(more);
+}
+
+void addArmLike(Exercise& exercise, std::size_t arm) {
+  ExerciseArm more = exercise.arms[arm];
+  const auto named = [&](const std::string& name) {
+    return std::ranges::find(exercise.arms, name, &ExerciseArm::name) != exercise.arms.end();
+  };
+  more.name = !named("left") ? "left" : !named("right") ? "right" : "arm-3";
+  for (int n = 3; named(more.name); ++n) more.name = "arm-" + std::to_string(n);
+  exercise.arms.push_back(more);
+}
+
+void findByRay(Landmark& landmark) {
+  landmark.is_place = false;
+  landmark.bulk_radius_mm = 0.0;
+  if (landmark.from != landmark.towards) return;
+  landmark.from = Vec3(0.5, 0.5, 1.5);
+  landmark.towards = Vec3(0.5, 0.5, 0.5);
+}
+
+void findByBulk(Landmark& landmark) {
+  constexpr double kUsual_mm = 20.0;
+  landmark.is_place = false;
+  landmark.bulk_radius_mm = kUsual_mm;
+  if (!(glm::length(landmark.outward) > 0.0)) landmark.outward = Vec3(0.0, 0.0, 1.0);
+}
+
 }  // namespace trephine

@@ -87,6 +87,24 @@ bool sameFiles(const Exercise& a, const Exercise& b);
 // Both are moved by the same devices at the same rate.
 bool sameDevices(const Exercise& a, const Exercise& b);
 
+// --- What goes along with an edit.
+
+// A tool whose kind or shape is another now: a burr at least as long as its head, a cylinder's head
+// at least as long as it is thick.
+ToolDescription fitted(ToolDescription tool);
+// The arm with that tool in hand at first; the one that it had stays at hand.
+ExerciseArm withInHand(ExerciseArm arm, const std::string& tool);
+// Another name of a landmark or a tool, and whatever names it.
+void renameLandmark(Exercise& exercise, std::size_t landmark, const std::string& name);
+void renameTool(Exercise& exercise, std::size_t tool, const std::string& name);
+// Another landmark or arm as this one, under a name that nothing has.
+void addLandmarkLike(Exercise& exercise, std::size_t landmark);
+void addArmLike(Exercise& exercise, std::size_t arm);
+// A landmark that is found by a ray, from above to the middle where it had none; or at the most of
+// its tissue.
+void findByRay(Landmark& landmark);
+void findByBulk(Landmark& landmark);
+
 // --- An exercise beside what it was opened as, or saved as: `opened`.
 
 // The landmark is a place in this patient that a person has clicked.

@@ -3,7 +3,7 @@
 
 #include "exercise/arms_file.h"
 #include "exercise/names.h"
-#include "exercise/exercise_numbers.h"
+#include "exercise/exercise_fields.h"
 #include "volume/phantom.h"
 
 namespace trephine {
@@ -17,12 +17,11 @@ constexpr std::size_t kMostInAList = 64;
 ExerciseMap readMap(JsonReader map) {
   ExerciseMap out;
   if (!map.has("centre_mm")) {
-    out.landmark = map.text("landmark");
-    readNumbers(map, kExerciseMapNumbers, out);
+    readFields(map, kExerciseMapFields, out);
     return out;
   }
   WorkspaceMap fixed;
-  readNumbers(map, kWorkspaceMapNumbers, fixed);
+  readFields(map, kWorkspaceMapFields, fixed);
   fixed.rotation = readRotation(map);
   out.motion_scale = fixed.motion_scale;
   out.force_scale = fixed.force_scale;
@@ -32,11 +31,8 @@ ExerciseMap readMap(JsonReader map) {
 
 ExerciseArm readArm(JsonReader& item) {
   ExerciseArm arm;
-  arm.name = item.text("name");
-  arm.tool = item.text("tool");
-  if (item.has("other_tools")) arm.other_tools = item.texts("other_tools", kMostTools - 1);
   arm.map = readMap(item.object("map"));
-  readNumbers(item, kArmNumbers, arm);
+  readFields(item, kArmFields, arm);
   return arm;
 }
 
@@ -47,30 +43,20 @@ Rig::Arm readRigArm(JsonReader& item, const fs::path& folder) {
   arm.device = readDevice(device, folder);
   if (item.has("dynamics")) {
     JsonReader dynamics = item.object("dynamics");
-    readNumbers(dynamics, kArmDynamicsNumbers, arm.dynamics.emplace());
+    readFields(dynamics, kArmDynamicsFields, arm.dynamics.emplace());
   }
   return arm;
 }
 
 Landmark readLandmark(JsonReader& item) {
   Landmark landmark;
-  landmark.id = item.text("id");
-  landmark.tissue = item.text("tissue");
-  if (item.has("at_mm")) {
-    landmark.is_place = true;
-    readNumbers(item, kPlaceNumbers, landmark);
-    landmark.outward = item.direction("outward");
-  } else if (item.has("bulk_radius_mm")) {
-    readNumbers(item, kBulkNumbers, landmark);
-    landmark.outward = item.direction("outward");
-  } else {
-    readNumbers(item, kRayNumbers, landmark);
-    if (item.ok() && landmark.from == landmark.towards) {
-      item.fail("towards", "The ray of the landmark '" + landmark.id + "' goes nowhere",
-                "Let it go to another place than it begins at");
-    }
+  landmark.is_place = item.has("at_mm");
+  if (item.has("bulk_radius_mm")) landmark.bulk_radius_mm = kBulkRadius_mm.low;
+  readFields(item, kLandmarkFields, landmark);
+  if (item.ok() && isRay(landmark) && landmark.from == landmark.towards) {
+    item.fail("towards", "The ray of the landmark '" + landmark.id + "' goes nowhere",
+              "Let it go to another place than it begins at");
   }
-  readNumbers(item, kLandmarkNumbers, landmark);
   return landmark;
 }
 
@@ -95,18 +81,6 @@ TissueLooks readLooks(JsonReader& view, const TissueSet& tissues) {
                "Use the ids of the scene's tissues");
   }
   return looks;
-}
-
-Locks readLocks(JsonReader& reader) {
-  Locks locks;
-  for (const std::string& name : reader.texts("locks", kLockNames.size())) {
-    if (const auto lock = kindOf(kLockNames, name)) {
-      locks.insert(*lock);
-    } else {
-      reader.fail("locks", "There is nothing to lock called '" + name + "'", choices(kLockNames));
-    }
-  }
-  return locks;
 }
 
 // Names by which others refer to an element are there once.
@@ -166,7 +140,6 @@ void checkReferences(JsonReader& reader, const Exercise& exercise) {
   checkNamesDiffer(reader, "landmarks", exercise.landmarks, [](const auto& l) { return l.id; });
   checkNamesDiffer(reader, "tools", exercise.tools, [](const auto& t) { return t.id; });
   checkNamesDiffer(reader, "arms", exercise.arms, [](const auto& a) { return a.name; });
-  checkNamesDiffer(reader, "laws", exercise.laws, [](LawKind law) { return nameOf(kLawNames, law); });
   for (const ExerciseArm& arm : exercise.arms) {
     checkToolsOf(reader, exercise, arm);
     if (!arm.map.fixed && !exercise.findLandmarkById(arm.map.landmark)) {
@@ -199,8 +172,7 @@ Result<Exercise> parse(const Json& json, const fs::path& file, Rig* rig) {
   JsonReader reader(json, file.string());
   Exercise exercise;
   reader.format("trephine.scene", 1);
-  exercise.name = reader.text("name");
-  exercise.anatomy = reader.text("anatomy");
+  readFields(reader, kExerciseFields, exercise);
   exercise.case_source = reader.text("case", "");
   if (const auto phantom = phantomNamed(exercise.case_source)) {
     const auto there = phantomGeometry(*phantom);
@@ -210,7 +182,6 @@ Result<Exercise> parse(const Json& json, const fs::path& file, Rig* rig) {
   }
   const std::string labels = reader.text("labels", "");
   if (!labels.empty()) exercise.labels_file = (folder / labels).lexically_normal().string();
-  if (reader.has("structures")) exercise.structures = reader.texts("structures", kMostInAList);
   Result<TissueSet> tissues = readTissues(reader.raw("tissues"), folder, file.string());
   if (reader.ok() && !tissues) return tissues.error();
   if (tissues) exercise.tissues = *std::move(tissues);
@@ -232,32 +203,7 @@ Result<Exercise> parse(const Json& json, const fs::path& file, Rig* rig) {
     exercise.arms.push_back(readArm(item));
     if (rig) rig->arms.push_back(readRigArm(item, folder));
   }
-  for (const std::string& name : reader.texts("laws", kMostInAList)) {
-    if (auto kind = kindOf(kLawNames, name)) {
-      exercise.laws.push_back(*kind);
-    } else {
-      reader.fail("laws", "Unknown law '" + name + "'", choices(kLawNames));
-    }
-  }
-  const std::string force_at = reader.text("force_at", "tip");
-  if (auto kind = kindOf(kForceAtNames, force_at)) {
-    exercise.force_at = *kind;
-  } else {
-    reader.fail("force_at", "Unknown place of force '" + force_at + "'", choices(kForceAtNames));
-  }
-  const std::string removal = reader.text("removal", "work");
-  if (auto kind = kindOf(kRemovalNames, removal)) {
-    exercise.removal = *kind;
-  } else {
-    reader.fail("removal", "Unknown removal '" + removal + "'", choices(kRemovalNames));
-  }
-  const std::string controller = reader.text("controller");
-  if (auto kind = kindOf(kControllerNames, controller)) {
-    exercise.controller = *kind;
-  } else {
-    reader.fail("controller", "Unknown controller '" + controller + "'", choices(kControllerNames));
-  }
-  readNumbers(reader, kExerciseNumbers, exercise);
+  readFields(reader, kTouchFields, exercise);
   const std::string script = reader.text("operator", "");
   if (!script.empty()) {
     exercise.operator_file = (folder / script).lexically_normal().string();
@@ -268,13 +214,12 @@ Result<Exercise> parse(const Json& json, const fs::path& file, Rig* rig) {
   }
   if (reader.has("view")) {
     JsonReader view = reader.object("view");
-    exercise.view.landmark = view.text("landmark", "");
-    readNumbers(view, kViewNumbers, exercise.view);
+    readFields(view, kViewFields, exercise.view);
     if (view.has("looks")) exercise.view.looks = readLooks(view, exercise.tissues);
   }
   if (reader.has("card")) exercise.card = readExerciseCard(reader.object("card"));
   if (reader.has("outline")) exercise.outline = readExerciseOutline(reader.object("outline"));
-  if (reader.has("locks")) exercise.locks = readLocks(reader);
+  readFields(reader, kLockFields, exercise);
   if (reader.ok()) checkReferences(reader, exercise);
   if (rig && reader.ok()) checkRig(reader, exercise, *rig);
   if (Status status = reader.finish(); !status) return status.error();
@@ -343,11 +288,10 @@ Json exerciseFile(const Exercise& exercise) {
     if (look.mesh.empty()) continue;
     Json& tool = json["tools"][i];
     tool["mesh"] = look.mesh.string();
-    writeNumbers(tool, kLookNumbers, look);
-    tool["axis"] = {look.axis.x, look.axis.y, look.axis.z};
+    writeFields(tool, kLookFields, look);
   }
   if (exercise.view.distance_mm != ExerciseView{}.distance_mm || !exercise.view.landmark.empty()) {
-    writeNumbers(json["view"], kViewNumbers, exercise.view);
+    writeFields(json["view"], kViewFields, exercise.view);
   }
   return json;
 }
@@ -367,27 +311,17 @@ Json toJson(const RecordedExercise& recorded) {
     const auto& [device, dynamics] = recorded.rig.arms[i];
     Json& arm = json["arms"][i];
     arm["device"]["plugin"] = device.plugin;
-    writeNumbers(arm["device"], kDeviceNumbers, device);
-    if (dynamics) writeNumbers(arm["dynamics"], kArmDynamicsNumbers, *dynamics);
+    writeFields(arm["device"], kDeviceFields, device);
+    if (dynamics) writeFields(arm["dynamics"], kArmDynamicsFields, *dynamics);
   }
   return json;
 }
 
 Json toJson(const Exercise& exercise) {
-  const auto vec = [](const Vec3& v) { return Json{v.x, v.y, v.z}; };
-  Json landmarks = Json::array(), tools = Json::array(), arms = Json::array(), laws = Json::array();
+  Json landmarks = Json::array(), tools = Json::array(), arms = Json::array();
   for (const Landmark& l : exercise.landmarks) {
-    Json landmark = {{"id", l.id}, {"tissue", l.tissue}};
-    if (l.is_place) {
-      writeNumbers(landmark, kPlaceNumbers, l);
-      landmark["outward"] = vec(l.outward);
-    } else if (l.bulk_radius_mm > 0.0) {
-      writeNumbers(landmark, kBulkNumbers, l);
-      landmark["outward"] = vec(l.outward);
-    } else {
-      writeNumbers(landmark, kRayNumbers, l);
-    }
-    writeNumbers(landmark, kLandmarkNumbers, l);
+    Json landmark;
+    writeFields(landmark, kLandmarkFields, l);
     landmarks.push_back(landmark);
   }
   for (const ExerciseTool& t : exercise.tools) tools.push_back(toJson(t));
@@ -395,41 +329,31 @@ Json toJson(const Exercise& exercise) {
     Json map;
     if (a.map.fixed) {
       const Quat& q = a.map.fixed->rotation;
-      writeNumbers(map, kWorkspaceMapNumbers, *a.map.fixed);
+      writeFields(map, kWorkspaceMapFields, *a.map.fixed);
       map["rotation_wxyz"] = {q.w, q.x, q.y, q.z};
     } else {
-      map["landmark"] = a.map.landmark;
-      writeNumbers(map, kExerciseMapNumbers, a.map);
+      writeFields(map, kExerciseMapFields, a.map);
     }
-    Json arm{{"name", a.name}, {"tool", a.tool}, {"map", map}};
-    if (!a.other_tools.empty()) arm["other_tools"] = a.other_tools;
-    writeNumbers(arm, kArmNumbers, a);
+    Json arm;
+    writeFields(arm, kArmFields, a);
+    arm["map"] = map;
     arms.push_back(arm);
   }
-  for (LawKind law : exercise.laws) laws.push_back(nameOf(kLawNames, law));
-  Json json = {{"format", "trephine.scene"}, {"version", 1}, {"name", exercise.name},
-               {"anatomy", exercise.anatomy}};
+  Json json{{"format", "trephine.scene"}, {"version", 1}};
+  writeFields(json, kExerciseFields, exercise);
   if (phantomNamed(exercise.case_source)) json["case"] = exercise.case_source;
-  if (!exercise.structures.empty()) json["structures"] = exercise.structures;
   json["tissues"] = toJson(exercise.tissues);
   json["landmarks"] = landmarks;
   json["tools"] = tools;
   json["arms"] = arms;
-  json["laws"] = laws;
-  json["force_at"] = nameOf(kForceAtNames, exercise.force_at);
-  json["removal"] = nameOf(kRemovalNames, exercise.removal);
-  json["controller"] = controllerName(exercise.controller);
-  writeNumbers(json, kExerciseNumbers, exercise);
-  if (!exercise.view.landmark.empty()) {
-    json["view"]["landmark"] = exercise.view.landmark;
-    writeNumbers(json["view"], kViewNumbers, exercise.view);
-  }
+  writeFields(json, kTouchFields, exercise);
+  if (!exercise.view.landmark.empty()) writeFields(json["view"], kViewFields, exercise.view);
   for (const auto& [id, look] : exercise.view.looks) {
     json["view"]["looks"][id] = nameOf(kTissueLookNames, look);
   }
   if (exercise.card) json["card"] = toJson(*exercise.card);
   if (exercise.outline) json["outline"] = toJson(*exercise.outline);
-  for (const Lock lock : exercise.locks) json["locks"].push_back(nameOf(kLockNames, lock));
+  writeFields(json, kLockFields, exercise);
   return json;
 }
 

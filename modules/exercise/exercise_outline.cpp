@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "exercise/exercise.h"
-#include "exercise/exercise_numbers.h"
+#include "exercise/exercise_fields.h"
 
 namespace trephine {
 
@@ -61,7 +61,6 @@ ExerciseOutline readExerciseOutline(JsonReader reader) {
       outline.points_mm.push_back(readPoint(reader, points[i], i));
     }
   }
-  outline.closed = reader.boolean("closed", false);
   // A line that went with its landmark may be longer by a rounding.
   const double length_mm = lengthOf_mm(outline);
   if (reader.ok() && length_mm > kOutlineLength_mm + 1e-3) {
@@ -69,12 +68,12 @@ ExerciseOutline readExerciseOutline(JsonReader reader) {
                               " mm long, at most " + plainNumber(kOutlineLength_mm) +
                               " can be drawn");
   }
-  readNumbers(reader, kOutlineNumbers, outline);
+  readFields(reader, kOutlineFields, outline);
   if (reader.has("frame")) {
     JsonReader frame = reader.object("frame");
     ExerciseOutline::Frame& of = outline.frame.emplace();
     of.landmark = frame.text("landmark");
-    readNumbers(frame, kOutlineFrameNumbers, of.at);
+    readFields(frame, kOutlineFrameFields, of.at);
     of.at.rotation = readRotation(frame);
   }
   return outline;
@@ -83,11 +82,11 @@ ExerciseOutline readExerciseOutline(JsonReader reader) {
 Json toJson(const ExerciseOutline& outline) {
   Json points = Json::array();
   for (const Vec3& p : outline.points_mm) points.push_back({p.x, p.y, p.z});
-  Json json{{"points", points}, {"closed", outline.closed}};
-  writeNumbers(json, kOutlineNumbers, outline);
+  Json json{{"points", points}};
+  writeFields(json, kOutlineFields, outline);
   if (!outline.frame) return json;
   Json frame{{"landmark", outline.frame->landmark}};
-  writeNumbers(frame, kOutlineFrameNumbers, outline.frame->at);
+  writeFields(frame, kOutlineFrameFields, outline.frame->at);
   const Quat& q = outline.frame->at.rotation;
   frame["rotation_wxyz"] = {q.w, q.x, q.y, q.z};
   json["frame"] = frame;

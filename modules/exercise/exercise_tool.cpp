@@ -1,34 +1,22 @@
 #include "exercise/exercise_tool.h"
 
-#include "exercise/exercise_numbers.h"
+#include "exercise/exercise_fields.h"
 
 namespace trephine {
 
 namespace {
 
 // What an exercise may set itself of a tool that comes from a file.
-constexpr std::span<const NumberOf<ToolDescription>> kOwnNumbers[] = {kToolNumbers, kBurrNumbers};
-
-template <class Kind, std::size_t N>
-Kind readKind(JsonReader& item, const char* key, const std::string& text,
-              const Names<Kind, N>& names, const char* what) {
-  if (const auto kind = kindOf(names, text)) return *kind;
-  item.fail(key, "Unknown " + std::string(what) + " '" + text + "'", choices(names));
-  return names[0].second;
-}
+constexpr const char* kOwnFields[] = {"length_mm", "points", "radius_mm", "motor_W",
+                                      "shaft_points"};
 
 // The keys that a tool file and an exercise's own tool share.
 Tool readTool(JsonReader& item) {
+  constexpr FieldsOf<ToolDescription> kFields = kToolFields;
   ToolDescription d;
-  d.kind = readKind(item, "kind", item.text("kind"), kToolNames, "tool");
-  const bool burr = d.kind == ToolKind::burr;
-  if (burr) d.points = 64;
-  readNumbers(item, kToolNumbers, d);
-  if (burr) {
-    readNumbers(item, kBurrNumbers, d);
-    d.shape = readKind(item, "shape", item.text("shape", "sphere"), kShapeNames, "shape");
-    if (d.shape == BurrShape::cylinder) readNumbers(item, kCylinderNumbers, d);
-  }
+  readFields<ToolDescription>(item, kFields.first(1), d);  // the kind
+  if (isBurr(d)) d.points = 64;
+  readFields<ToolDescription>(item, kFields.subspan(1), d);
   if (!item.ok()) return {};
   Result<Tool> tool = makeTool(d);
   if (tool) return *std::move(tool);
@@ -41,8 +29,7 @@ ToolLook readLook(JsonReader& item, const std::filesystem::path& folder) {
   const std::string file = item.text("mesh", "");
   if (file.empty()) return look;
   look.mesh = (folder / file).lexically_normal();
-  readNumbers(item, kLookNumbers, look);
-  look.axis = item.direction("axis", Vec3(0.0, 0.0, 1.0));
+  readFields(item, kLookFields, look);
   std::error_code ec;
   if (!std::filesystem::is_regular_file(look.mesh, ec)) {
     item.fail("mesh", "The file '" + file + "' is not there", "Check the name");
@@ -67,16 +54,9 @@ ExerciseTool readExerciseTool(JsonReader& item, const std::filesystem::path& fol
     item.fail("file", json.error().what + " (" + json.error().where + ")", json.error().next);
     return out;
   }
-  const auto each_own = [&](auto&& what) {
-    for (const auto& rows : kOwnNumbers) {
-      for (const NumberOf<ToolDescription>& own : rows) {
-        if (item.has(own.row.key)) what(own.row.key);
-      }
-    }
-  };
-  each_own([&](const char* own) {
-    if (json->is_object()) (*json)[own] = item.raw(own);
-  });
+  for (const char* own : kOwnFields) {
+    if (item.has(own) && json->is_object()) (*json)[own] = item.raw(own);
+  }
   JsonReader reader(*json, file.string());
   reader.format("trephine.tool", 1);
   (void)reader.text("name");
@@ -85,22 +65,17 @@ ExerciseTool readExerciseTool(JsonReader& item, const std::filesystem::path& fol
   if (Status status = reader.finish(); !status) {
     const Error& error = status.error();
     const std::string wrong = error.where.substr(error.where.rfind(' ') + 1);
-    each_own([&](const char* own) {
-      if (wrong == own) item.fail(own, error.what, error.next);
-    });
+    for (const char* own : kOwnFields) {
+      if (wrong == own && item.has(own)) item.fail(own, error.what, error.next);
+    }
     item.fail("file", error.what + " (" + error.where + ")", error.next);
   }
   return out;
 }
 
 Json toJson(const ExerciseTool& tool) {
-  const ToolDescription& d = tool.tool.made_from;
-  Json json = {{"id", tool.id}, {"kind", nameOf(kToolNames, d.kind)}};
-  writeNumbers(json, kToolNumbers, d);
-  if (d.kind != ToolKind::burr) return json;
-  json["shape"] = nameOf(kShapeNames, d.shape);
-  writeNumbers(json, kBurrNumbers, d);
-  if (d.shape == BurrShape::cylinder) writeNumbers(json, kCylinderNumbers, d);
+  Json json{{"id", tool.id}};
+  writeFields(json, kToolFields, tool.tool.made_from);
   return json;
 }
 

@@ -11,7 +11,7 @@
 
 #include "base/descriptor.h"
 #include "base/system.h"
-#include "exercise/exercise_numbers.h"
+#include "exercise/exercise_fields.h"
 
 namespace trephine {
 

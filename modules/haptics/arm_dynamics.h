@@ -2,7 +2,7 @@
 // each.
 #pragma once
 
-#include "base/number_row.h"
+#include "base/field.h"
 #include "device/arm_ranges.h"
 #include "haptics/workspace_map.h"
 
@@ -29,7 +29,7 @@ constexpr Range kDelay_s{0, 0.16, "s"};
 double delaySamples(const ArmDynamics& arm, double period_s);
 
 // Those that a recording keeps; the peak force is the exercise's `max_force_N`.
-inline constexpr NumberOf<ArmDynamics> kArmDynamicsNumbers[] = {
+inline constexpr FieldOf<ArmDynamics> kArmDynamicsFields[] = {
     {{"apparent_mass_kg", kApparentMass_kg, Given::always, "at the tip"},
      &ArmDynamics::apparent_mass_kg},
     {{"encoder_step_m", kEncoderStep_m, Given::always, "of its position"},
@@ -42,7 +42,7 @@ inline constexpr NumberOf<ArmDynamics> kArmDynamicsNumbers[] = {
       "the time constant with which its motors warm; 0: it looks after itself"},
      &ArmDynamics::thermal_s},
 };
-inline constexpr NumberRow kArmPeakForce{"peak_force_N", kPeakForce_N, Given::always,
+inline constexpr FieldRow kArmPeakForce{"peak_force_N", kPeakForce_N, Given::always,
                                          "no more is sent"};
 
 // IMPOSSIBLE_NUMBER. What an arm is made of is checked where it comes from (a device's answer, a

@@ -6,13 +6,13 @@ namespace trephine {
 
 namespace {
 
-constexpr NumberRow kPeriod{"period_s", {1e-5, 0.1, "s"}, Given::always, "of a tick"};
-constexpr NumberRow kMaxForce{"max_force_N", kPeakForce_N, Given::always, "on the arm"};
+constexpr FieldRow kPeriod{"period_s", {1e-5, 0.1, "s"}, Given::always, "of a tick"};
+constexpr FieldRow kMaxForce{"max_force_N", kPeakForce_N, Given::always, "on the arm"};
 
 }  // namespace
 
 Status validate(const ArmDynamics& arm, const std::string& of) {
-  if (Status s = checkNumbers<ArmDynamics>(kArmDynamicsNumbers, arm, of); !s) return s;
+  if (Status s = checkFields<ArmDynamics>(kArmDynamicsFields, arm, of); !s) return s;
   return checkNumber(kArmPeakForce, arm.peak_force_N, of);
 }
 
@@ -22,7 +22,7 @@ double delaySamples(const ArmDynamics& arm, double period_s) {
 }
 
 Status validate(const WorkspaceMap& map, const std::string& of) {
-  if (Status s = checkNumbers<WorkspaceMap>(kWorkspaceMapNumbers, map, of); !s) return s;
+  if (Status s = checkFields<WorkspaceMap>(kWorkspaceMapFields, map, of); !s) return s;
   const double length = glm::length(map.rotation);
   if (std::abs(length - 1.0) <= 1e-6) return {};
   return Error{"IMPOSSIBLE_NUMBER",

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "base/math.h"
-#include "base/number_row.h"
+#include "base/field.h"
 
 namespace trephine {
 
@@ -38,7 +38,7 @@ struct WorkspaceMap {
   bool operator==(const WorkspaceMap&) const = default;
 };
 
-inline constexpr NumberOf<WorkspaceMap> kWorkspaceMapNumbers[] = {
+inline constexpr FieldOf<WorkspaceMap> kWorkspaceMapFields[] = {
     {{"centre_mm", kMapPlace_mm, Given::always, "where the device's origin lies in the patient"},
      &WorkspaceMap::centre_mm},
     {{"motion_scale", kMapScale, Given::may_be, "the tool's travel by the arm's"},

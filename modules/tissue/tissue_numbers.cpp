@@ -16,12 +16,4 @@ void TissueNumber::clear(SetNumbers& tissue) const {
   if (in_set.index() == 1) (tissue.*std::get<1>(in_set)).reset();
 }
 
-std::string tissueNumbersPage() {
-  std::string page = schemaHead();
-  for (const TissueNumber& number : kTissueNumbers) {
-    page += schemaLine("mechanics", number.row(), "sourced number", "none");
-  }
-  return page;
-}
-
 }  // namespace trephine

@@ -11,7 +11,7 @@
 #include <string>
 #include <variant>
 
-#include "base/number_row.h"
+#include "base/field.h"
 
 namespace trephine {
 
@@ -54,7 +54,7 @@ struct TissueNumber {
   const char* shown_unit = nullptr;  // null: the file's
   double shown_per = 1.0;
 
-  constexpr NumberRow row() const {
+  constexpr FieldRow row() const {
     return {key,
             {kMechanicsRange.low, kMechanicsRange.high, unit},
             in_set.index() == 0 ? Given::always : Given::may_be,
@@ -85,8 +85,5 @@ inline constexpr TissueNumber kTissueNumbers[] = {
 };
 static_assert(sizeof(TickNumbers) == sizeof(double) * std::size(kTissueNumbers),
               "each number has one row");
-
-// The table of resources/schemas/tissues.md.
-std::string tissueNumbersPage();
 
 }  // namespace trephine

@@ -56,12 +56,12 @@ std::string sourceIn(JsonReader& object, const char* key) {
 
 void readMechanics(JsonReader mechanics, Tissue& tissue) {
   for (const TissueNumber& number : kTissueNumbers) {
-    const NumberRow row = number.row();
+    const FieldRow row = number.row();
     if (row.given == Given::may_be && !mechanics.has(row.key)) continue;
     JsonReader object = mechanics.object(row.key);
     number.set(tissue, {object.number("value", row.range), sourceIn(object, "source")});
   }
-  tissue.cuttable = mechanics.boolean("cuttable", true);
+  readFields(mechanics, kCuttingFields, tissue);
   if (mechanics.has("solid")) tissue.solid = mechanics.boolean("solid", false);
 }
 
@@ -71,7 +71,7 @@ Json mechanicsOf(const Tissue& tissue) {
     const SourcedNumber* number = row.of(tissue);
     if (number) mechanics[row.key] = {{"value", number->value}, {"source", number->source}};
   }
-  mechanics["cuttable"] = tissue.cuttable;
+  writeFields(mechanics, kCuttingFields, tissue);
   if (tissue.solid) mechanics["solid"] = *tissue.solid;
   return mechanics;
 }
@@ -160,20 +160,16 @@ Result<TissueSet> parseTissueSet(const Json& json, const std::string& file) {
   set.elsewhere_file = reader.text("elsewhere", "");
   for (JsonReader& item : reader.objects("tissues", kMaxTissues)) {
     Tissue t;
-    t.id = item.text("id");
-    t.name = item.text("name");
+    readFields(item, kTissueFields, t);
     const std::vector<std::int64_t> hu = item.integers("hu", 2, kHuRange);
     t.hu_min = int(hu[0]);
     t.hu_max = int(hu[1]);
     t.hu_source = sourceIn(item, "hu_source");
     if (item.has("label")) t.label = int(item.integer("label", kLabelRange));
-    t.structure = item.text("structure", "");
     if (item.has("shell")) {
       JsonReader shell = item.object("shell");
-      t.shell = Tissue::Shell{shell.text("of"), shell.number("thickness_mm", kShellRange)};
+      readFields(shell, kShellFields, t.shell.emplace());
     }
-    t.colour = item.vec3("colour", kShareRange);
-    t.opacity = item.number("opacity", kShareRange);
     readMechanics(item.object("mechanics"), t);
     set.tissues.push_back(std::move(t));
   }
@@ -195,19 +191,25 @@ Result<TissueSet> readTissueSet(const std::filesystem::path& file) {
 Json toJson(const TissueSet& set) {
   Json tissues = Json::array();
   for (const Tissue& t : set.tissues) {
-    Json item = {{"id", t.id},
-                 {"name", t.name},
-                 {"hu", {t.hu_min, t.hu_max}},
-                 {"hu_source", t.hu_source},
-                 {"colour", {t.colour.x, t.colour.y, t.colour.z}},
-                 {"opacity", t.opacity},
-                 {"mechanics", mechanicsOf(t)}};
+    Json item;
+    writeFields(item, kTissueFields, t);
+    item["hu"] = {t.hu_min, t.hu_max};
+    item["hu_source"] = t.hu_source;
+    item["mechanics"] = mechanicsOf(t);
     if (t.label) item["label"] = *t.label;
-    if (!t.structure.empty()) item["structure"] = t.structure;
-    if (t.shell) item["shell"] = {{"of", t.shell->of}, {"thickness_mm", t.shell->thickness_mm}};
+    if (t.shell) writeFields(item["shell"], kShellFields, *t.shell);
     tissues.push_back(std::move(item));
   }
   return {{"format", "trephine.tissues"}, {"version", 1}, {"name", set.name}, {"tissues", tissues}};
+}
+
+std::string tissueFieldsPage() {
+  std::string page = schemaHead() + schemaLines<Tissue>("tissue", kTissueFields) +
+                     schemaLines<Tissue::Shell>("tissue, `shell`", kShellFields);
+  for (const TissueNumber& number : kTissueNumbers) {
+    page += schemaLine("`mechanics`", number.row(), "sourced number", "none");
+  }
+  return page + schemaLines<Tissue>("`mechanics`", kCuttingFields);
 }
 
 TissueTable tissueTable(const TissueSet& set) {

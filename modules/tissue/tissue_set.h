@@ -56,6 +56,38 @@ struct Tissue : SetNumbers {
   bool operator==(const Tissue&) const = default;
 };
 
+// The settings of a tissue that are one member each; its mechanics are in tissue_numbers.h.
+inline constexpr FieldOf<Tissue> kTissueFields[] = {
+    {{"id", {}, Given::always,
+      "not empty, unique in the set; stable: scenes, operator scripts, recordings and reports name "
+      "it"},
+     &Tissue::id},
+    {{"name", {1, 60}, Given::always, "shown"}, &Tissue::name},
+    {{"structure", {}, Given::may_be,
+      "only voxels of the case's structure of this name, whatever its number there; letters in "
+      "either case, `_` for a blank",
+      "Where"},
+     ReferenceIn<Tissue>{&Tissue::structure}},
+    {{"colour", kShareRange, Given::always, "red, green, blue"}, &Tissue::colour},
+    {{"opacity", kShareRange, Given::always,
+      "per millimetre of depth; 0 hides the tissue, unless a view's `looks` name it (`scene.md`)"},
+     &Tissue::opacity},
+};
+inline constexpr FieldOf<Tissue::Shell> kShellFields[] = {
+    {{"of", {}, Given::always,
+      "the structure whose outermost layer it is where the case lacks the tissue's own", "Else"},
+     ReferenceIn<Tissue::Shell>{&Tissue::Shell::of}},
+    {{"thickness_mm", kShellRange, Given::always,
+      "of that layer, which is closed: a capsule, which no CT shows"},
+     &Tissue::Shell::thickness_mm},
+};
+inline constexpr FieldOf<Tissue> kCuttingFields[] = {
+    {{"cuttable", {}, Given::may_be,
+      "`false`: a tool feels the tissue but removes none of it", "Can be cut",
+      "Whether a tool may remove it, by the work that is put in."},
+     &Tissue::cuttable},
+};
+
 // Whether the two are known in the same voxels, so that their HU must differ.
 bool inSamePlace(const Tissue& a, const Tissue& b);
 
@@ -83,6 +115,9 @@ Status validate(const TissueSet& set, const std::string& file);
 Result<TissueSet> readTissueSet(const std::filesystem::path& file);
 Result<TissueSet> parseTissueSet(const Json& json, const std::string& file);
 Json toJson(const TissueSet& set);
+
+// The table of resources/schemas/tissues.md.
+std::string tissueFieldsPage();
 
 // What the tick needs of a set: plain data, no text.
 struct TissueClass : TickNumbers {

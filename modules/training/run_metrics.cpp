@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "exercise/exercise_numbers.h"
+#include "exercise/exercise_fields.h"
 #include "exercise/names.h"
 #include "haptics/laws.h"
 

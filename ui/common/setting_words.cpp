@@ -11,24 +11,14 @@
 
 namespace trephine {
 
-QString nameOfSetting(const char* key) {
-  if (std::string_view(key) == "arm") return QCoreApplication::translate("Setting", "Number");
-  QStringList parts = QString(key).split('_');
-  static const QStringList kUnits{"mm", "N", "Hz", "hz", "W", "s", "m", "deg"};
-  if (parts.size() > 1 && kUnits.contains(parts.back())) parts.removeLast();
-  QString name = parts.join(' ');
-  name[0] = name[0].toUpper();
-  return QCoreApplication::translate("Setting", qPrintable(name));
-}
-
-QString shortMeaningOf(const NumberRow& row) {
+QString shortMeaningOf(const FieldRow& row) {
   std::string words = row.meaning;
   words = words.substr(0, words.find_first_of(";:("));
   while (!words.empty() && words.back() == ' ') words.pop_back();
   return meaningOf({row.key, row.range, row.given, words.c_str()});
 }
 
-QString meaningOf(const NumberRow& row) {
+QString meaningOf(const FieldRow& row) {
   QString meaning = QCoreApplication::translate("Setting", row.meaning);
   meaning.remove('`');
   meaning[0] = meaning[0].toUpper();

@@ -9,16 +9,14 @@
 #include <QToolButton>
 #include <QWidget>
 
-#include "base/number_row.h"
+#include "base/field.h"
 #include "base/result.h"
 
 namespace trephine {
 
-// "Motion scale" of "motion_scale", without the unit at its end.
-QString nameOfSetting(const char* key);
 // The row's meaning as sentences, with its range; and in one line.
-QString meaningOf(const NumberRow& row);
-QString shortMeaningOf(const NumberRow& row);
+QString meaningOf(const FieldRow& row);
+QString shortMeaningOf(const FieldRow& row);
 // A step of a field in that unit.
 double stepOfUnit(const char* unit);
 // A small quiet line below a field.

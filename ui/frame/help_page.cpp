@@ -12,7 +12,7 @@
 
 #include "base/system.h"
 #include "ui/common/placing.h"
-#include "ui/common/settings.h"
+#include "ui/common/preferences.h"
 #include "ui/common/words.h"
 
 namespace trephine {
@@ -23,7 +23,7 @@ constexpr QSize kHelpSize(860, 720);
 
 QUrl pageUrl(const QString& page) {
   const QString folder = toQt((resourceFolder() / "help").string());
-  const QString own = folder + '/' + read(settings::kLanguage) + '/' + page + ".md";
+  const QString own = folder + '/' + toQt(languageInUse()) + '/' + page + ".md";
   return QUrl::fromLocalFile(QFileInfo::exists(own) ? own : folder + "/en/" + page + ".md");
 }
 

@@ -19,6 +19,7 @@
 #include "ui/commission/fitness_line.h"
 #include "ui/common/error_dialog.h"
 #include "ui/common/question.h"
+#include "ui/common/preferences.h"
 #include "ui/common/settings.h"
 #include "ui/common/words.h"
 #include "ui/devices/devices_dialog.h"
@@ -185,7 +186,7 @@ void MainWindow::restoreColumns() {
   const QWidget *left = room(place_).parts.left, *right = room(place_).parts.right;
   // The views are what one looks at: a column of words has a fifth at most, and more where its
   // letters are larger.
-  const int most = all * readWithin(settings::kTextScale, 80, 200) / 500;
+  const int most = all * preferences().text_percent / 500;
   const int left_width = left ? std::min(left->sizeHint().width(), most) : 0;
   const int right_width = right ? right->sizeHint().width() : 0;
   if (kept.isEmpty() || !columns_->restoreState(kept)) {

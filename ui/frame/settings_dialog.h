@@ -2,12 +2,12 @@
 #pragma once
 
 #include <QCheckBox>
-#include <QComboBox>
 #include <QDialog>
 #include <QLabel>
 #include <QLineEdit>
 
-#include "ui/common/number_field.h"
+#include "ui/common/field_rows.h"
+#include "ui/common/preferences.h"
 
 namespace trephine {
 
@@ -25,9 +25,8 @@ class SettingsDialog : public QDialog {
   void chooseFolder();
 
   QLineEdit* storage_;
-  QComboBox *language_, *theme_, *hand_;
-  WholeNumberField* text_;
-  DecimalField *push_, *step_, *arm_limit_;
+  Preferences wanted_ = preferences();
+  std::unique_ptr<FieldRows<Preferences>> rows_;
   QLabel* later_;
 };
 

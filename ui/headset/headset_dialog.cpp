@@ -25,61 +25,36 @@ HeadsetDialog::HeadsetDialog(QWidget* parent) : QDialog(parent) {
   layout->addWidget(buildScreen());
   layout->addWidget(buttons);
   layout->setSizeConstraint(QLayout::SetFixedSize);  // room for a refusal, and no more
-  ahead_->setFocus(Qt::TabFocusReason);  // with its number selected
+  (*of_headset_)["headset/ahead_m"].setFocus(Qt::TabFocusReason);  // with its number selected
 }
 
-DecimalField* HeadsetDialog::number(const char* name, const QString& unit, double least,
-                                    double most, double step, int decimals) {
-  auto* field = new DecimalField(name, this);
-  field->setSuffix(unit);
-  field->setDecimals(decimals);
-  field->setSingleStep(step);
-  field->setLimits(least, most);
-  return field;
+// What is entered is kept at once.
+std::unique_ptr<HeadsetDialog::Rows> HeadsetDialog::rows(FieldsOf<Preferences> fields,
+                                                         QFormLayout& form,
+                                                         void (HeadsetDialog::*changed)()) {
+  auto made = std::make_unique<Rows>(fields, form, this, QString());
+  made->entered = [this, fields, changed, rows = made.get()](const Preferences& wanted,
+                                                             const char*) {
+    Preferences all = preferences();
+    for (const FieldOf<Preferences>& field : fields) setValue(field, all, valueOf(field, wanted));
+    keepPreferences(all);
+    rows->show(all);
+    emit(this->*changed)();
+  };
+  made->show(preferences());
+  return made;
 }
 
 QWidget* HeadsetDialog::buildHeadset() {
-  using namespace settings;
   auto* box = new QGroupBox(tr("Headset"));
   auto* form = new QFormLayout(box);
-  ahead_ = number("headsetAhead", tr(" cm"), 100.0 * kAheadLeast_m, 100.0 * kAheadMost_m, 5.0, 0);
-  ahead_->show(100.0 * readWithin(kHeadsetAhead_m, kAheadLeast_m, kAheadMost_m));
-  below_ = number("headsetBelow", tr(" cm"), 0.0, 100.0 * kBelowMost_m, 5.0, 0);
-  below_->show(100.0 * readWithin(kHeadsetBelow_m, 0.0, kBelowMost_m));
-  scale_ = number("headsetScale", tr(" %"), 100.0 * kLeastScale, 100.0 * kMostScale, 25.0, 0);
-  scale_->show(100.0 * readWithin(kHeadsetScale, kLeastScale, kMostScale));
-  mirror_ = new QCheckBox(tr("The &window shows what the left eye sees"));
-  mirror_->setObjectName("headsetMirror");
-  mirror_->setChecked(read(kHeadsetMirror));
-  addRow(*form, tr("The patient is so far &ahead of the eyes"), ahead_);
-  addRow(*form, tr("and so far &below them"), below_);
-  addRow(*form, tr("Of the size in &life"), scale_);
-  form->addRow(mirror_);
+  of_headset_ = rows(kHeadsetFields, *form, &HeadsetDialog::headsetChanged);
   auto* arms = new QLabel(
       tr("Where arms are registered in the room (Devices), the patient lies where they are, and "
          "each tool is seen where it is felt."));
   arms->setWordWrap(true);
   arms->setProperty("quiet", true);
   form->addRow(arms);
-  ahead_->entered = [this] {
-    ahead_->take();
-    write(kHeadsetAhead_m, 0.01 * ahead_->wanted());
-    emit headsetChanged();
-  };
-  below_->entered = [this] {
-    below_->take();
-    write(kHeadsetBelow_m, 0.01 * below_->wanted());
-    emit headsetChanged();
-  };
-  scale_->entered = [this] {
-    scale_->take();
-    write(kHeadsetScale, 0.01 * scale_->wanted());
-    emit headsetChanged();
-  };
-  connect(mirror_, &QCheckBox::toggled, this, [this](bool on) {
-    write(kHeadsetMirror, on);
-    emit headsetChanged();
-  });
   return box;
 }
 
@@ -101,16 +76,6 @@ QWidget* HeadsetDialog::buildScreen() {
   }
   if (screen_->findData(chosen) < 0) screen_->addItem(tr("%1, not connected").arg(chosen), chosen);
   screen_->setCurrentIndex(screen_->findData(chosen));
-  packing_ = new QComboBox;
-  packing_->setObjectName("stereoPacking");
-  packing_->addItem(tr("Side by side, each at half its width"), "half");
-  packing_->addItem(tr("Side by side, each as it is"), "full");
-  packing_->addItem(tr("Above each other, each at half its height"), "top_bottom");
-  packing_->setCurrentIndex(std::max(0, packing_->findData(read(kStereoPacking))));
-  eyes_ = number("stereoEyes", tr(" mm"), kEyesLeast_mm, kEyesMost_mm, 1.0, 1);
-  eyes_->show(readWithin(kStereoEyes_mm, kEyesLeast_mm, kEyesMost_mm));
-  away_ = number("stereoAway", tr(" cm"), 0.1 * kScreenLeast_mm, 0.1 * kScreenMost_mm, 10.0, 0);
-  away_->show(0.1 * readWithin(kStereoScreen_mm, kScreenLeast_mm, kScreenMost_mm));
   lens_ = new QLineEdit(read(kStereoLens));
   lens_->setObjectName("stereoLens");
   lens_->setReadOnly(true);
@@ -126,28 +91,20 @@ QWidget* HeadsetDialog::buildScreen() {
     lens_row->addWidget(each);
   }
   form->addRow(tr("&Screen"), screen_);
-  form->addRow(tr("&Pictures"), packing_);
-  addRow(*form, tr("The &eyes are apart by"), eyes_);
-  addRow(*form, tr("The screen is &distant by"), away_);
+  of_screen_ = rows(kScreenFields, *form, &HeadsetDialog::screenChanged);
+  (*of_screen_)["stereo/packing"].describe([](const std::string& packing) {
+    return FieldEditor::ChoiceText{packing == "half" ? tr("Side by side, each at half its width")
+                                   : packing == "full"
+                                       ? tr("Side by side, each as it is")
+                                       : tr("Above each other, each at half its height"),
+                                   {},
+                                   {}};
+  });
   form->addRow(tr("Lens before each eye"), lens_row);
   connect(screen_, &QComboBox::activated, this, [this] {
     write(kStereoScreen, screen_->currentData().toString());
     emit screenChanged();
   });
-  connect(packing_, &QComboBox::activated, this, [this] {
-    write(kStereoPacking, packing_->currentData().toString());
-    emit screenChanged();
-  });
-  eyes_->entered = [this] {
-    eyes_->take();
-    write(kStereoEyes_mm, eyes_->wanted());
-    emit screenChanged();
-  };
-  away_->entered = [this] {
-    away_->take();
-    write(kStereoScreen_mm, 10.0 * away_->wanted());
-    emit screenChanged();
-  };
   connect(choose, &QPushButton::clicked, this, &HeadsetDialog::lensWanted);
   connect(none, &QPushButton::clicked, this, [this] { setLens({}); });
   return box;

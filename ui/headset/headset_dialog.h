@@ -2,13 +2,13 @@
 // effect at once, since somebody may be looking.
 #pragma once
 
-#include <QCheckBox>
 #include <QComboBox>
 #include <QDialog>
 #include <QLabel>
 #include <QLineEdit>
 
-#include "ui/common/number_field.h"
+#include "ui/common/field_rows.h"
+#include "ui/common/preferences.h"
 
 namespace trephine {
 
@@ -27,12 +27,12 @@ class HeadsetDialog : public QDialog {
  private:
   QWidget* buildHeadset();
   QWidget* buildScreen();
-  DecimalField* number(const char* name, const QString& unit, double least, double most,
-                       double step, int decimals);
+  using Rows = FieldRows<Preferences>;
+  std::unique_ptr<Rows> rows(FieldsOf<Preferences> fields, QFormLayout& form,
+                             void (HeadsetDialog::*changed)());
 
-  DecimalField *ahead_, *below_, *scale_, *eyes_, *away_;
-  QCheckBox* mirror_;
-  QComboBox *screen_, *packing_;
+  std::unique_ptr<Rows> of_headset_, of_screen_;
+  QComboBox* screen_;
   QLineEdit* lens_;
 };
 

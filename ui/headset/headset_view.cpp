@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "ui/common/actions.h"
-#include "ui/common/settings.h"
+#include "ui/common/preferences.h"
 #include "ui/common/words.h"
 #include "ui/work/arms_in_room.h"
 #include "ui/work/arms_of_place.h"
@@ -18,7 +18,7 @@ constexpr double kStuck_s = 0.5;
 constexpr double kMarksAhead_m = 0.45, kMarksApart_m = 0.08;
 
 double scaleOf() {
-  return readWithin(settings::kHeadsetScale, settings::kLeastScale, settings::kMostScale);
+  return preferences().headset_scale;
 }
 
 // Looks back at the eyes, upright.
@@ -110,11 +110,9 @@ void HeadsetView::start() {
 void HeadsetView::place() {
   const HeadsetState state = headset_->state();
   const ViewCamera& camera = app_.view().camera();
-  const double ahead_m =
-      readWithin(settings::kHeadsetAhead_m, settings::kAheadLeast_m, settings::kAheadMost_m);
-  const double below_m = readWithin(settings::kHeadsetBelow_m, 0.0, settings::kBelowMost_m);
+  const Preferences wanted = preferences();
   head_m_ = headOf(state.eyes_m).position;
-  place_ = before(state.eyes_m, {camera.focus(), camera.forward(), camera.up()}, ahead_m, -below_m,
+  place_ = before(state.eyes_m, {camera.focus(), camera.forward(), camera.up()}, wanted.headset_ahead_m, -wanted.headset_below_m,
                   scaleOf());
   ahead_ = glm::normalize(place_.toRoom_m(camera.focus()) - head_m_);
   placed_ = true;
@@ -176,7 +174,7 @@ void HeadsetView::recentre() {
 }
 
 void HeadsetView::settingsChanged() {
-  mirrors_ = read(settings::kHeadsetMirror);
+  mirrors_ = preferences().headset_mirror;
   if (!headset_) return;
   if (placed_) place();
   showMirror();

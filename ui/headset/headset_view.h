@@ -13,7 +13,7 @@
 #include "headset/headset.h"
 #include "headset/picture_painter.h"
 #include "headset/room_place.h"
-#include "ui/common/settings.h"
+#include "ui/common/preferences.h"
 #include "ui/headset/eye_cards.h"
 #include "ui/work/app_context.h"
 
@@ -87,7 +87,7 @@ class HeadsetView : public QObject {
   std::shared_ptr<Woken> woken_ = std::make_shared<Woken>();
   bool again_ = false;  // once the one before has ended
   bool seen_ = false, flat_ = false, stuck_ = false, keeps_room_ = false;
-  bool mirrors_ = read(settings::kHeadsetMirror);
+  bool mirrors_ = preferences().headset_mirror;
   int room_changes_ = 0;
   QTimer words_timer_;
 };

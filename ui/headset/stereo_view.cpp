@@ -7,17 +7,12 @@
 #include <QTimer>
 
 #include "ui/common/actions.h"
+#include "ui/common/preferences.h"
 #include "ui/common/settings.h"
 #include "ui/common/words.h"
 #include "ui/headset/stereo_window.h"
 
 namespace trephine {
-
-Packing packingOf(const QString& word) {
-  return word == "full"         ? Packing::full
-         : word == "top_bottom" ? Packing::top_bottom
-                                : Packing::half;
-}
 
 namespace {
 
@@ -124,10 +119,10 @@ Status StereoView::readSettings() {
     }
     lens_ = *lens;
   }
-  packing_ = packingOf(read(settings::kStereoPacking));
-  eyes_mm_ = readWithin(settings::kStereoEyes_mm, settings::kEyesLeast_mm, settings::kEyesMost_mm);
-  away_mm_ =
-      readWithin(settings::kStereoScreen_mm, settings::kScreenLeast_mm, settings::kScreenMost_mm);
+  const Preferences wanted = preferences();
+  packing_ = wanted.packing;
+  eyes_mm_ = wanted.eyes_mm;
+  away_mm_ = wanted.screen_mm;
   return {};
 }
 

@@ -20,8 +20,6 @@ namespace trephine {
 
 class StereoWindow;
 
-Packing packingOf(const QString& word);  // of the settings; a word that is none: half
-
 class StereoView : public QObject {
   Q_OBJECT
  public:

@@ -6,20 +6,11 @@
 
 #include <QCheckBox>
 #include <QComboBox>
-#include <QLabel>
-#include <QLineEdit>
-#include <QListWidget>
-#include <QPlainTextEdit>
 #include <QPushButton>
-#include <QToolButton>
-#include <QWidget>
-#include <array>
 #include <functional>
 #include <memory>
 
-#include "exercise/exercise.h"
-#include "exercise/exercise_numbers.h"
-#include "ui/common/number_rows.h"
+#include "exercise/exercise_fields.h"
 #include "ui/prepare/outline_form.h"
 
 namespace trephine {
@@ -46,9 +37,7 @@ class ExerciseForm : public QWidget {
   // Clicks on the surface add points.
   void showDrawing(bool drawing) { outline_->showDrawing(drawing); }
 
-  // A person wants this change of the exercise as it is then; `what` of it.
-  std::function<Status(const std::string& what, const std::function<void(Exercise&)>& change)>
-      wanted;
+  ExerciseEdited wanted;
 
  signals:
   void drawingWanted(bool on);
@@ -69,29 +58,25 @@ class ExerciseForm : public QWidget {
   void setElsewhere(const std::optional<TissueSet>& set);
 
  private:
-  struct CardFields {
-    QLineEdit* goal;
-    QPlainTextEdit* steps;
-    QLineEdit* hands;
-  };
   QWidget* buildWays();
-  QWidget* buildWhat();
-  QWidget* buildPlaces();
-  QWidget* buildCard();
-  QWidget* buildLocks();
-  CardFields buildLanguage(QWidget* page, const QString& suffix);
+  void buildWhat();
+  QWidget* buildCase();
+  QWidget* buildElsewhere();
+  QWidget* buildOperator();
+  void buildPlaces();
+  QWidget* buildEntry();
+  void buildCard();
+  QCheckBox* cardSwitch(const char* name, const QString& words,
+                        const std::function<void(Exercise&, bool on)>& edit);
+  std::unique_ptr<FieldRows<CardText>> cardFields(const QString& prefix,
+                                                  CardText* (*text)(ExerciseCard&));
+  void buildLocks();
+  void showStructures();
   void showLandmark();
-  void nameLandmark();
-  void findLandmarkBy(const QString& kind);
-  void addLandmark();
-  void removeLandmark();
   void showCard();
-  void edit(QLabel* problem, const std::string& what, const std::function<void(Exercise&)>& change);
+  const Landmark* landmark() const;
   void editLandmark(const std::string& what, const std::function<void(Landmark&)>& change);
-  void cardEntered();
-  bool eventFilter(QObject* watched, QEvent* event) override;
-  static void showText(CardFields& fields, const CardText* text);
-  static CardText textOf(const CardFields& fields);
+  void findLandmarkBy(int way);
 
   Exercise exercise_;
   std::vector<PlacedLandmark> landmarks_;
@@ -99,26 +84,19 @@ class ExerciseForm : public QWidget {
   QWidget* body_;
   QLabel *locked_, *saved_;
   QPushButton *save_, *copy_, *try_, *export_, *import_;
-  QFormLayout* what_form_;
-  QLineEdit* name_;
-  QComboBox* anatomy_;
-  QListWidget* structures_;
   std::vector<std::string> of_case_;
-  QLabel *what_problem_, *place_problem_, *card_problem_, *lock_problem_;
-  QComboBox *landmark_, *landmark_tissue_, *landmark_found_, *view_landmark_;
-  QLineEdit* landmark_name_;
-  QFormLayout* place_form_;
+  FormGroup *what_, *places_, *card_, *lock_;
+  std::unique_ptr<FieldRows<Exercise>> what_fields_, lock_fields_;
+  std::unique_ptr<FieldRows<Landmark>> landmark_is_, landmark_numbers_;
+  std::unique_ptr<FieldRows<ExerciseView>> view_;
+  std::unique_ptr<FieldRows<CardText>> en_, zh_;
+  QComboBox *landmark_, *landmark_found_;
   QLabel* landmark_kind_;
-  std::unique_ptr<NumberRows<Landmark>> ray_, bulk_, place_, outward_, run_;
-  std::unique_ptr<NumberRows<ExerciseView>> view_numbers_;
   QLabel *operator_, *case_, *elsewhere_;
   QToolButton *choose_elsewhere_, *no_elsewhere_;
   QCheckBox *card_on_, *chinese_on_;
-  CardFields en_, zh_;
   std::optional<CardText> kept_chinese_;  // that was taken out
-  QWidget *en_page_, *zh_page_;
   OutlineForm* outline_;
-  std::array<QCheckBox*, kLockNames.size()> locks_{};
 };
 
 }  // namespace trephine

@@ -1,150 +1,110 @@
 #include "ui/prepare/outline_form.h"
 
-#include <QHBoxLayout>
 #include <QSignalBlocker>
-#include <QVBoxLayout>
 #include <algorithm>
 
-#include "exercise/exercise_numbers.h"
+#include "ui/common/setting_words.h"
 #include "ui/common/words.h"
 
 namespace trephine {
 
 namespace {
 
-constexpr NumberOf<OutlinePoint> kPointNumbers[] = {
+constexpr FieldOf<OutlinePoint> kPointFields[] = {
     {{"at_mm", kMapPlace_mm, Given::always, "where this point lies in this patient, LPS"},
      &OutlinePoint::at_mm},
 };
 
 }  // namespace
 
-OutlineForm::OutlineForm(QWidget* parent) : QWidget(parent) {
-  auto* fields = new QWidget(this);
-  QFormLayout* form = settingForm(fields);
-  problem_ = problemLabel("outlineProblem", this);
-  form->addRow(withHint(buildButtons(fields),
-                        tr("A line on the tissue that shows where to work; it is neither felt nor "
-                           "scored."),
-                        fields));
-  count_ = settingHint({}, fields);
+OutlineForm::OutlineForm(const ExerciseEdited& wanted, QWidget* parent)
+    : FormGroup(tr("Outline"), "outlineProblem", wanted, parent) {
+  form().addRow(withHint(buildButtons(),
+                         tr("A line on the tissue that shows where to work; it is neither felt nor "
+                            "scored."),
+                         fields()));
+  count_ = settingHint({}, fields());
   count_->setObjectName("outlinePoints");
-  form->addRow(count_);
-  closed_ = new QCheckBox(tr("Closed"), fields);
-  closed_->setObjectName("outlineClosed");
-  connect(closed_, &QCheckBox::toggled, this, [this](bool on) {
-    edit("outline closed", [&](Exercise& exercise) {
-      if (exercise.outline) exercise.outline->closed = on;
-    });
-  });
-  form->addRow(withHint(closed_, tr("The last point is joined to the first."), fields));
-  width_ = std::make_unique<NumberRows<ExerciseOutline>>(
-      std::span<const NumberOf<ExerciseOutline>>(kOutlineNumbers), *form, fields, "outline:");
-  width_->entered = [this](const ExerciseOutline& outline, const char* key) {
+  form().addRow(count_);
+  line_ = addFields<ExerciseOutline>(kOutlineFields, "outline:");
+  line_->entered = [this](const ExerciseOutline& outline, const char* key) {
     edit(key, [&](Exercise& exercise) {
-      if (exercise.outline) exercise.outline->width_mm = outline.width_mm;
+      if (!exercise.outline) return;
+      exercise.outline->closed = outline.closed;
+      exercise.outline->width_mm = outline.width_mm;
     });
   };
-  landmark_ = settingChoice("outlineLandmark", tr("Landmark of the outline"), fields);
+  landmark_ = settingChoice("outlineLandmark", tr("Landmark of the outline"), fields());
   connect(landmark_, &QComboBox::activated, this,
           [this](int) { goWith(landmark_->currentData().toString().toStdString()); });
-  form->addRow(tr("Goes with"),
-               withHint(landmark_,
-                        tr("The landmark that it lies by on any patient; or none, in this one."),
-                        fields));
-  point_ = new WholeNumberField("outlinePoint", fields);
+  addRow(tr("Goes with"), landmark_,
+         tr("The landmark that it lies by on any patient; or none, in this one."));
+  point_ = new WholeNumberField("outlinePoint", fields());
   point_->setAccessibleName(tr("Point of the outline"));
   point_->entered = [this] { showPoint(); };
   point_off_ = settingButton("outlinePointOff", tr("Take it off"), tr("Takes this point away"),
-                             fields);
+                             fields());
   connect(point_off_, &QToolButton::clicked, this, [this] {
     point_->interpretText();  // a click leaves the field as it was typed
     takeOff(std::size_t(point_->wanted() - 1));
   });
-  auto* chosen = new QWidget(fields);
-  auto* beside = new QHBoxLayout(chosen);
-  beside->setContentsMargins(0, 0, 0, 0);
-  beside->addLayout(point_->withReason(), 1);
-  beside->addWidget(point_off_);
-  form->addRow(tr("Point"), chosen);
-  place_ = std::make_unique<NumberRows<OutlinePoint>>(
-      std::span<const NumberOf<OutlinePoint>>(kPointNumbers), *form, fields, "outlinePoint:");
+  auto* typed = new QWidget(fields());
+  typed->setLayout(point_->withReason());
+  typed->layout()->setContentsMargins(0, 0, 0, 0);
+  form().addRow(tr("Point"), besideEachOther({typed, point_off_}, fields()));
+  place_ = addFields<OutlinePoint>(kPointFields, "outlinePoint:");
   place_->entered = [this](const OutlinePoint& point, const char*) {
     const auto at = std::size_t(point_->wanted() - 1);
-    editHere("outline", [&](ExerciseOutline& outline) {
-      if (at < outline.points_mm.size()) outline.points_mm[at] = point.at_mm;
-    });
+    if (!here_ || at >= here_->points_mm.size()) return;
+    ExerciseOutline outline = *here_;
+    outline.points_mm[at] = point.at_mm;
+    editOutline("outline", outline);
   };
-  auto* layout = new QVBoxLayout(this);
-  layout->setContentsMargins(0, 0, 0, 0);
-  layout->addWidget(settingTitle(tr("Outline"), this));
-  layout->addWidget(problem_);
-  layout->addWidget(fields);
 }
 
-QWidget* OutlineForm::buildButtons(QWidget* parent) {
-  auto* row = new QWidget(parent);
-  auto* buttons = new QHBoxLayout(row);
-  buttons->setContentsMargins(0, 0, 0, 0);
+QWidget* OutlineForm::buildButtons() {
   draw_ = settingButton("drawOutline", tr("Draw it"), tr("Each click on the surface adds a point"),
-                        row);
+                        fields());
   draw_->setCheckable(true);
-  back_ = settingButton("outlineBack", tr("Last off"), tr("Takes the last point away"), row);
-  clear_ = settingButton("clearOutline", tr("Clear"), tr("No outline"), row);
-  connect(draw_, &QToolButton::toggled, this, [this](bool on) {
-    if (!showing_) emit drawingWanted(on);
-  });
-  connect(clear_, &QToolButton::clicked, this,
-          [this] { edit("outline off", [](Exercise& exercise) { exercise.outline.reset(); }); });
+  back_ = settingButton("outlineBack", tr("Last off"), tr("Takes the last point away"), fields());
+  clear_ = settingButton("clearOutline", tr("Clear"), tr("No outline"), fields());
+  connect(draw_, &QToolButton::toggled, this, &OutlineForm::drawingWanted);
+  connect(clear_, &QToolButton::clicked, this, [this] { editOutline("outline off", {}); });
   connect(back_, &QToolButton::clicked, this, [this] {
     if (here_) takeOff(here_->points_mm.size() - 1);
   });
-  buttons->addWidget(draw_);
-  buttons->addWidget(back_);
-  buttons->addWidget(clear_);
+  auto* row = new QWidget(fields());
+  auto* buttons = new QHBoxLayout(row);
+  buttons->setContentsMargins(0, 0, 0, 0);
+  for (QToolButton* button : {draw_, back_, clear_}) buttons->addWidget(button);
   buttons->addStretch(1);
   return row;
 }
 
-void OutlineForm::edit(const std::string& what, const std::function<void(Exercise&)>& change) {
-  if (showing_) return;
-  const Status done = wanted ? wanted(what, change) : Status();
-  done ? problem_->hide() : sayNotApplied(*problem_, done.error());
-}
-
-void OutlineForm::editHere(const std::string& what,
-                           const std::function<void(ExerciseOutline&)>& change) {
-  if (!here_) return;
-  ExerciseOutline outline = *here_;
-  change(outline);
+void OutlineForm::editOutline(const std::string& what,
+                              const std::optional<ExerciseOutline>& outline) {
   edit(what, [&](Exercise& exercise) { exercise.outline = outline; });
 }
 
 void OutlineForm::takeOff(std::size_t point) {
   if (!here_ || point >= here_->points_mm.size()) return;
-  ExerciseOutline outline = *here_;
-  outline.points_mm.erase(outline.points_mm.begin() + std::ptrdiff_t(point));
-  edit("outline", [&](Exercise& exercise) {
-    if (outline.points_mm.size() < 2) {
-      exercise.outline.reset();
-    } else {
-      exercise.outline = outline;
-    }
-  });
+  std::optional<ExerciseOutline> outline = here_;
+  outline->points_mm.erase(outline->points_mm.begin() + std::ptrdiff_t(point));
+  if (outline->points_mm.size() < 2) outline.reset();
+  editOutline("outline", outline);
 }
 
 void OutlineForm::goWith(const std::string& landmark) {
   if (!here_ || landmark == (here_->frame ? here_->frame->landmark : std::string())) return;
-  editHere("outline", [&](ExerciseOutline& outline) {
-    outline.frame.reset();
-    for (const PlacedLandmark& placed : landmarks_) {
-      if (placed.id == landmark) outline.frame = ExerciseOutline::Frame{landmark, placed.frame};
-    }
-  });
+  ExerciseOutline outline = *here_;
+  outline.frame.reset();
+  for (const PlacedLandmark& placed : landmarks_) {
+    if (placed.id == landmark) outline.frame = ExerciseOutline::Frame{landmark, placed.frame};
+  }
+  editOutline("outline", outline);
 }
 
 void OutlineForm::show(const Exercise& exercise, const std::vector<PlacedLandmark>& landmarks) {
-  showing_ = true;
   landmarks_ = landmarks;
   here_ = exercise.outline;
   bool is_here = here_.has_value();
@@ -157,28 +117,24 @@ void OutlineForm::show(const Exercise& exercise, const std::vector<PlacedLandmar
   count_->setText(!here_    ? tr("No outline yet.")
                   : is_here ? tr("%1 points").arg(count)
                             : tr("%1 points. Its landmark is not in this case.").arg(count));
-  closed_->setChecked(here_ && here_->closed);
   landmark_->clear();
   landmark_->addItem(tr("none: in this patient"), QString());
   for (const PlacedLandmark& of : landmarks_) landmark_->addItem(toQt(of.id), toQt(of.id));
   const QString with = here_ && here_->frame ? toQt(here_->frame->landmark) : QString();
   if (landmark_->findData(with) < 0) landmark_->addItem(with, with);  // not in this case
   landmark_->setCurrentIndex(landmark_->findData(with));
-  for (QWidget* of : std::initializer_list<QWidget*>{closed_, back_, clear_}) {
-    of->setEnabled(here_.has_value());
-  }
+  for (QToolButton* of : {back_, clear_}) of->setEnabled(here_.has_value());
+  line_->setEnabled(here_.has_value());
+  line_->show(here_ ? *here_ : ExerciseOutline{});
   // What lies in another patient cannot be placed in this one.
   for (QWidget* of : std::initializer_list<QWidget*>{landmark_, point_, point_off_}) {
     of->setEnabled(is_here);
   }
-  width_->setEnabled(here_.has_value());
-  width_->show(here_ ? *here_ : ExerciseOutline{});
+  place_->setEnabled(is_here);
   const int last = std::max(1, int(count));
   point_->setLimits(1, last);
   point_->show(std::clamp(point_->wanted(), 1, last));
-  place_->setEnabled(is_here);
   showPoint();
-  showing_ = false;
 }
 
 void OutlineForm::showPoint() {

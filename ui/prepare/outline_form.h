@@ -2,18 +2,14 @@
 // with. Points are shown and changed where they lie in the case that is open.
 #pragma once
 
-#include <QCheckBox>
 #include <QComboBox>
-#include <QLabel>
-#include <QToolButton>
-#include <QWidget>
-#include <functional>
 #include <memory>
 #include <optional>
 #include <vector>
 
-#include "exercise/exercise.h"
-#include "ui/common/number_rows.h"
+#include "exercise/exercise_fields.h"
+#include "ui/common/number_field.h"
+#include "ui/prepare/form_group.h"
 
 namespace trephine {
 
@@ -22,45 +18,35 @@ struct OutlinePoint {
   Vec3 at_mm{0.0};
 };
 
-class OutlineForm : public QWidget {
+class OutlineForm : public FormGroup {
   Q_OBJECT
  public:
-  explicit OutlineForm(QWidget* parent = nullptr);
+  OutlineForm(const ExerciseEdited& wanted, QWidget* parent);
 
   // `landmarks`: as they are placed in the open case; empty: the points are shown as they were
   // drawn.
   void show(const Exercise& exercise, const std::vector<PlacedLandmark>& landmarks);
   // Clicks on the surface add points.
   void showDrawing(bool drawing);
-  // What was refused was of another exercise.
-  void forgetRefusal() { problem_->hide(); }
-
-  // A person wants this change of the exercise as it is then; `what` of it.
-  std::function<Status(const std::string& what, const std::function<void(Exercise&)>& change)>
-      wanted;
 
  signals:
   void drawingWanted(bool on);
 
  private:
-  QWidget* buildButtons(QWidget* parent);
-  void edit(const std::string& what, const std::function<void(Exercise&)>& change);
-  // As it lies here, changed.
-  void editHere(const std::string& what, const std::function<void(ExerciseOutline&)>& change);
+  QWidget* buildButtons();
+  void editOutline(const std::string& what, const std::optional<ExerciseOutline>& outline);
   void takeOff(std::size_t point);
   void goWith(const std::string& landmark);
   void showPoint();
 
-  std::optional<ExerciseOutline> here_;
+  std::optional<ExerciseOutline> here_;  // as it lies in the open case
   std::vector<PlacedLandmark> landmarks_;
-  bool showing_ = false;
-  QLabel *problem_, *count_;
+  QLabel* count_;
   QToolButton *draw_, *clear_, *back_, *point_off_;
-  QCheckBox* closed_;
   QComboBox* landmark_;
   WholeNumberField* point_;
-  std::unique_ptr<NumberRows<OutlinePoint>> place_;
-  std::unique_ptr<NumberRows<ExerciseOutline>> width_;
+  std::unique_ptr<FieldRows<OutlinePoint>> place_;
+  std::unique_ptr<FieldRows<ExerciseOutline>> line_;
 };
 
 }  // namespace trephine

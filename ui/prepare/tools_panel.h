@@ -3,21 +3,17 @@
 // it; what is refused is said below the field's group and the exercise stays.
 #pragma once
 
-#include <QCheckBox>
 #include <QComboBox>
 #include <QLabel>
-#include <QLineEdit>
 #include <QListWidget>
+#include <QMenu>
 #include <QToolButton>
-#include <QVBoxLayout>
-#include <QWidget>
 #include <filesystem>
 #include <functional>
 #include <memory>
 
-#include "exercise/exercise.h"
-#include "exercise/exercise_numbers.h"
-#include "ui/common/number_rows.h"
+#include "exercise/exercise_fields.h"
+#include "ui/prepare/form_group.h"
 #include "ui/prepare/trade_view.h"
 
 namespace trephine {
@@ -42,9 +38,7 @@ class ToolsPanel : public QWidget {
   // How far that is; nothing: it is not being measured.
   void showMeasuring(std::optional<double> share);
 
-  // A person wants this change of the exercise as it is then; `what` of it.
-  std::function<Status(const std::string& what, const std::function<void(Exercise&)>& change)>
-      wanted;
+  ExerciseEdited wanted;
   // The map of an arm that goes with that landmark instead, or, with "", stays where it is in this
   // patient.
   std::function<ExerciseMap(const Exercise& exercise, std::size_t arm, const std::string& landmark)>
@@ -63,55 +57,42 @@ class ToolsPanel : public QWidget {
   void setMesh(const std::filesystem::path& file);
 
  private:
-  QWidget* buildTools();
-  QWidget* buildArms();
-  QWidget* buildLaws();
+  void buildTools();
+  QWidget* buildToolList();
+  QWidget* buildMesh();
+  void buildArms();
+  void buildLaws();
   void showTool();
   void showArm();
   void showLaws();
   void showTrades();
-  ExerciseTool* tool(Exercise& exercise) const;
+  void describeCosts();
+  const ExerciseTool* tool() const;
+  const ExerciseArm* arm() const;
   void editTool(const std::string& what, const std::function<void(ExerciseTool&)>& edit);
   void editArm(const std::string& what, const std::function<void(ExerciseArm&)>& edit);
-  void editExercise(QLabel* problem, const std::string& what,
-                    const std::function<void(Exercise&)>& edit);
   void removeTool();
-  void nameTool();
-  void addArm();
-  void removeArm();
 
   Exercise exercise_;
   bool showing_ = false;
   QWidget* body_;
   QLabel* locked_;
+  FormGroup *of_tools_, *of_arms_, *of_laws_;
   QListWidget* tools_;
-  QToolButton *add_, *remove_;
-  QMenu* add_menu_;
-  QWidget* tool_editor_;
-  QLineEdit* id_;
-  QComboBox *kind_, *shape_;
-  QFormLayout* tool_form_;
+  QToolButton* remove_;
+  std::unique_ptr<FieldRows<ExerciseTool>> tool_id_;
+  std::unique_ptr<FieldRows<ToolDescription>> tool_fields_;
+  std::unique_ptr<FieldRows<ToolLook>> look_;
   QLabel* mesh_;
-  QToolButton* no_mesh_;
-  std::unique_ptr<NumberRows<ToolDescription>> tool_numbers_, shaft_, head_;
-  std::unique_ptr<NumberRows<ToolLook>> look_numbers_, axis_;
-  QLabel *tool_problem_, *arm_problem_, *law_problem_;
-  QComboBox *arm_, *arm_tool_, *arm_landmark_;
-  QListWidget* other_tools_;
-  QLineEdit* arm_name_;
-  QToolButton *add_arm_, *remove_arm_;
-  QFormLayout* arm_form_;
-  std::unique_ptr<NumberRows<ExerciseMap>> map_numbers_;
-  std::unique_ptr<NumberRows<WorkspaceMap>> fixed_numbers_;
-  std::unique_ptr<NumberRows<MapTurn>> fixed_turn_;
+  QToolButton *no_mesh_, *remove_arm_;
+  QComboBox* arm_;
+  std::unique_ptr<FieldRows<ExerciseArm>> arm_is_, arm_numbers_;
+  std::unique_ptr<FieldRows<ExerciseMap>> map_;
+  std::unique_ptr<FieldRows<WorkspaceMap>> fixed_;
+  std::unique_ptr<FieldRows<MapTurn>> fixed_turn_;
   MapTurn turned_;  // as it was entered: other angles are the same rotation
-  std::unique_ptr<NumberRows<ExerciseArm>> arm_numbers_;
-  std::vector<std::pair<LawKind, QCheckBox*>> laws_;
-  std::vector<std::pair<LawKind, QLabel*>> law_costs_;
-  QComboBox *controller_, *force_at_, *removal_;
-  QLabel *controller_hint_, *controller_cost_;
+  std::unique_ptr<FieldRows<Exercise>> laws_;
   QToolButton* measure_;
-  std::unique_ptr<NumberRows<Exercise>> rate_;
   Costs costs_;
   std::vector<TradeRow> trades_;
   TradeView *points_trade_, *force_trade_, *rate_trade_, *rays_trade_;

@@ -2,7 +2,6 @@
 
 #include <QFormLayout>
 #include <QHBoxLayout>
-#include <QSignalBlocker>
 #include <QVBoxLayout>
 #include <cmath>
 
@@ -28,9 +27,6 @@ TissueMechanics::TissueMechanics(QWidget* parent) : QWidget(parent) {
   form->setFieldGrowthPolicy(QFormLayout::AllNonFixedFieldsGrow);
   form->setVerticalSpacing(6);
   for (const TissueNumber& row : kTissueNumbers) addNumber(row);
-  cuttable_ = new QCheckBox(tr("Can be cut"), this);
-  cuttable_->setObjectName("cuttable");
-  cuttable_->setToolTip(tr("Whether a tool may remove it, by the work that is put in"));
   solid_ = new QComboBox(this);
   solid_->setObjectName("solid");
   solid_->setAccessibleName(tr("Whether it stops a tool"));
@@ -40,13 +36,12 @@ TissueMechanics::TissueMechanics(QWidget* parent) : QWidget(parent) {
   solid_->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon);
   solid_->setMinimumContentsLength(3);
   for (int i = 0; i < 3; ++i) solid_->addItem({});
-  form->addRow(cuttable_);
+  cutting_ = std::make_unique<FieldRows<Tissue>>(FieldsOf<Tissue>(kCuttingFields), *form, this,
+                                                 "tissue:");
+  cutting_->entered = [this](const Tissue& other, const char* key) {
+    if (wanted) (void)wanted(other, key);
+  };
   form->addRow(tr("A tool"), solid_);
-  connect(cuttable_, &QCheckBox::toggled, this, [this](bool on) {
-    Tissue other = tissue_;
-    other.cuttable = on;
-    if (wanted) (void)wanted(other, "cuttable");
-  });
   connect(solid_, &QComboBox::activated, this, [this](int chosen) {
     Tissue other = tissue_;
     other.solid.reset();
@@ -139,8 +134,7 @@ void TissueMechanics::showOutcome() {
     if (most) *most *= n.row->shown_per;
     n.bar->setLimit(most, isForce(*n.row) || in_force_ == ControllerKind::bounded);
   }
-  const QSignalBlocker quiet_cut(cuttable_);
-  cuttable_->setChecked(tissue_.cuttable);
+  cutting_->show(tissue_);
   Tissue by_itself = tissue_;
   by_itself.solid.reset();
   solid_->setItemText(kByStiffness, by_itself.isSolid() ? tr("is stopped, by its stiffness")

@@ -2,16 +2,17 @@
 // can show of it, and whether it can be cut and stops a tool.
 #pragma once
 
-#include <QCheckBox>
 #include <QComboBox>
 #include <QLineEdit>
 #include <QWidget>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <vector>
 
 #include "exercise/arm_limits.h"
 #include "haptics/controllers.h"
+#include "ui/common/field_rows.h"
 #include "ui/common/number_field.h"
 #include "ui/tissue/limit_bar.h"
 
@@ -45,7 +46,7 @@ class TissueMechanics : public QWidget {
   void showOutcome();
 
   std::vector<Number> numbers_;
-  QCheckBox* cuttable_;
+  std::unique_ptr<FieldRows<Tissue>> cutting_;
   QComboBox* solid_;
   Tissue tissue_, declared_;
   std::optional<ArmsLimit> arms_;

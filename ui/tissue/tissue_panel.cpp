@@ -35,6 +35,11 @@ QToolButton* smallButton(const char* name, Symbol symbol, const QString& tip, QW
   return button;
 }
 
+constexpr FieldOf<Tissue> kSourceFields[] = {
+    {{"hu_source", {1, 300}, Given::always, "where the range comes from", "Source"},
+     &Tissue::hu_source},
+};
+
 }  // namespace
 
 double opacityAtSlider(double position) {
@@ -143,11 +148,6 @@ QLayout* TissuePanel::buildSetRow() {
 
 QWidget* TissuePanel::buildEditor() {
   editor_ = new QWidget(this);
-  name_ = new QLineEdit(editor_);
-  name_->setObjectName("tissueName");
-  name_->setAccessibleName(tr("Name of the tissue"));
-  name_->setMaxLength(kMostLetters);
-  connect(name_, &QLineEdit::editingFinished, this, &TissuePanel::nameEntered);
   colour_ = new QToolButton(editor_);
   colour_->setObjectName("colour");
   colour_->setIconSize({20, 20});
@@ -162,6 +162,9 @@ QWidget* TissuePanel::buildEditor() {
   opacity_text_ = new QLabel(editor_);
   opacity_text_->setMinimumWidth(fontMetrics().horizontalAdvance("0.000 /mm "));
 
+  auto* form = new QFormLayout;
+  form->setFieldGrowthPolicy(QFormLayout::AllNonFixedFieldsGrow);
+  form->setVerticalSpacing(6);
   low_ = new WholeNumberField("huLow", editor_);
   high_ = new WholeNumberField("huHigh", editor_);
   for (WholeNumberField* box : {low_, high_}) {
@@ -169,12 +172,6 @@ QWidget* TissuePanel::buildEditor() {
     box->setSingleStep(5);
     box->setSuffix(tr(" HU"));
   }
-  place_ = new QComboBox(editor_);
-  place_->setObjectName("tissueStructure");
-  place_->setAccessibleName(tr("Where the tissue is"));
-  place_->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon);
-  place_->setMinimumContentsLength(3);
-  connect(place_, &QComboBox::activated, this, &TissuePanel::placeChosen);
   label_ = new WholeNumberField("label", editor_);
   label_->setLimits(0, int(kLabelRange.high));
   label_->setWord(0, tr("any"));
@@ -192,69 +189,37 @@ QWidget* TissuePanel::buildEditor() {
     return applied;
   };
 
-  auto* head = new QHBoxLayout;
-  head->addWidget(name_, 1);
-  head->addWidget(colour_);
-  auto* opacity_row = new QHBoxLayout;
-  opacity_row->addWidget(opacity_, 1);
-  opacity_row->addWidget(opacity_text_);
-  hu_source_ = new QLineEdit(editor_);
-  hu_source_->setObjectName("huSource");
-  hu_source_->setAccessibleName(tr("Source of the HU"));
-  hu_source_->setPlaceholderText(tr("where the range comes from"));
-  hu_source_->setMaxLength(300);
-  connect(hu_source_, &QLineEdit::editingFinished, this, &TissuePanel::huSourceEntered);
-  auto* form = form_ = new QFormLayout;
-  form->setFieldGrowthPolicy(QFormLayout::AllNonFixedFieldsGrow);
-  form->setVerticalSpacing(6);
+  constexpr FieldsOf<Tissue> kFields = kTissueFields;
+  const auto fieldsOf = [&](FieldsOf<Tissue> fields, const char* what) {
+    auto made = std::make_unique<FieldRows<Tissue>>(fields, *form, editor_, "tissue:");
+    made->entered = [this, what](const Tissue& wanted, const char*) {
+      if (!current() || current()->id != wanted.id) return;
+      if (wanted.structure != current()->structure) return structureChosen(wanted.structure);
+      (void)apply(wanted, what);
+      emit editEnded();
+    };
+    return made;
+  };
+  name_ = fieldsOf(kFields.subspan(1, 1), "name");
+  auto* looks = new QHBoxLayout;
+  looks->addWidget(opacity_, 1);
+  looks->addWidget(opacity_text_);
+  looks->addWidget(colour_);
+  form->addRow(tr("Opacity"), looks);
   form->addRow(tr("From"), low_->withReason());
   form->addRow(tr("To"), high_row);
-  form->addRow(tr("Source"), hu_source_);
-  auto* where = new QGridLayout;
-  where->setSpacing(4);
-  where->addWidget(place_, 0, 0, Qt::AlignTop);
-  where->addLayout(label_->withReason(), 0, 1);
-  where->setColumnStretch(0, 1);
-  form->addRow(tr("Where"), where);
-  shell_ = buildShell();
-  form->addRow(tr("Else"), shell_);
-  form->addRow(tr("Opacity"), opacity_row);
+  source_ = fieldsOf(kSourceFields, "hu");
+  where_ = fieldsOf(kFields.subspan(2, 1), "where");
+  form->addRow(tr("Label"), label_->withReason());
+  shell_ = std::make_unique<FieldRows<Tissue::Shell>>(FieldsOf<Tissue::Shell>(kShellFields), *form,
+                                                      editor_, "shell:");
+  shell_->entered = [this](const Tissue::Shell& shell, const char*) { shellEntered(shell); };
 
   auto* editor_layout = new QVBoxLayout(editor_);
   editor_layout->setContentsMargins(0, 0, 0, 0);
-  editor_layout->addLayout(head);
   editor_layout->addLayout(form);
   editor_layout->addWidget(mechanics_);
   return editor_;
-}
-
-// What stands in for a structure that a case lacks.
-QWidget* TissuePanel::buildShell() {
-  auto* row = new QWidget(editor_);
-  shell_of_ = new QComboBox(row);
-  shell_of_->setObjectName("shellOf");
-  shell_of_->setAccessibleName(tr("Where a case lacks the structure"));
-  shell_of_->setToolTip(
-      tr("What the tissue is on a case that lacks its structure; it holds when one is opened"));
-  shell_of_->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon);
-  shell_of_->setMinimumContentsLength(3);
-  connect(shell_of_, &QComboBox::activated, this,
-          [this](int) { shellEntered(shell_of_->currentData().toString().toStdString()); });
-  shell_mm_ = new DecimalField("shellThickness", row);
-  shell_mm_->setAccessibleName(tr("Thickness of the layer"));
-  shell_mm_->setDecimals(1);
-  shell_mm_->setSingleStep(0.5);
-  shell_mm_->setLimits(kShellRange.low, kShellRange.high);
-  shell_mm_->setSuffix(tr(" mm"));
-  shell_mm_->entered = [this] {
-    if (current() && current()->shell) shellEntered(current()->shell->of);
-  };
-  auto* beside = new QHBoxLayout(row);
-  beside->setContentsMargins(0, 0, 0, 0);
-  beside->setSpacing(4);
-  beside->addWidget(shell_of_, 1);
-  beside->addLayout(shell_mm_->withReason());
-  return row;
 }
 
 void TissuePanel::setTissues(const TissueSet& tissues, const TissueSet& declared) {
@@ -396,43 +361,48 @@ void TissuePanel::showSelected() {
   showOutcome();
 }
 
-// Anywhere, or in one of the case's structures; one that the case lacks stays to be seen.
+// Anywhere, or in one of the case's structures; one that the case lacks stays to be seen. Else, on
+// a case without it, nowhere or the outside of another.
 void TissuePanel::showPlaces() {
   const Tissue* tissue = current();
-  place_->clear();
-  place_->addItem(tr("Anywhere"), QString());
-  int now = 0;
+  FieldEditor::Offers places{{tr("Anywhere"), ""}}, shells{{tr("nowhere without it"), ""}};
+  bool is_here = !tissue || tissue->structure.empty();
   for (const std::string& name : structures_) {
-    place_->addItem(tr("In %1").arg(shownName(name)), toQt(name));
-    if (tissue && tissue->structure == name) now = place_->count() - 1;
+    places.emplace_back(tr("In %1").arg(shownName(name)), name);
+    if (tissue && tissue->structure == name) {
+      is_here = true;
+    } else {
+      shells.emplace_back(tr("the outside of %1").arg(shownName(name)), name);
+    }
   }
-  if (tissue && !tissue->structure.empty() && now == 0) {
-    place_->addItem(tr("In %1 (not in this case)").arg(shownName(tissue->structure)),
-                    toQt(tissue->structure));
-    now = place_->count() - 1;
+  if (!is_here) {
+    places.emplace_back(tr("In %1 (not in this case)").arg(shownName(tissue->structure)),
+                        tissue->structure);
   }
-  place_->setCurrentIndex(now);
-  showShell();
-  place_->setEnabled(place_->count() > 1);
-  place_->setToolTip(place_->count() > 1
-                         ? tr("Only voxels of this structure are this tissue")
-                         : tr("The case has no structure; they are made on the Structures tab"));
+  FieldEditor& structure = (*where_)["structure"];
+  structure.offer(places);
+  structure.setEnabled(places.size() > 1);
+  structure.setToolTip(places.size() > 1
+                           ? tr("Only voxels of this structure are this tissue")
+                           : tr("The case has no structure; they are made on the Structures tab"));
+  (*shell_)["of"].offer(shells);
+  if (!tissue) return;
+  where_->show(*tissue);
+  shell_->show(tissue->shell.value_or(Tissue::Shell{}));
+  shell_->setVisible(!tissue->structure.empty());
+  (*shell_)["thickness_mm"].setEnabled(tissue->shell.has_value());
 }
 
 void TissuePanel::showOutcome() {
   const Tissue* tissue = current();
   if (!tissue) return;
-  if (!name_->hasFocus() || !name_->isModified()) name_->setText(toQt(tissue->name));
+  const bool same = std::exchange(shown_, tissue->id) == tissue->id;
+  name_->show(*tissue, same);
+  source_->show(*tissue, same);
   colour_->setIcon(tissueSwatch(colours::of(tissue->colour), 1.0));
   {
     const QSignalBlocker quiet(opacity_);
     opacity_->setValue(int(std::lround(sliderAtOpacity(tissue->opacity) * kOpacitySteps)));
-  }
-  if (hu_source_of_ != tissue->id || !hu_source_->hasFocus() || !hu_source_->isModified()) {
-    hu_source_of_ = tissue->id;
-    hu_source_->setText(toQt(tissue->hu_source));
-    hu_source_->setCursorPosition(0);
-    hu_source_->setToolTip(toQt(tissue->hu_source));
   }
   showPlaces();
   const bool by_label = tissue->structure.empty() && tissue->label;
@@ -502,10 +472,9 @@ void TissuePanel::rangeEntered() {
   for (WholeNumberField* box : {low_, high_, label_}) box->take();
 }
 
-void TissuePanel::placeChosen(int index) {
-  if (!current()) return;
+void TissuePanel::structureChosen(const std::string& name) {
   Tissue wanted = *current();
-  wanted.structure = place_->itemData(index).toString().toStdString();
+  wanted.structure = name;
   wanted.label.reset();
   if (wanted.structure.empty()) wanted.shell.reset();
   const Tissue& cited = declared(wanted);
@@ -527,63 +496,21 @@ void TissuePanel::placeChosen(int index) {
   showProblem(&why, overlapsOf(tissues_, chosen(), wanted));
 }
 
-// Empty: nothing stands in.
-void TissuePanel::shellEntered(const std::string& of) {
+// One of no structure: nothing stands in.
+void TissuePanel::shellEntered(const Tissue::Shell& shell) {
   if (!current()) return;
   Tissue wanted = *current();
   wanted.shell.reset();
-  if (!of.empty()) wanted.shell = Tissue::Shell{of, shell_mm_->wanted()};
+  if (!shell.of.empty()) wanted.shell = shell;
   const Status valid = apply(wanted, "where");
   emit editEnded();
-  if (valid) return showShell();
+  if (valid) return;
   const Error why = valid.error();
   showProblem(&why, {});
 }
 
-void TissuePanel::showShell() {
-  const Tissue* tissue = current();
-  form_->setRowVisible(shell_, tissue && !tissue->structure.empty());
-  if (!tissue) return;
-  const std::string of = tissue->shell ? tissue->shell->of : std::string();
-  shell_of_->clear();
-  shell_of_->addItem(tr("nowhere without it"), QString());
-  std::vector<std::string> names = structures_;
-  if (!of.empty() && std::ranges::find(names, of) == names.end()) names.push_back(of);
-  for (const std::string& name : names) {
-    if (name == tissue->structure) continue;
-    shell_of_->addItem(tr("the outside of %1").arg(shownName(name)), toQt(name));
-  }
-  shell_of_->setCurrentIndex(shell_of_->findData(toQt(of)));
-  shell_mm_->setEnabled(!of.empty());
-  shell_mm_->show(tissue->shell.value_or(Tissue::Shell{}).thickness_mm);
-}
-
-void TissuePanel::huSourceEntered() {
-  if (!current() || current()->id != hu_source_of_) return;
-  Tissue wanted = *current();
-  const std::string typed = cleanUtf8(hu_source_->text().simplified().toStdString());
-  hu_source_->setModified(false);
-  if (typed.empty() || typed == wanted.hu_source) {
-    return hu_source_->setText(toQt(wanted.hu_source));
-  }
-  wanted.hu_source = typed;
-  (void)apply(wanted, "hu");
-  emit editEnded();
-}
-
-void TissuePanel::nameEntered() {
-  if (!current()) return;
-  Tissue wanted = *current();
-  const std::string typed = cleanUtf8(name_->text().toStdString());
-  name_->setModified(false);
-  if (typed.empty() || typed == wanted.name) return name_->setText(toQt(wanted.name));
-  wanted.name = typed;
-  (void)apply(wanted, "name");
-  emit editEnded();
-}
-
 void TissuePanel::add() {
-  huSourceEntered();  // a click of a button leaves the field as it was typed
+  source_->takeTyped();  // a click of a button leaves the field as it was typed
   const Result<TissueSet> more = withNewTissue(tissues_);
   if (!more) {
     const Error why = more.error();
@@ -594,13 +521,12 @@ void TissuePanel::add() {
   list_->select(0);
   showSelected();
   emit chosenChanged();
-  name_->setFocus();
-  name_->selectAll();
+  (*name_)["name"].setFocus(Qt::TabFocusReason);  // with its text selected
 }
 
 void TissuePanel::remove() {
   if (!current()) return;
-  huSourceEntered();
+  source_->takeTyped();
   const Result<TissueSet> less = withoutTissue(tissues_, chosen());
   if (!less) {
     const Error why = less.error();

@@ -3,8 +3,6 @@
 // applied; HU that have lost their tissue are mentioned. It keeps no set: who shows one does.
 #pragma once
 
-#include <QComboBox>
-#include <QFormLayout>
 #include <QLabel>
 #include <QLineEdit>
 #include <QMenu>
@@ -14,6 +12,7 @@
 #include <QWidget>
 #include <filesystem>
 #include <functional>
+#include <memory>
 #include <optional>
 
 #include "exercise/arm_limits.h"
@@ -21,6 +20,7 @@
 #include "tissue/tissue_edits.h"
 #include "tissue/tissue_look.h"
 #include "tissue/tissue_set.h"
+#include "ui/common/field_rows.h"
 #include "ui/common/number_field.h"
 #include "ui/tissue/tissue_list.h"
 #include "ui/tissue/tissue_mechanics.h"
@@ -102,12 +102,8 @@ class TissuePanel : public QWidget {
   void showProblem(const Error* why, const std::vector<HuOverlap>& overlaps);
   void chooseColour();
   void rangeEntered();
-  void placeChosen(int index);
-  QWidget* buildShell();
-  void showShell();
-  void shellEntered(const std::string& of);
-  void nameEntered();
-  void huSourceEntered();
+  void structureChosen(const std::string& name);
+  void shellEntered(const Tissue::Shell& shell);
   void add();
   void remove();
   // Puts it in the place of the selected one, where that makes a possible set.
@@ -124,8 +120,10 @@ class TissuePanel : public QWidget {
   bool labels_open_ = false;
   std::vector<std::string> structures_;
   QString locked_;
-  QLineEdit *set_name_, *name_, *hu_source_;
-  std::string hu_source_of_;  // the tissue whose source stands there
+  QLineEdit* set_name_;
+  std::unique_ptr<FieldRows<Tissue>> name_, source_, where_;
+  std::unique_ptr<FieldRows<Tissue::Shell>> shell_;
+  std::string shown_;  // the tissue whose fields stand there
   QToolButton *set_menu_, *undo_, *redo_;
   QMenu* sets_;
   QLabel* locked_words_;
@@ -135,10 +133,6 @@ class TissuePanel : public QWidget {
   QLabel *opacity_text_, *gaps_, *felt_, *problem_;
   QToolButton* colour_;
   QSlider* opacity_;
-  QComboBox *place_, *shell_of_;
-  QWidget* shell_;
-  DecimalField* shell_mm_;
-  QFormLayout* form_;
   WholeNumberField *low_, *high_, *label_;
   TissueMechanics* mechanics_;
 };

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "ui/common/settings.h"
+#include "ui/common/preferences.h"
 
 namespace trephine {
 
@@ -25,7 +25,7 @@ PointerHands::PointerHands(ViewWidget& view) : QObject(&view), view_(view) {
   });
   connect(&view_, &ViewWidget::pushStepped, this, [this](double notches) {
     if (session_ && holds() && notches > 0.0) return;
-    setPush(push_N() + notches * readWithin(settings::kPushStep_N, 0.05, 1.0));
+    setPush(push_N() + notches * preferences().push_step_N);
   });
   connect(&view_, &ViewWidget::otherHandWanted, this, &PointerHands::takeOther);
   connect(&view_, &ViewWidget::resized, this, &PointerHands::letGo);
@@ -53,7 +53,7 @@ void PointerHands::begin(Session* session) {
   stays_ = false;
   active_ = 0;
   if (session_) {
-    const std::string main = read(settings::kMainHand).toStdString();
+    const std::string main = preferences().main_hand == MainHand::right ? "right" : "left";
     const std::vector<ExerciseArm>& arms = session_->exercise().arms;
     const auto found = std::ranges::find(arms, main, &ExerciseArm::name);
     active_ = found == arms.end() ? arms.size() - 1 : std::size_t(found - arms.begin());
@@ -126,7 +126,7 @@ void PointerHands::step(int right, int up) {
   if (!session_) return;
   const QRectF all = view_.rect();
   const QPointF from = place().value_or(last_.value_or(all.center()));
-  const double pixels = readWithin(settings::kKeyStep_mm, 0.1, 5.0) / view_.mmPerUnitAt(from);
+  const double pixels = preferences().key_step_mm / view_.mmPerUnitAt(from);
   const QPointF to = from + QPointF(right * pixels, -up * pixels);
   point({std::clamp(to.x(), all.left(), all.right()), std::clamp(to.y(), all.top(), all.bottom())});
 }

@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "ui/common/question.h"
-#include "ui/common/settings.h"
+#include "ui/common/preferences.h"
 #include "ui/common/words.h"
 #include "ui/train/train_workspace.h"
 
@@ -85,7 +85,7 @@ void TrainWorkspace::showChosen() {
   if (!exercise) return;
   showInUse();
   arms_->setExercise(*exercise);
-  exercise_->setExercise(*exercise, read(settings::kLanguage));
+  exercise_->setExercise(*exercise, toQt(languageInUse()));
   showOutline();
   showCard();
 }
@@ -109,7 +109,7 @@ void TrainWorkspace::showCard() {
   if (phase == Phase::empty) return workstation_.isOpening() ? card_->hide() : card_->showNoCase();
   result_->setVisible(result && !aside_);
   if (!card || aside_) return card_->hide();
-  card_->showExercise(*workstation_.exercise(), read(settings::kLanguage), start_->isEnabled());
+  card_->showExercise(*workstation_.exercise(), toQt(languageInUse()), start_->isEnabled());
 }
 
 void TrainWorkspace::putAside(bool aside) {

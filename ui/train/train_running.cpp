@@ -4,7 +4,7 @@
 #include "device/trephine_device.h"
 #include "render/tool_view.h"
 #include "ui/common/colours.h"
-#include "ui/common/settings.h"
+#include "ui/common/preferences.h"
 #include "ui/common/words.h"
 #include "ui/train/train_workspace.h"
 #include "volume/cut_structures.h"
@@ -136,7 +136,7 @@ void TrainWorkspace::tellCards(const Session& session, const LoopState& state) {
     hands.push_back(hand);
   }
   QString goal;
-  if (const CardText* card = cardFor(exercise, read(settings::kLanguage).toStdString())) {
+  if (const CardText* card = cardFor(exercise, languageInUse())) {
     goal = toQt(card->goal);
   }
   QString time = timeWords(state.seconds);
@@ -246,7 +246,7 @@ void TrainWorkspace::recentre() {
 void TrainWorkspace::showResult(Session& session, const RunReport& report) {
   ExerciseResult result;
   result.exercise = toQt(session.exercise().name);
-  if (const CardText* card = cardFor(session.exercise(), read(settings::kLanguage).toStdString())) {
+  if (const CardText* card = cardFor(session.exercise(), languageInUse())) {
     result.goal = toQt(card->goal);
   }
   result.seconds = session.state().seconds;

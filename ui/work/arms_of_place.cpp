@@ -1,6 +1,7 @@
 #include "ui/work/arms_of_place.h"
 
 #include "exercise/arms_file.h"
+#include "ui/common/preferences.h"
 #include "ui/common/settings.h"
 
 namespace trephine {
@@ -19,7 +20,7 @@ const Setting<QStringList>& settingOf(const std::string& arm) {
 
 ArmSettings armSettings() {
   ArmSettings arms;
-  arms.most_N = readWithin(settings::kArmsLimit_N, settings::kArmsLeast_N, settings::kArmsMost_N);
+  arms.most_N = preferences().arms_most_N;
   for (const char* name : kNames) {
     const QStringList of = read(settingOf(name));
     if (of.size() != 4 || of[0].isEmpty()) continue;

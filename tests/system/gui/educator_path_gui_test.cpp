@@ -185,7 +185,7 @@ class EducatorPathTest : public test::WindowTest {
     // What it is, where to work, what is said before it.
     QVERIFY(showTab(PrepareWorkspace::kExerciseTab));
     const QString name = way == Way::mouse ? "By mouse" : "By keys";
-    QVERIFY(fill("exerciseName", name));
+    QVERIFY(fill("scene:name", name));
     QCOMPARE(toQt(work.exercise()->name), name);
     const std::size_t points =
         work.exercise()->outline ? work.exercise()->outline->points_mm.size() : 0;
@@ -205,8 +205,8 @@ class EducatorPathTest : public test::WindowTest {
     QVERIFY(work.exercise()->outline->points_mm.size() >= points + 3);
     press(Qt::Key_Escape);
     if (!work.exercise()->card) QVERIFY(use("cardOn"));
-    QVERIFY(fill("cardGoal", "Open the window"));
-    QVERIFY(fill("cardSteps", "Look\nCut"));
+    QVERIFY(fill("card:goal", "Open the window"));
+    QVERIFY(fill("card:steps", "Look\nCut"));
     QCOMPARE(work.exercise()->card->en.goal, std::string("Open the window"));
     QCOMPARE(work.exercise()->card->en.steps, (std::vector<std::string>{"Look", "Cut"}));
 

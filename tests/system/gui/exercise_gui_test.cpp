@@ -59,7 +59,7 @@ class ExerciseGuiTest : public test::WindowTest {
       QTest::keyClicks(edit, line);
       if (line != text.split('\n').back()) key(edit, Qt::Key_Return);
     }
-    find<QLineEdit>("cardGoal")->setFocus();
+    find<QLineEdit>("card:goal")->setFocus();
   }
   // As a click in the opened list does.
   void choose(const char* name, const QVariant& data) {
@@ -162,7 +162,7 @@ class ExerciseGuiTest : public test::WindowTest {
     const ExerciseTool* needle = exercise().findTool("needle");
     QVERIFY(needle);
     QCOMPARE(needle->tool.made_from.kind, ToolKind::needle);
-    type("toolName", "probe");
+    type("tool:id", "probe");
     QVERIFY(exercise().findTool("probe"));
     const auto made = [&] { return exercise().findTool("probe")->tool.made_from; };
     enter("tool:length_mm", "33");
@@ -174,11 +174,11 @@ class ExerciseGuiTest : public test::WindowTest {
     QCOMPARE(made().radius_mm, 0.8);
     enter("tool:motor_W", "2");
     QCOMPARE(made().motor_W, 2.0);
-    choose("toolKind", int(ToolKind::burr));
+    choose("tool:kind", QString("burr"));
     QCOMPARE(made().kind, ToolKind::burr);
     enter("tool:shaft_points", "3");
     QCOMPARE(made().shaft_points, 3);
-    choose("toolShape", int(BurrShape::cylinder));
+    choose("tool:shape", QString("cylinder"));
     QCOMPARE(made().shape, BurrShape::cylinder);
     enter("tool:head_mm", "6");
     QCOMPARE(made().head_mm, 6.0);
@@ -206,14 +206,14 @@ class ExerciseGuiTest : public test::WindowTest {
 
   void anArmsToolsScalesAndForceReachTheExercise() {
     showTab(PrepareWorkspace::kToolTab);
-    choose("armTool", QString("burr"));
+    choose("arm:tool", QString("burr"));
     QCOMPARE(exercise().arms[0].tool, std::string("burr"));
     QVERIFY(names(exercise().arms[0].other_tools, "blade"));  // it stays at hand
-    tick("otherTools", "craniotome", false);
+    tick("arm:other_tools", "craniotome", false);
     QVERIFY(!names(exercise().arms[0].other_tools, "craniotome"));
-    tick("otherTools", "blade", false);
+    tick("arm:other_tools", "blade", false);
     QVERIFY(!names(exercise().arms[0].other_tools, "blade"));
-    tick("otherTools", "blade", true);
+    tick("arm:other_tools", "blade", true);
     QVERIFY(names(exercise().arms[0].other_tools, "blade"));
     enter("arm:motion_scale", "0.5");
     QCOMPARE(exercise().arms[0].map.motion_scale, 0.5);
@@ -238,7 +238,7 @@ class ExerciseGuiTest : public test::WindowTest {
     enter("arm:motion_scale", "0.8");
     QCOMPARE(exercise().arms[1].map.motion_scale, 0.8);
     QCOMPARE(exercise().arms[0].map.motion_scale, 0.5);
-    choose("armLandmark", QString("vault"));
+    choose("arm:landmark", QString("vault"));
     QCOMPARE(exercise().arms[1].map.landmark, std::string("vault"));
     enter("arm:force_scale", "500");
     QCOMPARE(exercise().arms[1].map.force_scale, 1.0);
@@ -248,7 +248,7 @@ class ExerciseGuiTest : public test::WindowTest {
   void armsAndLandmarksAreAddedNamedAndTakenAway() {
     showTab(PrepareWorkspace::kToolTab);
     choose("armChoice", QString("left"));
-    type("armName", "first");
+    type("arm:name", "first");
     QCOMPARE(exercise().arms[0].name, std::string("first"));
     find<QToolButton>("addArm")->click();
     QCOMPARE(exercise().arms.size(), std::size_t(3));
@@ -264,7 +264,7 @@ class ExerciseGuiTest : public test::WindowTest {
     find<QToolButton>("addLandmark")->click();
     QCOMPARE(exercise().landmarks.size(), std::size_t(2));
     untilPlaced();
-    type("landmarkName", "side");
+    type("landmark:id", "side");
     QCOMPARE(exercise().landmarks[1].id, std::string("side"));
     untilPlaced();
     enter("landmark:towardsX", "0.3");
@@ -340,20 +340,20 @@ class ExerciseGuiTest : public test::WindowTest {
 
   void whatIsFeltIsChosenLawByLaw() {
     showTab(PrepareWorkspace::kToolTab);
-    auto* rupture = find<QCheckBox>("law:rupture");
+    auto* rupture = find<QCheckBox>("scene:laws:rupture");
     QVERIFY(!rupture->isChecked());
     rupture->click();
     QVERIFY(names(exercise().laws, LawKind::rupture));
     for (const char* law : {"viscous", "coulomb", "elastic"}) {
-      find<QCheckBox>(QString("law:") + law)->click();
+      find<QCheckBox>(QString("scene:laws:") + law)->click();
     }
     QCOMPARE(exercise().laws, std::vector<LawKind>{LawKind::rupture});
-    choose("sceneController", int(ControllerKind::off));
+    choose("scene:controller", QString("off"));
     QCOMPARE(exercise().controller, ControllerKind::off);
     QCOMPARE(workstation().controllerInForce(), ControllerKind::off);
-    choose("forceAt", int(ForceAt::tip));
+    choose("scene:force_at", QString("tip"));
     QCOMPARE(exercise().force_at, ForceAt::tip);
-    choose("removal", int(RemovalKind::instant));
+    choose("scene:removal", QString("instant"));
     QCOMPARE(exercise().removal, RemovalKind::instant);
     enter("scene:rate_hz", "2000");
     QCOMPARE(exercise().rate_hz, 2000.0);
@@ -367,7 +367,7 @@ class ExerciseGuiTest : public test::WindowTest {
       return withFixedMaps(exercise(), landmarks).arms[0].map.fixed->centre_mm;
     };
     const Vec3 before = centre();
-    choose("armLandmark", QString(""));
+    choose("arm:landmark", QString(""));
     QVERIFY(exercise().arms[0].map.fixed && exercise().arms[0].map.landmark.empty());
     QCOMPARE(glm::length(centre() - before) < 1e-9, true);
     enter("fixed:centre_mmX", "5");
@@ -390,7 +390,7 @@ class ExerciseGuiTest : public test::WindowTest {
     enter("fixed:turned_degZ", "90");
     QVERIFY(glm::length(points() - Vec3(1, 0, 0)) < 1e-6);
     const Vec3 moved = centre();
-    choose("armLandmark", QString("vault"));
+    choose("arm:landmark", QString("vault"));
     QVERIFY(!exercise().arms[0].map.fixed);
     QVERIFY(glm::length(centre() - moved) < 1e-6);
     QCOMPARE(exercise().arms[0].map.motion_scale, 0.5);
@@ -446,13 +446,13 @@ class ExerciseGuiTest : public test::WindowTest {
 
   void costsAreMeasuredHereAndTradesStandBesideTheirSettings() {
     showTab(PrepareWorkspace::kToolTab);
-    QVERIFY(find<QLabel>("law:elastic:cost")->text().isEmpty());
+    QVERIFY(find<QLabel>("scene:laws:elastic:note")->text().isEmpty());
     find<QToolButton>("measureCosts")->click();
     // A law that costs less than the machine scatters costs "under" that.
     const QRegularExpression figure("^(\\d+\\.\\d\\d \u00b5s a tick|under \\d+\\.\\d\\d \u00b5s)$");
-    QTRY_VERIFY2_WITH_TIMEOUT(figure.match(find<QLabel>("law:elastic:cost")->text()).hasMatch(),
-                              qPrintable(find<QLabel>("law:elastic:cost")->text()), kLong_ms);
-    QVERIFY(find<QLabel>("controllerCost")->text().contains("\u00b5s a tick"));
+    QTRY_VERIFY2_WITH_TIMEOUT(figure.match(find<QLabel>("scene:laws:elastic:note")->text()).hasMatch(),
+                              qPrintable(find<QLabel>("scene:laws:elastic:note")->text()), kLong_ms);
+    QVERIFY(find<QLabel>("scene:controller:note")->text().contains("\u00b5s a tick"));
     find<QListWidget>("toolList")->setCurrentRow(0);
     for (const char* trade : {"pointsTrade", "forceTrade", "rateTrade", "raysTrade"}) {
       QVERIFY2(find<QLabel>(trade)->text().contains("recommended"), trade);
@@ -470,11 +470,11 @@ class ExerciseGuiTest : public test::WindowTest {
 
   void whatItIsWhereItEntersAndWhatStaysReachTheExercise() {
     showTab(PrepareWorkspace::kExerciseTab);
-    type("exerciseName", "A window of mine");
+    type("scene:name", "A window of mine");
     QCOMPARE(exercise().name, std::string("A window of mine"));
-    choose("anatomy", QString("abdomen"));
+    choose("scene:anatomy", QString("abdomen"));
     QCOMPARE(exercise().anatomy, std::string("abdomen"));
-    choose("landmarkTissue", QString("scalp"));
+    choose("landmark:tissue", QString("scalp"));
     QCOMPARE(exercise().landmarks[0].tissue, std::string("scalp"));
     untilPlaced();
     enter("landmark:run_mm", "2");
@@ -493,7 +493,7 @@ class ExerciseGuiTest : public test::WindowTest {
     QCOMPARE(exercise().landmarks[0].bulk_radius_mm, 0.0);
     QCOMPARE(exercise().landmarks[0].from.x, 0.6);
     untilPlaced();
-    choose("viewLandmark", QString(""));
+    choose("view:landmark", QString(""));
     QVERIFY(exercise().view.landmark.empty());
     enter("view:distance_mm", "200");
     QCOMPARE(exercise().view.distance_mm, 200.0);
@@ -515,7 +515,7 @@ class ExerciseGuiTest : public test::WindowTest {
     undoAll();
     // Locks hold at once, so the last.
     for (const char* lock : {"controller", "rate"}) {
-      QVERIFY(!find<QCheckBox>(QString("lock:") + lock)->isChecked());
+      QVERIFY(!find<QCheckBox>(QString("scene:locks:") + lock)->isChecked());
     }
   }
 
@@ -574,7 +574,7 @@ class ExerciseGuiTest : public test::WindowTest {
 
   void whatIsTypedIsNotLostWhenTheWindowCloses() {
     showTab(PrepareWorkspace::kExerciseTab);
-    auto* goal = find<QLineEdit>("cardGoal");
+    auto* goal = find<QLineEdit>("card:goal");
     goal->setFocus();
     goal->selectAll();
     QTest::keyClicks(goal, "Half a sentence");
@@ -589,18 +589,18 @@ class ExerciseGuiTest : public test::WindowTest {
 
   void theCardIsWrittenInBothLanguagesAndKeepsItsLimits() {
     showTab(PrepareWorkspace::kExerciseTab);
-    type("cardGoal", "Cut it out");
+    type("card:goal", "Cut it out");
     QCOMPARE(exercise().card->en.goal, std::string("Cut it out"));
-    write("cardSteps", "Do this\nThen that");
+    write("card:steps", "Do this\nThen that");
     QCOMPARE(exercise().card->en.steps, (std::vector<std::string>{"Do this", "Then that"}));
-    type("cardHands", "Both");
+    type("card:hands", "Both");
     QCOMPARE(exercise().card->en.hands, std::string("Both"));
-    auto* chinese = find<QLineEdit>("cardGoalChinese");
+    auto* chinese = find<QLineEdit>("cardChinese:goal");
     chinese->setFocus();
     chinese->setText(QString::fromUtf8("切開"));
     key(chinese, Qt::Key_Return);
     QCOMPARE(exercise().card->zh_TW->goal, std::string("切開"));
-    auto* goal = find<QLineEdit>("cardGoal");
+    auto* goal = find<QLineEdit>("card:goal");
     goal->setFocus();
     goal->setText(QString(500, 'x'));
     key(goal, Qt::Key_Return);
@@ -634,7 +634,7 @@ class ExerciseGuiTest : public test::WindowTest {
     QCOMPARE(exercise().outline->frame->landmark, std::string("vault"));
     const auto seen = view.pickAt(middle + QPoint(30, 20));
     QVERIFY(seen && glm::length(seen->at_mm - exercise().outline->points_mm[2]) < 3.0);
-    find<QCheckBox>("outlineClosed")->click();
+    find<QCheckBox>("outline:closed")->click();
     QVERIFY(exercise().outline->closed);
     enter("outline:width_mm", "2.5");
     QCOMPARE(exercise().outline->width_mm, 2.5);
@@ -688,7 +688,7 @@ class ExerciseGuiTest : public test::WindowTest {
     showTab(PrepareWorkspace::kToolTab);
     enter("arm:motion_scale", "0.5");
     showTab(PrepareWorkspace::kExerciseTab);
-    type("exerciseName", "Mine");
+    type("scene:name", "Mine");
     find<QPushButton>("saveExercise")->click();
     untilSaved();
     const std::filesystem::path file = storage() / "exercises" / "mine" / "scene.json";
@@ -750,7 +750,7 @@ class ExerciseGuiTest : public test::WindowTest {
 
   void anExerciseThatWasChangedOnItsWayIsNamedPartByPart() {
     showTab(PrepareWorkspace::kExerciseTab);
-    type("exerciseName", "Changed");
+    type("scene:name", "Changed");
     find<QPushButton>("saveExercise")->click();
     untilSaved();
     find<QPushButton>("exportExercise")->click();
@@ -881,11 +881,11 @@ class ExerciseGuiTest : public test::WindowTest {
   void onAnotherCaseItIsAskedWhetherItIsReplacedAndAFixedArmIsNotTakenAlong() {
     showTab(PrepareWorkspace::kToolTab);
     choose("armChoice", QString("left"));
-    choose("armLandmark", QString(""));
+    choose("arm:landmark", QString(""));
     showTab(PrepareWorkspace::kExerciseTab);
     find<QPushButton>("saveExercise")->click();
     untilSaved();
-    choose("viewLandmark", QString(""));
+    choose("view:landmark", QString(""));
     const std::filesystem::path file = workstation().exerciseFile();
     const std::string before = readExercise(file)->case_source;
     QSignalSpy opened(&workstation(), &Workstation::caseOpened);
@@ -906,17 +906,17 @@ class ExerciseGuiTest : public test::WindowTest {
 
   void whatIsLockedIsNotEdited() {
     showTab(PrepareWorkspace::kExerciseTab);
-    find<QCheckBox>("lock:rate")->click();
+    find<QCheckBox>("scene:locks:rate")->click();
     QVERIFY(exercise().locks.contains(Lock::rate));
     QVERIFY(workstation().isLocked(Lock::rate));
     QVERIFY(find<QLabel>("formLocked")->isVisible());
-    QVERIFY(!find<QLineEdit>("exerciseName")->isEnabled());
+    QVERIFY(!find<QLineEdit>("scene:name")->isEnabled());
     Exercise other = exercise();
     other.name = "x";
     QCOMPARE(workstation().edit(other, "name").error().code, std::string("LOCKED"));
     workstation().setUnlocked(true);
-    QVERIFY(find<QLineEdit>("exerciseName")->isEnabled());
-    find<QCheckBox>("lock:rate")->click();
+    QVERIFY(find<QLineEdit>("scene:name")->isEnabled());
+    find<QCheckBox>("scene:locks:rate")->click();
     QVERIFY(!exercise().locks.contains(Lock::rate));
     workstation().setUnlocked(false);
   }

@@ -16,6 +16,7 @@
 #include "base/system.h"
 #include "stalls.h"
 #include "ui/common/colours.h"
+#include "ui/common/preferences.h"
 #include "ui/common/settings.h"
 #include "ui/common/stall_meter.h"
 #include "ui/common/words.h"
@@ -25,6 +26,13 @@
 #include "volume/volume_files.h"
 
 namespace trephine::test {
+
+// As a person would in the dialog of settings.
+inline void prefer(const std::function<void(Preferences&)>& change) {
+  Preferences wanted = preferences();
+  change(wanted);
+  keepPreferences(wanted);
+}
 
 // Every so many voxels of the cranium, on each axis: the tests are about the window.
 inline Volume coarseCranium(int factor) {

@@ -139,12 +139,12 @@ class HeadsetGuiTest : public test::TrainTest {
   void aRefusedNumberIsReadToItsEnd() {
     find<QAction>("headsetSettings")->trigger();
     auto* dialog = find<QDialog>("headsetDialog");
-    auto* below = dialog->findChild<QDoubleSpinBox*>("headsetBelow");
+    auto* below = dialog->findChild<QDoubleSpinBox*>("headset/below_m");
     below->setFocus();
     below->selectAll();
     QTest::keyClicks(below, "999");
     QTest::keyClick(below, Qt::Key_Return);
-    auto* reason = dialog->findChild<QLabel*>("headsetBelowRefused");
+    auto* reason = dialog->findChild<QLabel*>("headset/below_mRefused");
     QTRY_VERIFY(reason->isVisible());
     rest();
     QVERIFY(dialog->grab().save(TREPHINE_ARTEFACTS "/headset-refused.png"));
@@ -262,7 +262,7 @@ class HeadsetGuiTest : public test::TrainTest {
     QTRY_VERIFY2(std::abs(seen(0) - ahead) < ahead / 3, qPrintable(QString::number(seen(0))));
     // Twice as large, and said.
     find<QAction>("headsetSettings")->trigger();
-    auto* scale = find<DecimalField>("headsetScale");
+    auto* scale = find<DecimalField>("headset/scale");
     scale->setValue(200.0);
     QTRY_VERIFY2(seen(0) > ahead + ahead / 2, qPrintable(QString::number(seen(0))));
     QTRY_VERIFY(words().contains("200 %"));
@@ -277,7 +277,7 @@ class HeadsetGuiTest : public test::TrainTest {
     QTRY_VERIFY(view().canDraw().ok());
     QTRY_VERIFY_WITH_TIMEOUT(view().isComplete(), kLong_ms);
     find<QAction>("headsetSettings")->trigger();
-    find<QCheckBox>("headsetMirror")->setChecked(true);
+    find<QCheckBox>("headset/mirror")->setChecked(true);
     find<QDialog>("headsetDialog")->close();
     putOn();
     // Its middle is the middle of the eye's picture; above it, in a high view, nothing.

@@ -197,7 +197,7 @@ class PointerGuiTest : public test::WindowTest {
  private slots:
   void init() {
     openWindow("trephine-test-pointer");
-    write(settings::kPushStep_N, kNotch_N);
+    test::prefer([](Preferences& of) { of.push_step_N = kNotch_N; });
   }
   void cleanup() { closeWindow(); }
 

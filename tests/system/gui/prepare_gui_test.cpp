@@ -235,7 +235,7 @@ class PrepareGuiTest : public test::WindowTest {
     QTest::mouseClick(find<QToolButton>("addTissue"), Qt::LeftButton);
     QCOMPARE(tissues().tissues.size(), before.tissues.size() + 1);
     QCOMPARE(panel().chosen(), std::size_t(0));
-    auto* name = find<QLineEdit>("tissueName");
+    auto* name = find<QLineEdit>("tissue:name");
     QVERIFY(name->hasFocus());
     QTest::keyClicks(name, "Air of sinuses");
     key(name, Qt::Key_Return);
@@ -278,7 +278,7 @@ class PrepareGuiTest : public test::WindowTest {
     key(source, Qt::Key_Return);
     QCOMPARE(tissue("dura").rupture_N->source, std::string("a book, page 3"));
     QVERIFY(tissue("dura").cuttable);
-    find<QCheckBox>("cuttable")->click();
+    find<QCheckBox>("tissue:cuttable")->click();
     QVERIFY(!tissue("dura").cuttable);
     auto* solid = find<QComboBox>("solid");
     const std::optional<bool> before = tissue("dura").solid;
@@ -290,7 +290,7 @@ class PrepareGuiTest : public test::WindowTest {
     QCOMPARE(stops(1), std::optional<bool>(true));
     QCOMPARE(stops(0), std::optional<bool>());
     QCOMPARE(stops(2), std::optional<bool>(false));
-    auto* hu_source = find<QLineEdit>("huSource");
+    auto* hu_source = find<QLineEdit>("tissue:hu_source");
     hu_source->setFocus();
     hu_source->selectAll();
     QTest::keyClicks(hu_source, "an atlas, plate 4");

@@ -143,8 +143,8 @@ class ScreensTest : public test::WindowTest {
     take("prepare-tissues");
     showStructures();
     take("prepare-structures");
-    showTab(PrepareWorkspace::kToolTab, "tools", {"armLandmark", "measureCosts"});
-    showTab(PrepareWorkspace::kExerciseTab, "exercise", {"landmark", "cardGoal", "outlinePoint"});
+    showTab(PrepareWorkspace::kToolTab, "tools", {"arm:landmark", "measureCosts"});
+    showTab(PrepareWorkspace::kExerciseTab, "exercise", {"landmark", "card:goal", "outlinePoint"});
     window_->show(Place::train);
     take("train-card");
     QTRY_VERIFY_WITH_TIMEOUT(!workstation().isOpening(), kLong_ms);

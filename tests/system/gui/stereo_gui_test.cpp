@@ -89,7 +89,7 @@ class StereoGuiTest : public test::TrainTest {
     QVERIFY(difference(left.copy(150, 390, 20, 20), right.copy(150, 390, 20, 20)) <
             difference(left, right));
     find<QAction>("headsetSettings")->trigger();
-    auto* packing = find<QComboBox>("stereoPacking");
+    auto* packing = find<QComboBox>("stereo/packing");
     packing->setCurrentIndex(packing->findData("top_bottom"));
     emit packing->activated(packing->currentIndex());
     QCOMPARE(shown(), first);  // no other window, which could take the keys

@@ -237,7 +237,7 @@ class StrangersGuiTest : public test::TrainTest {
   void noDialogLeavesBehindWhereItHasBeen() {
     const QString secret = "Mueller Hans";
     QVERIFY(QDir(temporary_.path()).mkpath(secret));
-    write(settings::kLanguage, QString("zh_TW"));  // so that there is a file
+    test::prefer([](Preferences& of) { of.language = Language::zh_TW; });  // so that there is a file
     find<QAction>("settings")->trigger();
     QTRY_VERIFY(window_->findChild<QDialog*>("settingsDialog"));
     find<QPushButton>("chooseStorage")->click();

@@ -50,7 +50,7 @@ class TrainGuiTest : public test::TrainTest {
     }
     QCOMPARE(find<QLabel>("startCardHands")->text(), toQt(card->hands));
     QVERIFY(window_->grab().save(TREPHINE_ARTEFACTS "/train-card.png"));
-    write(settings::kLanguage, QString("zh_TW"));
+    test::prefer([](Preferences& of) { of.language = Language::zh_TW; });
     window_->show(Place::prepare);
     QVERIFY(!find<QWidget>("startCard")->isVisible());
     window_->show(Place::train);
@@ -402,7 +402,7 @@ class TrainGuiTest : public test::TrainTest {
 
   void theArmsOfThisPlaceGiveNoMoreThanTheSettingsSay() {
     openExercise(exercise_);
-    write(settings::kArmsLimit_N, 1.0);
+    test::prefer([](Preferences& of) { of.arms_most_N = 1.0; });
     startTraining();
     for (const ExerciseArm& of : workstation().session()->exercise().arms)
       QCOMPARE(of.max_force_N, 1.0);
@@ -417,7 +417,7 @@ class TrainGuiTest : public test::TrainTest {
     stop();
     const Exercise& exercise = *workstation().exercise();
     QCOMPARE(exercise.arms[0].max_force_N, 3.3);  // the exercise itself is as it was
-    write(settings::kArmsLimit_N, settings::kArmsMost_N);
+    test::prefer([](Preferences& of) { of.arms_most_N = 40.0; });
   }
 
   void whatIsLockedStaysAndThePinUnlocksIt() {
@@ -585,16 +585,16 @@ class TrainGuiTest : public test::TrainTest {
   void settingsAreKeptAndTakeEffect() {
     find<QAction>("settings")->trigger();
     QTRY_VERIFY(window_->findChild<QDialog*>("settingsDialog"));
-    auto* hand = find<QComboBox>("mainHand");
+    auto* hand = find<QComboBox>("hands/main");
     hand->setCurrentIndex(hand->findData("left"));
-    find<QDoubleSpinBox>("pushStep")->setValue(0.5);
+    find<QDoubleSpinBox>("mouse/push_step_N")->setValue(0.5);
     for (const QLabel* label : find<QDialog>("settingsDialog")->findChildren<QLabel*>()) {
       QVERIFY2(!label->text().contains('&') || label->buddy(), qPrintable(label->text()));
     }
     for (QPushButton* button : find<QDialog>("settingsDialog")->findChildren<QPushButton*>()) {
       if (button->text().contains("Save")) QTest::mouseClick(button, Qt::LeftButton);
     }
-    QCOMPARE(read(settings::kMainHand), QString("left"));
+    QVERIFY(preferences().main_hand == MainHand::left);
     openExercise(exercise_);
     startTraining();
     pointAt(view().rect().center());

@@ -62,7 +62,7 @@ TEST(ArmNumbers, ThePagesAreAsTheRowsAre) {
   test::expectNumbers(kRoot / "modules" / "device" / "README.md", "capabilities", capabilityPage());
   std::string page = schemaHead();
   for (const simulated::ArmNumber& n : simulated::kArmNumbers) {
-    const NumberRow row{
+    const FieldRow row{
         n.key, {n.low, n.high, n.unit}, n.optional ? Given::may_be : Given::always, n.meaning};
     page +=
         schemaLine("arm", row, n.count == 3 ? "three numbers" : "number", n.optional ? "0" : "");
@@ -70,7 +70,7 @@ TEST(ArmNumbers, ThePagesAreAsTheRowsAre) {
   test::expectNumbers(kRoot / "plugins" / "simulated" / "README.md", "simulated arm", page);
   std::string troubles = schemaHead();
   for (const simulated::TroubleNumber& n : simulated::kTroubleNumbers) {
-    const NumberRow row{n.key, {0.0, 1e6, "s"}, Given::may_be, n.meaning};
+    const FieldRow row{n.key, {0.0, 1e6, "s"}, Given::may_be, n.meaning};
     troubles += schemaLine("device", row, "number", "never");
   }
   test::expectNumbers(kRoot / "plugins" / "simulated" / "README.md", "troubles", troubles);

@@ -5,7 +5,7 @@
 #include <random>
 
 #include "base/system.h"
-#include "exercise/exercise_numbers.h"
+#include "exercise/exercise_fields.h"
 #include "exercise/tissue_shares.h"
 #include "tissue/tissue_edits.h"
 

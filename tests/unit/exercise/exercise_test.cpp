@@ -3,7 +3,7 @@
 #include <fstream>
 
 #include "base/system.h"
-#include "exercise/exercise_numbers.h"
+#include "exercise/exercise_fields.h"
 #include "schema_page.h"
 #include "support.h"
 
@@ -283,8 +283,8 @@ TEST(Exercise, ANumberThatIsNotGivenIsAsThePageSays) {
 
 TEST(Exercise, ThePagesAreAsTheRowsAre) {
   const std::filesystem::path pages = resourceFolder() / "schemas";
-  test::expectNumbers(pages / "scene.md", "scene", exerciseNumbersPage());
-  test::expectNumbers(pages / "tool.md", "tool", toolNumbersPage());
+  test::expectNumbers(pages / "scene.md", "scene", exerciseFieldsPage());
+  test::expectNumbers(pages / "tool.md", "tool", toolFieldsPage());
 }
 
 TEST(Exercise, AMissingTissueFileIsNamed) {

@@ -268,7 +268,7 @@ TEST(TissueFile, ComesBackWithEveryNumberAndLacksNoneThatMustBeThere) {
 }
 
 TEST(TissueFile, ThePageIsAsTheRowsAre) {
-  test::expectNumbers(resourceFolder() / "schemas" / "tissues.md", "tissue", tissueNumbersPage());
+  test::expectNumbers(resourceFolder() / "schemas" / "tissues.md", "tissue", tissueFieldsPage());
 }
 
 TEST(TissueFile, NeedsEveryFieldButLabelAndCuttable) {

@@ -5,7 +5,7 @@
 #include <QKeyEvent>
 
 #include "qt_support.h"
-#include "ui/common/settings.h"
+#include "ui/common/preferences.h"
 
 namespace trephine {
 namespace {
@@ -16,7 +16,7 @@ class HeadsetDialogTest : public ::testing::Test {
     windowSettings().remove("headset");
     dialog_ = new HeadsetDialog(nullptr);
     dialog_->show();
-    below_ = dialog_->findChild<DecimalField*>("headsetBelow");
+    below_ = dialog_->findChild<DecimalField*>("headset/below_m");
   }
   ~HeadsetDialogTest() override {
     delete dialog_;
@@ -40,22 +40,22 @@ class HeadsetDialogTest : public ::testing::Test {
 
 TEST_F(HeadsetDialogTest, WhatWasEnteredStaysWhenTheDialogIsLeftByEscape) {
   enter("30");
-  EXPECT_EQ(read(settings::kHeadsetBelow_m), 0.3);
+  EXPECT_EQ(preferences().headset_below_m, 0.3);
   press(Qt::Key_Escape);
-  EXPECT_EQ(read(settings::kHeadsetBelow_m), 0.3);
+  EXPECT_EQ(preferences().headset_below_m, 0.3);
   EXPECT_EQ(below_->value(), 30.0);
 }
 
 TEST_F(HeadsetDialogTest, ARefusalNamesTheNumberThatIsInForce) {
   enter("30");
   enter("999");
-  const auto* reason = dialog_->findChild<QLabel*>("headsetBelowRefused");
+  const auto* reason = dialog_->findChild<QLabel*>("headset/below_mRefused");
   EXPECT_EQ(reason->text(), "999 cm is refused: between 0 and 100 only. 30 cm stays.");
-  EXPECT_EQ(read(settings::kHeadsetBelow_m), 0.3);
+  EXPECT_EQ(preferences().headset_below_m, 0.3);
 }
 
 TEST_F(HeadsetDialogTest, ItsFirstNumberIsSelectedToBeTypedOver) {
-  auto* ahead = dialog_->findChild<DecimalField*>("headsetAhead");
+  auto* ahead = dialog_->findChild<DecimalField*>("headset/ahead_m");
   EXPECT_EQ(dialog_->focusWidget(), ahead);
   EXPECT_EQ(ahead->findChild<QLineEdit*>()->selectedText(), "40");
 }

@@ -71,7 +71,7 @@ class TissuePanelTest : public PanelTest {
 
 TEST_F(TissuePanelTest, ShowsANumberAndItsSource) {
   EXPECT_EQ(find<QSpinBox>(panel_, "huLow").value(), 201);
-  EXPECT_TRUE(find<QLineEdit>(panel_, "huSource").text().contains("a book"));
+  EXPECT_TRUE(find<QLineEdit>(panel_, "tissue:hu_source").text().contains("a book"));
   EXPECT_TRUE(find<QDoubleSpinBox>(panel_, "damping").toolTip().contains("a paper"));
   EXPECT_EQ(changes_, 0) << "showing is no change";
 }
@@ -135,8 +135,8 @@ TEST_F(TissuePanelTest, ATissueIsRestrictedToALabelOnceThereIsALabelMapAndFreedA
 TEST_F(TissuePanelTest, WhereACaseLacksItsStructureItIsTheOutsideOfAnother) {
   panel_.setStructures({"capsule", "liver"});
   panel_.select("bone");
-  auto* place = &find<QComboBox>(panel_, "tissueStructure");
-  auto* of = &find<QComboBox>(panel_, "shellOf");
+  auto* place = &find<QComboBox>(panel_, "tissue:structure");
+  auto* of = &find<QComboBox>(panel_, "shell:of");
   EXPECT_TRUE(of->parentWidget()->isHidden()) << "of a tissue that is anywhere";
   const auto choose = [](QComboBox* box, const QString& data) {
     const int index = box->findData(data);
@@ -151,7 +151,7 @@ TEST_F(TissuePanelTest, WhereACaseLacksItsStructureItIsTheOutsideOfAnother) {
   choose(of, "liver");
   ASSERT_TRUE(changed_.find("bone")->shell);
   EXPECT_EQ(changed_.find("bone")->shell->of, "liver");
-  auto* thickness = &find<QDoubleSpinBox>(panel_, "shellThickness");
+  auto* thickness = &find<QDoubleSpinBox>(panel_, "shell:thickness_mm");
   thickness->setValue(2.5);
   EXPECT_EQ(changed_.find("bone")->shell->thickness_mm, 2.5);
   thickness->setValue(25.0);
@@ -161,7 +161,7 @@ TEST_F(TissuePanelTest, WhereACaseLacksItsStructureItIsTheOutsideOfAnother) {
 }
 
 TEST_F(TissuePanelTest, ASourceThatIsBeingTypedStaysWithItsTissue) {
-  QLineEdit& source = find<QLineEdit>(panel_, "huSource");
+  QLineEdit& source = find<QLineEdit>(panel_, "tissue:hu_source");
   const std::string of_soft = twoTissues().find("soft")->hu_source;
   source.setText("an atlas");
   source.setModified(true);

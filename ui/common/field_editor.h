@@ -1,0 +1,68 @@
+// A field of a form, made of its row (base/field.h): what a person sets there and a line that says
+// what it does. It shows a value and tells what a person wants instead.
+#pragma once
+
+#include <QWidget>
+#include <functional>
+#include <string>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "base/field.h"
+
+class QBoxLayout;
+class QLabel;
+
+namespace trephine {
+
+class FieldEditor : public QWidget {
+ public:
+  // The editor that tests and screen readers find is called `name`; of three numbers there are
+  // three, with "X", "Y" and "Z" behind it; of choices one each, with ":" and the choice's name.
+  FieldEditor(const FieldShape& field, const QString& name, QWidget* parent);
+  ~FieldEditor() override;
+
+  // A person wants this value.
+  std::function<void(const FieldValue& wanted)> entered;
+
+  // What is being typed stays, unless the value is of another owner.
+  void show(const FieldValue& value, bool same_owner = true);
+  // A number was typed that is out of its range, which it says.
+  bool isRefused() const;
+  // What is being typed counts as entered.
+  void takeTyped();
+  // What a reference may name: the words on the screen, and the name. Shown with the next show().
+  using Offers = std::vector<std::pair<QString, std::string>>;
+  void offer(const Offers& offers);
+  // What a choice is called, what it means, and what else is to be said of it, as its cost.
+  struct ChoiceText {
+    QString words, meaning, note;
+  };
+  void describe(const std::function<ChoiceText(const std::string& choice)>& text);
+
+  // What stands before it in its form; empty where it says so itself.
+  QString label() const;
+  // "Motion scale" of "motion_scale", or as its row says.
+  static QString nameOf(const FieldRow& row);
+
+ private:
+  struct Part;  // a way to edit the value, of one kind each
+  struct Numbers;
+  struct Flag;
+  struct Line;
+  struct Lines;
+  struct Reference;
+  struct References;
+  struct Choice;
+  struct Choices;
+
+  void want(const FieldValue& value);
+
+  FieldShape field_;
+  FieldValue value_;
+  std::unique_ptr<Part> part_;
+  bool showing_ = false;
+};
+
+}  // namespace trephine
