@@ -9,26 +9,7 @@ namespace {
 constexpr std::size_t kTurns = 4;         // ticks from one look beyond the surface to the next
 constexpr double kMostAlongBody = 128.0;  // points on the axis of a part of the body
 
-// -1 outside; written so that NaN falls out as "outside".
-std::int64_t voxelAt(const GridGeometry& geometry, const Vec3& voxel) {
-  const Vec3 v = voxel + 0.5;
-  const bool inside = v.x >= 0.0 && v.y >= 0.0 && v.z >= 0.0 && v.x < geometry.size[0] &&
-                      v.y < geometry.size[1] && v.z < geometry.size[2];
-  if (!inside) return -1;
-  return std::int64_t(geometry.indexOf(int(v.x), int(v.y), int(v.z)));
-}
-
-int classAt(const Grid& grid, const TissueLookup& lookup, const Vec3& voxel) {
-  const std::int64_t index = voxelAt(grid.geometry(), voxel);
-  return index < 0 ? -1 : lookup.classAt(grid, std::size_t(index));
-}
-
 }  // namespace
-
-std::int64_t nearestVoxel(const GridGeometry& geometry, const Mat4& patient_to_voxel,
-                          const Vec3& patient_mm) {
-  return voxelAt(geometry, Vec3(patient_to_voxel * glm::dvec4(patient_mm, 1.0)));
-}
 
 ToolContact::ToolContact(const Tool& tool, const GridGeometry& geometry)
     : classes_(tool.points_m.size(), -1),
@@ -55,34 +36,32 @@ void ToolContact::forget() {
   contact_ = Contact{};
 }
 
-bool ToolContact::wouldTouch(const Grid& grid, const TissueBricks& bricks,
-                             const TissueLookup& lookup, const Pose& pose_mm) const {
+bool ToolContact::wouldTouch(const TissueField& tissue, const Pose& pose_mm) const {
   const Vec3 tip = Vec3(patient_to_voxel_ * glm::dvec4(pose_mm.position, 1.0));
   const Mat3 to_voxel = Mat3(patient_to_voxel_) * glm::mat3_cast(pose_mm.orientation);
   const auto inTissue = [&](const Vec3& point_mm) {
-    const Vec3 voxel = tip + to_voxel * point_mm;
-    return bricks.mayHold(voxel, voxel) && classAt(grid, lookup, voxel) >= 0;
+    const Vec3 place = tip + to_voxel * point_mm;
+    return tissue.mayHold(place, place) && tissue.classAt(place) >= 0;
   };
   return std::any_of(points_mm_.begin(), points_mm_.end(), inTissue) ||
          std::any_of(body_mm_.begin(), body_mm_.end(), inTissue);
 }
 
 // Each place differs from the point along one axis alone, so its voxel is a step in memory away.
-int ToolContact::classNear(const Grid& grid, const TissueLookup& lookup,
-                           const TissueTable& tissues, const Vec3& voxel) const {
-  const GridGeometry& g = grid.geometry();
-  const Vec3 v = voxel + 0.5;
+int ToolContact::classNear(const TissueField& tissue, const Vec3& place) const {
+  const GridGeometry& g = tissue.geometry();
+  const Vec3 v = place + 0.5;
   int firmest = -1;
   const auto look = [&](int found) {
-    if (found != firmest && firmer(tissues, found, firmest)) firmest = found;
+    if (found != firmest && tissue.firmer(found, firmest)) firmest = found;
   };
-  const std::int64_t index = voxelAt(g, voxel);
+  const std::int64_t index = TissueField::voxelAt(g, place);
   if (index < 0) {
     for (int axis = 0; axis < 3; ++axis) {
       for (double reach : {reach_[axis], -reach_[axis]}) {
-        Vec3 at = voxel;
+        Vec3 at = place;
         at[axis] += reach;
-        look(classAt(grid, lookup, at));
+        look(tissue.classAt(at));
       }
     }
     return firmest;
@@ -93,16 +72,14 @@ int ToolContact::classNear(const Grid& grid, const TissueLookup& lookup,
     for (double reach : {reach_[axis], -reach_[axis]}) {
       const double there = v[axis] + reach;
       if (!(there >= 0.0 && there < size)) continue;
-      look(lookup.classAt(grid, std::size_t(index + (int(there) - here) * step)));
+      look(tissue.classAt(std::size_t(index + (int(there) - here) * step)));
     }
     step *= size;
   }
   return firmest;
 }
 
-const Contact& ToolContact::update(const Grid& grid, const TissueBricks& bricks,
-                                   const TissueLookup& lookup, const TissueTable& tissues,
-                                   const Pose& pose_mm) {
+const Contact& ToolContact::update(const TissueField& tissue, const Pose& pose_mm) {
   const Vec3 tip = Vec3(patient_to_voxel_ * glm::dvec4(pose_mm.position, 1.0));
   const Mat3 to_voxel = Mat3(patient_to_voxel_) * glm::mat3_cast(pose_mm.orientation);
   contact_ = Contact{};
@@ -111,7 +88,7 @@ const Contact& ToolContact::update(const Grid& grid, const TissueBricks& bricks,
   const Vec3 half = 0.5 * (high_mm_ - low_mm_);
   const Vec3 extent = glm::abs(to_voxel[0]) * half.x + glm::abs(to_voxel[1]) * half.y +
                       glm::abs(to_voxel[2]) * half.z + reach_ + 1.0;
-  if (!bricks.mayHold(middle - extent, middle + extent)) {
+  if (!tissue.mayHold(middle - extent, middle + extent)) {
     forget();
     return contact_;
   }
@@ -119,22 +96,22 @@ const Contact& ToolContact::update(const Grid& grid, const TissueBricks& bricks,
   std::int8_t firmest = -1;
   // The voxels of all points are on the way before the first is looked at.
   for (std::size_t i = 0; i < points_mm_.size(); ++i) {
-    voxels_[i] = voxelAt(grid.geometry(), tip + to_voxel * points_mm_[i]);
-    if (voxels_[i] >= 0) grid.prefetch(std::size_t(voxels_[i]));
+    voxels_[i] = TissueField::voxelAt(tissue.geometry(), tip + to_voxel * points_mm_[i]);
+    if (voxels_[i] >= 0) tissue.grid().prefetch(std::size_t(voxels_[i]));
   }
   for (std::size_t i = 0; i < points_mm_.size(); ++i) {
-    int found = voxels_[i] < 0 ? -1 : lookup.classAt(grid, std::size_t(voxels_[i]));
+    int found = voxels_[i] < 0 ? -1 : tissue.classAt(std::size_t(voxels_[i]));
     if (found < 0) {
       // Points in air between points in air take turns to look beyond the surface.
       const bool among_air = i > 0 && classes_[i] < 0 && classes_[i - 1] < 0 &&
                              (i + 1 == classes_.size() || classes_[i + 1] < 0);
       if (among_air && (i + turn_) % kTurns != 0) continue;
-      found = classNear(grid, lookup, tissues, tip + to_voxel * points_mm_[i]);
+      found = classNear(tissue, tip + to_voxel * points_mm_[i]);
     }
     classes_[i] = std::int8_t(found);
     if (found < 0) continue;
     ++contact_.points;
-    if (classes_[i] != firmest && firmer(tissues, classes_[i], firmest)) firmest = classes_[i];
+    if (classes_[i] != firmest && tissue.firmer(classes_[i], firmest)) firmest = classes_[i];
   }
   contact_.tissue_class = firmest;
   return contact_;

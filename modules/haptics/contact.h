@@ -6,10 +6,8 @@
 #include <vector>
 
 #include "base/math.h"
-#include "haptics/tissue_bricks.h"
-#include "haptics/tissue_lookup.h"
+#include "haptics/tissue_field.h"
 #include "haptics/tool.h"
-#include "volume/grid.h"
 
 namespace trephine {
 
@@ -18,11 +16,6 @@ struct Contact {
   std::int32_t points = 0;         // sample points that touch
   bool touching() const { return tissue_class >= 0; }
 };
-
-// The nearest voxel to a patient position, or -1 outside the grid (which counts as air). Any value
-// is answered, infinities and NaN too.
-std::int64_t nearestVoxel(const GridGeometry& geometry, const Mat4& patient_to_voxel,
-                          const Vec3& patient_mm);
 
 // The contact of one tool, point by point. A point touches the tissue of the voxel that it lies in;
 // if that is air, the firmest tissue that lies half a voxel beyond the surface of the solid that
@@ -34,20 +27,17 @@ class ToolContact {
   ToolContact(const Tool& tool, const GridGeometry& geometry);
 
   // Looks up every point of the tool at `pose_mm`. No allocation.
-  const Contact& update(const Grid& grid, const TissueBricks& bricks, const TissueLookup& lookup,
-                        const TissueTable& tissues, const Pose& pose_mm);
+  const Contact& update(const TissueField& tissue, const Pose& pose_mm);
   void forget();
   // Whether any point of the tool, or of the axis of its shaft, would be in tissue at a pose.
-  bool wouldTouch(const Grid& grid, const TissueBricks& bricks, const TissueLookup& lookup,
-                  const Pose& pose_mm) const;
+  bool wouldTouch(const TissueField& tissue, const Pose& pose_mm) const;
 
   const Contact& contact() const { return contact_; }
   // The tissue of each point of the tool, -1 air.
   std::span<const std::int8_t> classes() const { return classes_; }
 
  private:
-  int classNear(const Grid& grid, const TissueLookup& lookup, const TissueTable& tissues,
-                const Vec3& voxel) const;
+  int classNear(const TissueField& tissue, const Vec3& place) const;
 
   std::vector<Vec3> points_mm_;  // tool frame
   std::vector<Vec3> body_mm_;    // along the axes of its body, a voxel apart

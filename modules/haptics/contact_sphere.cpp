@@ -215,25 +215,26 @@ ContactSphere::ContactSphere(const GridGeometry& geometry, double radius_mm, int
   }
 }
 
-ElasticPush ContactSphere::push(const Grid& grid, const TissueBricks& bricks,
+ElasticPush ContactSphere::push(const TissueField& tissue,
                                 const StiffnessOfHu& stiffness, const Vec3& centre_mm) const {
-  return pushIn<FieldOfHu>(grid, bricks, stiffness, centre_mm);
+  return pushIn<FieldOfHu>(tissue, stiffness, centre_mm);
 }
 
-ElasticPush ContactSphere::push(const Grid& grid, const TissueBricks& bricks,
+ElasticPush ContactSphere::push(const TissueField& tissue,
                                 const StiffnessByLabel& stiffness, const Vec3& centre_mm) const {
-  if (stiffness.oneForAll()) return push(grid, bricks, stiffness.ofRow(0), centre_mm);
-  return pushIn<FieldOfLabels>(grid, bricks, stiffness, centre_mm);
+  if (stiffness.oneForAll()) return push(tissue, stiffness.ofRow(0), centre_mm);
+  return pushIn<FieldOfLabels>(tissue, stiffness, centre_mm);
 }
 
 template <class Field, class Stiffness>
-ElasticPush ContactSphere::pushIn(const Grid& grid, const TissueBricks& bricks,
+ElasticPush ContactSphere::pushIn(const TissueField& tissue,
                                   const Stiffness& stiffness, const Vec3& centre_mm) const {
   ElasticPush out;
+  const Grid& grid = tissue.grid();
   const GridGeometry& g = grid.geometry();
   const Vec3 centre = Vec3(patient_to_voxel_ * glm::dvec4(centre_mm, 1.0));
   const Vec3 low = centre - reach_, high = centre + reach_;
-  if (!bricks.mayHold(low, high)) return out;
+  if (!tissue.mayHold(low, high)) return out;
   const Vec3 size(g.size[0], g.size[1], g.size[2]);
   const bool inside = low.x >= 0.0 && low.y >= 0.0 && low.z >= 0.0 && high.x < size.x - 1.0 &&
                       high.y < size.y - 1.0 && high.z < size.z - 1.0;

@@ -7,9 +7,8 @@
 #include <vector>
 
 #include "base/math.h"
-#include "haptics/tissue_bricks.h"
+#include "haptics/tissue_field.h"
 #include "tissue/tissue_set.h"
-#include "volume/grid.h"
 
 namespace trephine {
 
@@ -85,15 +84,12 @@ class ContactSphere {
   // `directions` is rounded up to a whole number of opposite pairs.
   ContactSphere(const GridGeometry& geometry, double radius_mm, int directions);
 
-  ElasticPush push(const Grid& grid, const TissueBricks& bricks, const StiffnessOfHu& stiffness,
-                   const Vec3& centre_mm) const;
-  ElasticPush push(const Grid& grid, const TissueBricks& bricks, const StiffnessByLabel& stiffness,
-                   const Vec3& centre_mm) const;
+  ElasticPush push(const TissueField& tissue, const StiffnessOfHu& stiffness, const Vec3& centre_mm) const;
+  ElasticPush push(const TissueField& tissue, const StiffnessByLabel& stiffness, const Vec3& centre_mm) const;
 
  private:
   template <class Field, class Stiffness>
-  ElasticPush pushIn(const Grid& grid, const TissueBricks& bricks, const Stiffness& stiffness,
-                     const Vec3& centre_mm) const;
+  ElasticPush pushIn(const TissueField& tissue, const Stiffness& stiffness, const Vec3& centre_mm) const;
 
   struct Ray {
     Vec3 direction;  // patient axes

@@ -52,38 +52,22 @@ HapticCore::HapticCore(const HapticParameters& parameters, Grid::Writer writer)
     : parameters_(parameters),
       writer_(std::move(writer)),
       journal_(parameters.journal_voxels, parameters.journal_strokes, parameters.journal_seconds),
+      tissue_(writer_.grid(), parameters_.tissues),
       stroke_gap_ticks_(std::uint64_t(parameters.stroke_gap_s / parameters.period_s)),
       second_ticks_(std::uint64_t(1.0 / parameters.period_s + 0.5)) {
   elastic_ = names(parameters_.laws, LawKind::elastic);
   for (const ArmParameters& arm : parameters_.arms) {
     arms_.emplace_back(arm, parameters_, writer_.grid().geometry());
   }
-  useTissues(TissueTable{});
+  useTissues();
   carves_.reserve(arms_.size() * Removal::kMostVoxels);
   events_.reserve(kMaxEventsPerTick);
   changed_.reserve(kVoxelsPerSlice);
 }
 
-// Makes anew what the tick derives from the tissues. Other HU ranges or labels make every brick
-// unknown, and those or another `cuttable` make removal begin its pass anew; other numbers keep
-// both.
-void HapticCore::useTissues(const TissueTable& before) {
+// Makes anew what the tick derives from the tissues.
+void HapticCore::useTissues() {
   const TissueTable& now = parameters_.tissues;
-  bool same_voxels = bricks_ && before.count == now.count, same_cuts = same_voxels;
-  for (std::size_t c = 0; c < std::size_t(now.count) && same_voxels; ++c) {
-    const TissueClass &a = before.classes[c], &b = now.classes[c];
-    same_voxels = a.hu_min == b.hu_min && a.hu_max == b.hu_max && a.label == b.label &&
-                  a.solid == b.solid;
-    same_cuts = same_cuts && same_voxels && a.cuttable == b.cuttable;
-  }
-  if (!same_voxels) {
-    lookup_.set(now);
-    if (bricks_) {
-      bricks_->markAll();
-    } else {
-      bricks_.emplace(writer_.grid(), lookup_);
-    }
-  }
   tissues_finite_ = true;
   any_cuttable_ = false;
   for (int c = 0; c < now.count; ++c) {
@@ -94,6 +78,14 @@ void HapticCore::useTissues(const TissueTable& before) {
     any_cuttable_ = any_cuttable_ || t.cuttable;
   }
   if (elastic_) setElasticTissues();
+}
+
+// Other HU ranges or labels make every brick unknown, and those or another `cuttable` make removal
+// begin its pass anew; other numbers keep both.
+void HapticCore::changeTissues(const TissueTable& tissues) {
+  parameters_.tissues = tissues;
+  const bool same_cuts = tissue_.use(tissues) == TissueField::Change::numbers;
+  useTissues();
   for (Arm& arm : arms_) {
     if (!same_cuts) arm.tool().removal.forget();
     for (ArmTool& tool : arm.tools) {
@@ -137,10 +129,10 @@ void HapticCore::tick(const TickInput& input, const Command* commands, std::size
   if (journal_.busy() && (input.journal & kJournalReady)) {
     changed_.clear();
     journal_.step(writer_, kVoxelsPerSlice, &changed_);
-    for (std::uint32_t voxel : changed_) bricks_->mark(writer_.grid().brickOf(voxel));
+    for (std::uint32_t voxel : changed_) tissue_.changed(voxel);
     if (!journal_.busy()) finishRestore();
   }
-  if (!journal_.busy()) bricks_->recount(writer_.grid(), lookup_);
+  if (!journal_.busy()) tissue_.recount();
   if (!paused_ && ++ticks_ % second_ticks_ == 0) journal_.mark(credits());
   // The journal lets as many voxels be erased in this tick as it is asked for here.
   may_remove_ =
@@ -211,7 +203,7 @@ void HapticCore::apply(const Command& command, std::uint64_t tick) {
       break;
     case CommandKind::tissues:
       if (!command.tissues || *command.tissues == parameters_.tissues) break;
-      useTissues(std::exchange(parameters_.tissues, *command.tissues));
+      changeTissues(*command.tissues);
       for (Arm& arm : arms_) {
         forgetController(arm.controller);  // it may be holding the force of the tissue before
         arm.limiter.change();

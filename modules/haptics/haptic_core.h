@@ -17,6 +17,7 @@
 #include "haptics/proxy.h"
 #include "haptics/removal.h"
 #include "haptics/safety.h"
+#include "haptics/tissue_field.h"
 #include "haptics/tool.h"
 #include "haptics/workspace_map.h"
 #include "volume/carve_journal.h"
@@ -59,7 +60,7 @@ class HapticCore {
   bool paused() const { return paused_; }
   ControllerKind controller() const { return parameters_.controller; }
   std::uint64_t nonFinite() const { return nonfinite_; }
-  std::size_t unknownBricks() const { return bricks_->unknown(); }  // of which air is not known
+  std::size_t unknownBricks() const { return tissue_.unknownBricks(); }
   bool journalFull() const { return journal_.full(); }
   // Which of its tools an arm has, and which it is to have: another one while that waits.
   std::size_t toolInHand(std::size_t arm) const { return arms_[arm].in_hand; }
@@ -133,7 +134,8 @@ class HapticCore {
   void forgetForce(Arm& arm, bool restored);
   void releaseArm(const Command& command);
   void finishRestore();
-  void useTissues(const TissueTable& before);
+  void useTissues();
+  void changeTissues(const TissueTable& tissues);
   void setElasticTissues();
 
   // The tick of an arm, and its steps in their order (haptic_core_step.cpp).
@@ -170,9 +172,6 @@ class HapticCore {
   void pressOnElastic(const ArmTool& tool, const Motion& motion, LawInput& in) const;
   bool atWork(const Arm& arm) const;
   static bool motorIsOff(const Arm& arm, std::uint32_t buttons);
-  TissueAround tissueAround() const {
-    return {writer_.grid(), *bricks_, lookup_, parameters_.tissues};
-  }
 
   // Removal, once all arms have moved (haptic_core_removal.cpp).
   void removeVoxels(std::uint64_t tick, TickRecord& record);
@@ -196,8 +195,7 @@ class HapticCore {
   HapticParameters parameters_;
   Grid::Writer writer_;
   CarveJournal journal_;
-  TissueLookup lookup_;
-  std::optional<TissueBricks> bricks_;
+  TissueField tissue_;
   StiffnessByLabel stiffness_;  // only with the elastic law
   bool elastic_ = false;
   bool tissues_finite_ = true;

@@ -52,10 +52,10 @@ void HapticCore::sweepTool(Arm& arm, const ArmRecord& moved) {
     const Vec3& s = geometry.spacing_mm;
     front_mm = tool.proxy->ahead_mm(std::max({0.5 * s.x, 0.5 * s.y, 0.5 * s.z, kLeastAhead_mm}));
   }
-  tool.removal.sweep(writer_.grid(), *bricks_, lookup_, parameters_.tissues, front_mm, arm.removed);
+  tool.removal.sweep(tissue_, front_mm, arm.removed);
   if (!held || !arm.removed.empty()) return;
   for (const Proxy::Blocker& blocker : tool.proxy->blockers()) {
-    tool.removal.take(geometry.indicesOf(blocker.voxel), blocker.tissue_class, parameters_.tissues,
+    tool.removal.take(tissue_, geometry.indicesOf(blocker.voxel), blocker.tissue_class,
                       arm.removed);
   }
 }
@@ -105,7 +105,7 @@ void HapticCore::returnShares(const RemovedVoxel& removed, std::size_t owner,
 
 void HapticCore::endStrokes() {
   const bool solid_went = std::any_of(carves_.begin(), carves_.end(), [&](const CarveRecord& carve) {
-    return lookup_.isSolid(carve.tissue_class);
+    return tissue_.isSolid(carve.tissue_class);
   });
   for (std::size_t i = 0; i < arms_.size(); ++i) {
     Arm& arm = arms_[i];
@@ -215,7 +215,7 @@ bool HapticCore::erase(std::size_t index, const RemovedVoxel& removed, std::size
                        std::uint32_t sharers, std::uint64_t tick) {
   const std::int16_t old_hu = writer_.grid().hu(voxel);
   if (!journal_.erase(writer_, int(index), voxel, removed.tissue_class, sharers)) return false;
-  bricks_->remove(removed.voxel, lookup_.isSolid(removed.tissue_class));
+  tissue_.removed(removed.voxel, removed.tissue_class);
   carves_.push_back(
       {tick, std::uint32_t(voxel), old_hu, std::int8_t(index), std::int8_t(removed.tissue_class)});
   return true;

@@ -269,7 +269,7 @@ void HapticCore::giveWork(ArmTick& now) {
   const double more_J =
       now.finite ? arm.work.endTick(now.stored_J, now.out.rendered_share, motor_J) : 0.0;
   arm.tool().removal.giveWork(at_work && !now.jumped ? more_J : 0.0, arm.work.lost_J(),
-                              parameters_.tissues);
+                              tissue_);
 }
 
 void HapticCore::record(ArmTick& now) {

@@ -14,7 +14,7 @@ constexpr double kHooked_mm = 15.0, kHooked_s = 0.5, kLetGo_s = 0.2;
 }  // namespace
 
 bool HapticCore::wouldTouch(const ArmTool& tool, const Pose& pose_mm) const {
-  return tool.contact.wouldTouch(writer_.grid(), *bricks_, lookup_, pose_mm);
+  return tool.contact.wouldTouch(tissue_, pose_mm);
 }
 
 // The tool's pose in this tick. Where the exercise has no elastic law it is the arm's. In a pause
@@ -55,7 +55,7 @@ bool HapticCore::startsInTissue(ArmTool& tool, const Pose& arm_mm) {
   const bool touches = wouldTouch(tool, arm_mm);
   if (!tool.proxy) return touches;
   if (touches) tool.proxy->place(arm_mm);
-  return touches || tool.proxy->standsInSolid(tissueAround(), arm_mm);
+  return touches || tool.proxy->standsInSolid(tissue_, arm_mm);
 }
 
 void HapticCore::followArm(ArmTick& now) {
@@ -64,7 +64,7 @@ void HapticCore::followArm(ArmTick& now) {
   const bool still = paused_ || arm.faults != 0;
   const Pose before = tool.proxy->pose_mm();
   const bool may_cut = !still && !journal_.busy();
-  tool.proxy->follow(tissueAround(), now.motion.arm_mm, may_cut ? tool.cutting : Cutting::nothing);
+  tool.proxy->follow(tissue_, now.motion.arm_mm, may_cut ? tool.cutting : Cutting::nothing);
   if (!still) {
     letGoOfHook(now);
   } else if (wouldTouch(tool, tool.proxy->pose_mm())) {
@@ -101,8 +101,7 @@ void HapticCore::touch(ArmTick& now) {
   out.proxy_orientation = motion.pose_mm.orientation;
   out.velocity_m_s = motion.velocity_m_s;
 
-  const Contact& contact =
-      tool.contact.update(writer_.grid(), *bricks_, lookup_, parameters_.tissues, motion.pose_mm);
+  const Contact& contact = tool.contact.update(tissue_, motion.pose_mm);
   touchPoints(tool, motion);
   LawInput& in = now.contact;
   in.tip_m = 0.001 * motion.pose_mm.position;
@@ -111,11 +110,11 @@ void HapticCore::touch(ArmTick& now) {
   in.points = tool.points;
   in.touching = contact.touching();
   in.tip_class = tool.contact.classes()[0];
-  in.tissues = &parameters_.tissues;
+  in.tissues = &tissue_.tissues();
   if (tool.proxy) pressOnElastic(tool, motion, in);
 
   out.tissue_class = contact.tissue_class;
-  if (tool.proxy && firmer(parameters_.tissues, tool.proxy->heldBy(), out.tissue_class)) {
+  if (tool.proxy && tissue_.firmer(tool.proxy->heldBy(), out.tissue_class)) {
     out.tissue_class = tool.proxy->heldBy();
   }
   out.points_in_tissue = contact.points;
@@ -145,9 +144,9 @@ void HapticCore::pressOnElastic(const ArmTool& tool, const Motion& motion, LawIn
   in.pull = tool.proxy->pull();
   const int c = in.tip_class >= 0 ? in.tip_class : tool.contact.contact().tissue_class;
   in.parts =
-      !tool.made.blunt && (c < 0 || parameters_.tissues.classes[std::size_t(c)].cuttable != 0);
+      !tool.made.blunt && (c < 0 || tissue_.ofClass(c).cuttable != 0);
   if (!soft_push_) return;
-  in.push = tool.sphere->push(writer_.grid(), *bricks_, stiffness_,
+  in.push = tool.sphere->push(tissue_, stiffness_,
                               motion.pose_mm.position + 1000.0 * in.sphere_m);
 }
 
@@ -159,7 +158,7 @@ bool HapticCore::atWork(const Arm& arm) const {
   if (tool.proxy && !tool.proxy->blockers().empty()) return true;
   const auto classes = tool.contact.classes().first(tool.made.cutting_points);
   return std::any_of(classes.begin(), classes.end(), [this](std::int8_t c) {
-    return c >= 0 && parameters_.tissues.classes[std::size_t(c)].cuttable;
+    return c >= 0 && tissue_.ofClass(c).cuttable;
   });
 }
 

@@ -77,14 +77,14 @@ void Proxy::pullBack() {
   pull_ = {left.shift_mm, left.turn, turn_mm2_, stiffness_};
 }
 
-bool Proxy::standsInSolid(const TissueAround& tissue, const Pose& arm_mm) {
+bool Proxy::standsInSolid(const TissueField& tissue, const Pose& arm_mm) {
   const SmallMotion by = towards(pose_, arm_mm);
   travelled_.add(by);
   next_travelled_.add(by);
   pose_ = arm_ = arm_mm;
   pullBack();
   const PlacedBody body = surface_.place(arm_mm);
-  if (!surface_.mayMeet(tissue.bricks, body, body)) {
+  if (!surface_.mayMeet(tissue, body, body)) {
     changed();
     return false;
   }
@@ -119,10 +119,10 @@ double Proxy::worn(double step_mm) const {
 
 // Sees to it that the gathered surface holds for one more step. Where it does (`ahead`), it goes on
 // with the next search, a part a tick.
-void Proxy::look(const TissueAround& tissue, const PlacedBody& body, double step_mm, double speed,
+void Proxy::look(const TissueField& tissue, const PlacedBody& body, double step_mm, double speed,
                  bool ahead) {
   const auto dropGone = [&] {
-    if (gone_) surface_.drop(tissue.grid, tissue.lookup);
+    if (gone_) surface_.drop(tissue);
     gone_ = false;
   };
   const auto begin = [&] {
@@ -287,7 +287,7 @@ bool Proxy::putBack(const SmallMotion& motion, double least_mm, Pose& there, Pla
 
 // A step along what it touches. True when the arm is farther and another step may come nearer. Only
 // a pose that is nearer to the arm is taken, so that a tool at rest neither creeps nor alternates.
-bool Proxy::slide(const TissueAround& tissue, Way& way) {
+bool Proxy::slide(const TissueField& tissue, Way& way) {
   const SmallMotion wanted = towards(pose_, arm_);
   SmallMotion motion = nearestMotion(wanted, turn_mm2_, {touches_.data(), touch_count_});
   way.load = way.stiff = way.most = 0.0;
@@ -301,7 +301,7 @@ bool Proxy::slide(const TissueAround& tissue, Way& way) {
       way.most = load;
       way.tissue_class = piece.tissue_class;
     }
-    way.stiff += load * tissue.classes.classes[std::size_t(piece.tissue_class)].stiffness_N_per_m;
+    way.stiff += load * tissue.ofClass(piece.tissue_class).stiffness_N_per_m;
     if (piece.cuttable) blockers_[blocker_count_++] = {piece.voxel, piece.tissue_class};
   }
   const double arrived_mm = kArrived * surface_.voxel_mm();
@@ -325,11 +325,11 @@ bool Proxy::slide(const TissueAround& tissue, Way& way) {
   return false;
 }
 
-void Proxy::follow(const TissueAround& tissue, const Pose& arm_mm, Cutting cutting) {
+void Proxy::follow(const TissueField& tissue, const Pose& arm_mm, Cutting cutting) {
   arm_ = arm_mm;
   blocker_count_ = 0;
   Way way{surface_.place(pose_)};
-  if (!surface_.mayMeet(tissue.bricks, way.body, surface_.place(arm_mm))) {
+  if (!surface_.mayMeet(tissue, way.body, surface_.place(arm_mm))) {
     place(arm_mm);
     return;
   }

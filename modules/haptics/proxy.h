@@ -28,12 +28,12 @@ class Proxy {
   // One tick towards the arm: as near to it as the solid tissue on the way allows, in steps of less
   // than half a voxel, kMostSteps of them. Voxels changed since the last tick only where changed()
   // or removed() said so.
-  void follow(const TissueAround& tissue, const Pose& arm_mm, Cutting cutting);
+  void follow(const TissueField& tissue, const Pose& arm_mm, Cutting cutting);
   // Back to where it was before follow(). The tissue that held it in the last step of that still
   // pulls; where none did, nothing pulls.
   void hold(const Pose& pose_mm);
   // At the arm, whatever is there. True where its body is in solid tissue.
-  bool standsInSolid(const TissueAround& tissue, const Pose& arm_mm);
+  bool standsInSolid(const TissueField& tissue, const Pose& arm_mm);
   // Multiplies the stiffness of the pull in this tick.
   void fade(double share) { pull_.stiffness *= share; }
   // Voxels around it came back, or mean other tissue.
@@ -94,7 +94,7 @@ class Proxy {
   double way_mm(const SmallMotion& motion) const;
   double cost(const SmallMotion& motion) const;
   double travelled_mm() const { return travelled_.of_mm(surface_.near_reach_mm()); }
-  void look(const TissueAround& tissue, const PlacedBody& body, double step_mm, double speed,
+  void look(const TissueField& tissue, const PlacedBody& body, double step_mm, double speed,
             bool ahead);
   double worn(double step_mm) const;
   std::size_t nearPieces(const PlacedBody& body, double within_mm, double moved_mm);
@@ -102,7 +102,7 @@ class Proxy {
   double touches(const PlacedBody& body, double within_mm, double moved_mm, double clear_mm);
   void move(const Pose& to, const PlacedBody& body, Way& way);
   bool goFreely(Way& way);
-  bool slide(const TissueAround& tissue, Way& way);
+  bool slide(const TissueField& tissue, Way& way);
   bool putBack(const SmallMotion& motion, double least_mm, Pose& there, PlacedBody& body,
                bool& bent);
 

@@ -62,11 +62,11 @@ Capsule Removal::capsuleAt(const Pose& pose_mm) const {
   return {place(tool_.solid_from_m), place(tool_.solid_to_m), radius_mm_};
 }
 
-void Removal::giveWork(double work_J, double lost_J, const TissueTable& tissues) {
+void Removal::giveWork(double work_J, double lost_J, const TissueField& tissue) {
   lost_J_ = lost_J;
   double dearest_J = 0.0;
-  for (int c = 0; c < tissues.count; ++c) {
-    const TissueClass& t = tissues.classes[std::size_t(c)];
+  for (int c = 0; c < tissue.tissues().count; ++c) {
+    const TissueClass& t = tissue.ofClass(c);
     if (t.cuttable) dearest_J = std::max(dearest_J, voxelWork_J(t, geometry_.voxelVolume_mm3()));
   }
   recent_J_ = fading_ * (recent_J_ + work_J);
@@ -110,23 +110,22 @@ void Removal::end(const Capsule& now) {
   known_ = true;
 }
 
-void Removal::take(const Index3& voxel, int tissue_class, const TissueTable& tissues,
+void Removal::take(const TissueField& tissue, const Index3& voxel, int tissue_class,
                    std::vector<RemovedVoxel>& removed) {
-  const double price_J = cost_J(kind_, tissues.classes[std::size_t(tissue_class)],
+  const double price_J = cost_J(kind_, tissue.ofClass(tissue_class),
                                 geometry_.voxelVolume_mm3());
   if (!affords(price_J) || removed.size() == kMostVoxels) return;
   spend(price_J);
   removed.push_back({voxel, tissue_class, price_J});
 }
 
-bool Removal::mayMeetTissue(const TissueBricks& bricks, const Capsule& now) const {
+bool Removal::mayMeetTissue(const TissueField& tissue, const Capsule& now) const {
   const Vec3 low = glm::min(glm::min(clear_.from, clear_.to), glm::min(now.from, now.to));
   const Vec3 high = glm::max(glm::max(clear_.from, clear_.to), glm::max(now.from, now.to));
-  return bricks.mayHold((low - radius_mm_) * per_spacing_, (high + radius_mm_) * per_spacing_);
+  return tissue.mayHold((low - radius_mm_) * per_spacing_, (high + radius_mm_) * per_spacing_);
 }
 
-void Removal::sweep(const Grid& grid, const TissueBricks& bricks, const TissueLookup& lookup,
-                    const TissueTable& tissues, const Pose& pose_mm,
+void Removal::sweep(const TissueField& tissue, const Pose& pose_mm,
                     std::vector<RemovedVoxel>& removed) {
   const Capsule now = capsuleAt(pose_mm);
   if (!isFinite(now.from) || !isFinite(now.to)) {
@@ -137,8 +136,8 @@ void Removal::sweep(const Grid& grid, const TissueBricks& bricks, const TissueLo
   last_ = now;
   // Work ran short and the tool went on: it must not take later what it has left.
   if (passing_ && !paid_ && moved(goal_, now) > layer_mm_) end(now);
-  if (!passing_ && !beginWhereNeeded(bricks, now)) return;
-  Tick tick{grid, bricks, lookup, tissues, removed, geometry_.voxelVolume_mm3(), looks_};
+  if (!passing_ && !beginWhereNeeded(tissue, now)) return;
+  Tick tick{tissue, removed, geometry_.voxelVolume_mm3(), looks_};
   if (!sweepSlices(tick)) return;
   paid_ = true;  // waited for, but paid in the end
   end(now);
@@ -146,10 +145,10 @@ void Removal::sweep(const Grid& grid, const TissueBricks& bricks, const TissueLo
 
 // False where the tool stands still, or where there is no tissue on its way, and nothing is left to
 // be cleared.
-bool Removal::beginWhereNeeded(const TissueBricks& bricks, const Capsule& now) {
+bool Removal::beginWhereNeeded(const TissueField& tissue, const Capsule& now) {
   const bool all = known_ && clear_.radius >= radius_mm_;
   if (all && moved(clear_, now) < still_mm_) return false;
-  if (all && !mayMeetTissue(bricks, now)) {
+  if (all && !mayMeetTissue(tissue, now)) {
     clear_ = now;
     return false;
   }
@@ -207,7 +206,7 @@ std::size_t Removal::findRows(Tick& tick, int k, int rows, int& next, std::span<
       const int more = backwards_ ? in_brick : kBrickEdge - 1 - in_brick;
       const Vec3 first(low_[0], backwards_ ? j - more : j, k);
       const Vec3 last(high_[0] - 1, (backwards_ ? j : j + more) - 1, k - 1);
-      if (!tick.bricks.mayHold(first, last)) {
+      if (!tick.tissue.mayHold(first, last)) {
         next += more;
         tick.looks -= kLooksPerRow;
         continue;
@@ -223,8 +222,8 @@ std::size_t Removal::findRows(Tick& tick, int k, int rows, int& next, std::span<
     row.k = k;
     row.number = next;
     row.voxel = geometry_.indexOf(0, j, k);
-    tick.grid.prefetch(row.voxel + std::size_t(row.all.first));
-    tick.grid.prefetch(row.voxel + std::size_t(row.all.last));
+    tick.tissue.grid().prefetch(row.voxel + std::size_t(row.all.first));
+    tick.tissue.grid().prefetch(row.voxel + std::size_t(row.all.last));
     ++count;
   }
   return count;
@@ -240,10 +239,10 @@ bool Removal::sweepRow(Tick& tick, const Row& row) {
     }
     --tick.looks;
     const std::size_t voxel = row.voxel + std::size_t(i);
-    const std::int16_t hu = tick.grid.hu(voxel);
-    const int c = hu == kAirHu ? -1 : tick.lookup.classAt(tick.grid, voxel, hu);
-    if (c < 0 || !tick.tissues.classes[std::size_t(c)].cuttable) continue;
-    const double price_J = cost_J(kind_, tick.tissues.classes[std::size_t(c)], tick.voxel_mm3);
+    const std::int16_t hu = tick.tissue.grid().hu(voxel);
+    const int c = hu == kAirHu ? -1 : tick.tissue.classAt(voxel, hu);
+    if (c < 0 || !tick.tissue.ofClass(c).cuttable) continue;
+    const double price_J = cost_J(kind_, tick.tissue.ofClass(c), tick.voxel_mm3);
     const bool pays = affords(price_J);
     if (!pays) paid_ = false;
     if (!pays || tick.removed.size() == kMostVoxels) return false;

@@ -10,10 +10,8 @@
 #include <vector>
 
 #include "haptics/swept_solid.h"
-#include "haptics/tissue_bricks.h"
-#include "haptics/tissue_lookup.h"
+#include "haptics/tissue_field.h"
 #include "haptics/tool.h"
-#include "volume/grid.h"
 
 namespace trephine {
 
@@ -47,13 +45,12 @@ class Removal {
   // The credit is capped by the work of the last 50 ms (fading with that time constant) and of two
   // voxels; the rest is heat. `lost_J` is all work that has gone into tissue so far, less what an
   // arm has given out: no more than that is ever spent.
-  void giveWork(double work_J, double lost_J, const TissueTable& tissues);
+  void giveWork(double work_J, double lost_J, const TissueField& tissue);
   // Goes on with the sweep to this pose; appends what the tool takes, which the caller removes in
   // this tick, to `removed` (room for kMostVoxels). No allocation.
-  void sweep(const Grid& grid, const TissueBricks& bricks, const TissueLookup& lookup,
-             const TissueTable& tissues, const Pose& pose_mm, std::vector<RemovedVoxel>& removed);
+  void sweep(const TissueField& tissue, const Pose& pose_mm, std::vector<RemovedVoxel>& removed);
   // Takes this one voxel, which holds the tool back, if the credit pays for it.
-  void take(const Index3& voxel, int tissue_class, const TissueTable& tissues,
+  void take(const TissueField& tissue, const Index3& voxel, int tissue_class,
             std::vector<RemovedVoxel>& removed);
   // Work that was paid for a voxel, which was shared with another tool or could not be removed.
   void returnWork(double work_J) { spend(-work_J); }
@@ -104,10 +101,7 @@ class Removal {
   };
   // What a sweep works on in a tick, and how many more voxels it may look at.
   struct Tick {
-    const Grid& grid;
-    const TissueBricks& bricks;
-    const TissueLookup& lookup;
-    const TissueTable& tissues;
+    const TissueField& tissue;
     std::vector<RemovedVoxel>& removed;
     double voxel_mm3;
     int looks;
@@ -115,12 +109,12 @@ class Removal {
   static Indices indices(const Interval& mm, double per_spacing, int count);
   void begin(const Capsule& now);
   void end(const Capsule& now);
-  bool beginWhereNeeded(const TissueBricks& bricks, const Capsule& now);
+  bool beginWhereNeeded(const TissueField& tissue, const Capsule& now);
   bool sweepSlices(Tick& tick);
   bool sweepSlice(Tick& tick);
   std::size_t findRows(Tick& tick, int k, int rows, int& next, std::span<Row> batch) const;
   bool sweepRow(Tick& tick, const Row& row);
-  bool mayMeetTissue(const TissueBricks& bricks, const Capsule& now) const;
+  bool mayMeetTissue(const TissueField& tissue, const Capsule& now) const;
   Capsule capsuleAt(const Pose& pose_mm) const;
 
   Tool tool_;

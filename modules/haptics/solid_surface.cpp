@@ -182,7 +182,7 @@ PlacedBody SolidSurface::place(const Pose& pose_mm) const {
   return body;
 }
 
-bool SolidSurface::mayMeet(const TissueBricks& bricks, const PlacedBody& from,
+bool SolidSurface::mayMeet(const TissueField& tissue, const PlacedBody& from,
                            const PlacedBody& to) const {
   for (std::size_t n = 0; n < from.count; ++n) {
     Vec3 low(1e300), high(-1e300);
@@ -196,12 +196,12 @@ bool SolidSurface::mayMeet(const TissueBricks& bricks, const PlacedBody& from,
     }
     const double around = from.parts[n].radius_mm + margin_mm_ + half_diagonal_mm_;
     const Vec3 reach = around / spacing_mm_;
-    if (bricks.mayHoldSolid(low - reach, high + reach)) return true;
+    if (tissue.mayHoldSolid(low - reach, high + reach)) return true;
   }
   return false;
 }
 
-void SolidSurface::begin(const TissueAround& tissue, const PlacedBody& body, Cutting cutting) {
+void SolidSurface::begin(const TissueField& tissue, const PlacedBody& body, Cutting cutting) {
   stretches_.clear();
   found_.clear();
   next_.clear();
@@ -232,7 +232,7 @@ void SolidSurface::begin(const TissueAround& tissue, const PlacedBody& body, Cut
       const double far_mm = part.radius_mm + kFar * margin_mm_ + half_diagonal_mm_;
       const Vec3 low = glm::min(stretch.axis.from, stretch.axis.to) - far_mm;
       const Vec3 high = glm::max(stretch.axis.from, stretch.axis.to) + far_mm;
-      if (!tissue.bricks.mayHoldSolid(low / spacing_mm_, high / spacing_mm_)) continue;
+      if (!tissue.mayHoldSolid(low / spacing_mm_, high / spacing_mm_)) continue;
       next_reach_mm_ =
           std::max({next_reach_mm_, part.radius_mm + glm::length(stretch.axis.from - tip),
                     part.radius_mm + glm::length(stretch.axis.to - tip)});
@@ -241,14 +241,14 @@ void SolidSurface::begin(const TissueAround& tissue, const PlacedBody& body, Cut
   }
 }
 
-void SolidSurface::addStretch(const TissueAround& tissue, Stretch stretch) {
+void SolidSurface::addStretch(const TissueField& tissue, Stretch stretch) {
   const Capsule& axis = stretch.axis;
   Capsule outer = axis, inner = axis;
   outer.radius = axis.radius + margin_mm_ + half_diagonal_mm_;
   inner.radius = axis.radius - half_diagonal_mm_;
   const Vec3 low = (glm::min(axis.from, axis.to) - outer.radius) / spacing_mm_;
   const Vec3 high = (glm::max(axis.from, axis.to) + outer.radius) / spacing_mm_;
-  if (!tissue.bricks.mayHoldSolid(low, high)) return;
+  if (!tissue.mayHoldSolid(low, high)) return;
   stretch.hollow = inner.radius > 0.0;
   stretch.around = CapsuleRows(outer);
   if (stretch.hollow) stretch.within = CapsuleRows(inner);
@@ -258,7 +258,7 @@ void SolidSurface::addStretch(const TissueAround& tissue, Stretch stretch) {
   stretches_.push_back(stretch);
 }
 
-bool SolidSurface::goOn(const TissueAround& tissue, int work) {
+bool SolidSurface::goOn(const TissueField& tissue, int work) {
   for (const int until = done_ + std::min(work, kAll - done_); done_ < until;) {
     if (searched_ < stretches_.size()) {
       Stretch& stretch = stretches_[searched_];
@@ -279,7 +279,7 @@ bool SolidSurface::goOn(const TissueAround& tissue, int work) {
 }
 
 // The rows of voxels of a plane around a stretch. Returns how many rows it has.
-int SolidSurface::searchPlane(const TissueAround& tissue, Stretch& stretch) {
+int SolidSurface::searchPlane(const TissueField& tissue, Stretch& stretch) {
   const Vec3& s = spacing_mm_;
   const Index3& apart = cells_[stretch.part].apart;
   const double per_x = 1.0 / s.x;
@@ -312,8 +312,8 @@ int SolidSurface::searchPlane(const TissueAround& tissue, Stretch& stretch) {
       row.left = std::min(row.to, clear.low > 0.0 ? int(clear.low * per_x) + 1 : 0);
       row.right = std::max({row.from, row.left + 1, int(std::max(0.0, clear.high) * per_x)});
     }
-    tissue.grid.prefetch(row.voxel + std::size_t(row.from));
-    tissue.grid.prefetch(row.voxel + std::size_t(row.to));
+    tissue.grid().prefetch(row.voxel + std::size_t(row.from));
+    tissue.grid().prefetch(row.voxel + std::size_t(row.to));
     ++all;
     if (++count < rows.size()) continue;
     searchRows(tissue, stretch, rows);
@@ -325,11 +325,11 @@ int SolidSurface::searchPlane(const TissueAround& tissue, Stretch& stretch) {
 
 // Each row from its middle, where the body keeps solid tissue out, outwards to the first solid
 // voxel.
-void SolidSurface::searchRows(const TissueAround& tissue, const Stretch& stretch,
+void SolidSurface::searchRows(const TissueField& tissue, const Stretch& stretch,
                               std::span<const Row> rows) {
   for (const Row& row : rows) {
     const auto solidAt = [&](int i) {
-      return tissue.lookup.isSolid(tissue.lookup.classAt(tissue.grid, row.voxel + std::size_t(i)));
+      return tissue.isSolid(tissue.classAt(row.voxel + std::size_t(i)));
     };
     if (row.right <= row.left) {
       for (int i = row.from; i <= row.to; ++i) {
@@ -380,19 +380,19 @@ void SolidSurface::find(const Index3& voxel, const Stretch& stretch) {
   if (distance2 < nearest.distance2_mm2) nearest = {voxel, stretch.part, away, distance2};
 }
 
-void SolidSurface::addPiece(const TissueAround& tissue, const Found& found) {
+void SolidSurface::addPiece(const TissueField& tissue, const Found& found) {
   const auto [i, j, k] = found.voxel;
   const double radius = parts_mm_[found.part].radius_m;
   const std::size_t voxel = geometry_.indexOf(i, j, k);
-  const int c = tissue.lookup.classAt(tissue.grid, voxel);
-  if (!tissue.lookup.isSolid(c)) return;  // it went meanwhile
+  const int c = tissue.classAt(voxel);
+  if (!tissue.isSolid(c)) return;  // it went meanwhile
   const Cutting cutting = parts_mm_[found.part].cuts ? cutting_ : Cutting::nothing;
   SurfacePiece piece;
   piece.part = std::int32_t(found.part);
   piece.voxel = std::uint32_t(voxel);
   piece.tissue_class = std::int8_t(c);
   piece.cuttable =
-      cutting != Cutting::nothing && tissue.classes.classes[std::size_t(c)].cuttable != 0;
+      cutting != Cutting::nothing && tissue.ofClass(c).cuttable != 0;
   Vec3 at = Vec3(i, j, k) * spacing_mm_;
   if (piece.cuttable && cutting == Cutting::driven) {
     // Nothing slips between spheres of this size.

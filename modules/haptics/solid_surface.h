@@ -9,7 +9,6 @@
 #include "haptics/surface_fit.h"
 #include "haptics/swept_solid.h"
 #include "haptics/tool.h"
-#include "volume/grid.h"
 
 namespace trephine {
 
@@ -67,23 +66,23 @@ class SolidSurface {
 
   PlacedBody place(const Pose& pose_mm) const;
   // Whether there may be solid tissue near the body on its straight way between two poses.
-  bool mayMeet(const TissueBricks& bricks, const PlacedBody& from, const PlacedBody& to) const;
+  bool mayMeet(const TissueField& tissue, const PlacedBody& from, const PlacedBody& to) const;
   // Begins to look for all pieces that the body meets within `margin_mm` of where it is. A driven
   // part meets tissue that it may cut at the centres of its voxels: as they go whole, it takes as
   // many as its volume holds.
-  void begin(const TissueAround& tissue, const PlacedBody& body, Cutting cutting);
+  void begin(const TissueField& tissue, const PlacedBody& body, Cutting cutting);
   // Goes on with it, about a row of voxels for each of `work`. True when it is done and pieces()
   // are the new ones.
-  bool goOn(const TissueAround& tissue, int work);
+  bool goOn(const TissueField& tissue, int work);
   static constexpr int kAll = 1 << 30;
   bool underWay() const { return under_way_; }
   void giveUp() { under_way_ = false; }
   int work() const { return work_; }  // of the last search, about in rows of voxels
 
   // Forgets the pieces that are solid no more.
-  void drop(const Grid& grid, const TissueLookup& lookup) {
+  void drop(const TissueField& tissue) {
     std::erase_if(pieces_, [&](const SurfacePiece& piece) {
-      return !lookup.isSolid(lookup.classAt(grid, piece.voxel));
+      return !tissue.isSolid(tissue.classAt(piece.voxel));
     });
   }
   std::span<SurfacePiece> pieces() { return pieces_; }
@@ -125,11 +124,11 @@ class SolidSurface {
     Vec3 away_mm{0.0};  // from the part's axis, in the grid's own axes
     double distance2_mm2 = 0.0;
   };
-  void addStretch(const TissueAround& tissue, Stretch stretch);
-  int searchPlane(const TissueAround& tissue, Stretch& stretch);
-  void searchRows(const TissueAround& tissue, const Stretch& stretch, std::span<const Row> rows);
+  void addStretch(const TissueField& tissue, Stretch stretch);
+  int searchPlane(const TissueField& tissue, Stretch& stretch);
+  void searchRows(const TissueField& tissue, const Stretch& stretch, std::span<const Row> rows);
   void find(const Index3& voxel, const Stretch& stretch);
-  void addPiece(const TissueAround& tissue, const Found& found);
+  void addPiece(const TissueField& tissue, const Found& found);
   Index3 rowsApart(double radius_mm) const;
 
   GridGeometry geometry_;

@@ -4,53 +4,43 @@
 #include <algorithm>
 #include <cstdint>
 
-#include "haptics/tissue_bricks.h"
-#include "haptics/tissue_lookup.h"
-#include "volume/grid.h"
+#include "haptics/tissue_field.h"
 
 namespace trephine {
-
-// What a tool moves among.
-struct TissueAround {
-  const Grid& grid;
-  const TissueBricks& bricks;
-  const TissueLookup& lookup;
-  const TissueTable& classes;
-};
 
 // A solid voxel and those around it, of which some rows may be left out.
 class VoxelSurroundings {
  public:
   // `apart`: voxels from one that is looked at to the next. `tissue_class`: of the voxel.
-  VoxelSurroundings(const TissueAround& tissue, const Index3& voxel, const Index3& apart,
+  VoxelSurroundings(const TissueField& tissue, const Index3& voxel, const Index3& apart,
                     int tissue_class)
       : tissue_(tissue),
         voxel_(voxel),
         apart_(apart),
-        threshold_(tissue.classes.classes[std::size_t(tissue_class)].hu_min - 0.5) {}
+        threshold_(tissue.ofClass(tissue_class).hu_min - 0.5) {}
 
   // HU beyond the tissue's threshold so many steps from the voxel: above 0 where it is solid,
   // within kWhole_hu of 0; more or less than that counts as all of it, or as nothing.
   double beyond(const Index3& by) const {
-    const GridGeometry& geometry = tissue_.grid.geometry();
+    const GridGeometry& geometry = tissue_.geometry();
     const int i = voxel_[0] + by[0] * apart_[0], j = voxel_[1] + by[1] * apart_[1],
               k = voxel_[2] + by[2] * apart_[2];
     if (!geometry.contains(i, j, k)) return -kWhole_hu;
     const std::size_t there = geometry.indexOf(i, j, k);
-    const std::int16_t hu = tissue_.grid.hu(there);
+    const std::int16_t hu = tissue_.grid().hu(there);
     const double more = double(hu) - threshold_;
-    return tissue_.lookup.isSolid(tissue_.lookup.classAt(tissue_.grid, there, hu))
+    return tissue_.isSolid(tissue_.classAt(there, hu))
                ? std::clamp(more, 1.0, kWhole_hu)
                : std::clamp(more, -kWhole_hu, -1.0);
   }
   Vec3 mesh_mm() const {
-    return tissue_.grid.geometry().spacing_mm * Vec3(apart_[0], apart_[1], apart_[2]);
+    return tissue_.geometry().spacing_mm * Vec3(apart_[0], apart_[1], apart_[2]);
   }
 
   static constexpr double kWhole_hu = 1226.0;
 
  private:
-  const TissueAround& tissue_;
+  const TissueField& tissue_;
   Index3 voxel_, apart_;
   double threshold_;
 };

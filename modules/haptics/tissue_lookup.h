@@ -17,6 +17,7 @@ static_assert(kRemovedHu == kAirHu);
 class TissueLookup {
  public:
   TissueLookup() : class_of_(LabelRows::kMost * kHus, -1) {}
+  explicit TissueLookup(const TissueTable& tissues) : TissueLookup() { set(tissues); }
   // No allocation; a few microseconds a row.
   void set(const TissueTable& tissues) {
     rows_ = LabelRows(tissues);

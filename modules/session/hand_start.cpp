@@ -11,9 +11,7 @@ constexpr double kSpare_mm = 5.0;
 
 std::vector<double> drawnBack_mm(const HapticParameters& parameters, const Grid& grid,
                                  const std::vector<double>& reach_mm) {
-  TissueLookup lookup;
-  lookup.set(parameters.tissues);
-  const TissueBricks bricks(grid, lookup);
+  const TissueField tissue(grid, parameters.tissues);
   std::vector<double> out;
   for (std::size_t i = 0; i < parameters.arms.size(); ++i) {
     const ArmParameters& arm = parameters.arms[i];
@@ -26,8 +24,7 @@ std::vector<double> drawnBack_mm(const HapticParameters& parameters, const Grid&
     const Vec3 back = origin.orientation * Vec3(0.0, 0.0, 1.0);
     const auto inTissue = [&](double by_mm) {
       const auto touches = [&](double at_mm) {
-        return contact.wouldTouch(grid, bricks, lookup,
-                                  {origin.position + at_mm * back, origin.orientation});
+        return contact.wouldTouch(tissue, {origin.position + at_mm * back, origin.orientation});
       };
       return touches(by_mm) || touches(by_mm - radius_mm);  // its points lie on the axis
     };

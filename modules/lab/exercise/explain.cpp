@@ -212,10 +212,8 @@ Result<Json> explainExercise(Exercise exercise, const std::vector<RecommendedSet
       cost.push_back({{"part", part}, {"arm", arm.name}, {"ns_per_tick", time(part, call)}});
     };
     ToolContact contact(tool, grid.geometry());
-    TissueLookup lookup;
-    lookup.set(parameters.tissues);
-    const TissueBricks bricks(grid, lookup);
-    add("contact", [&] { contact.update(grid, bricks, lookup, parameters.tissues, Pose{}); });
+    const TissueField tissue(grid, parameters.tissues);
+    add("contact", [&] { contact.update(tissue, Pose{}); });
     std::vector<TouchPoint> points(exercise.force_at == ForceAt::tip ? 1 : tool.points_m.size());
     for (std::size_t p = 0; p < points.size(); ++p) {
       points[p].tissue_class = contact.contact().tissue_class;
@@ -240,7 +238,7 @@ Result<Json> explainExercise(Exercise exercise, const std::vector<RecommendedSet
       add("law " + nameOf(kLawNames, kind), [&] {
         input.tip_m.x += 1e-6;
         // Half of the sphere in tissue.
-        if (sphere) input.push = sphere->push(grid, bricks, stiffness, Vec3(0.0, 0.0, 10.0));
+        if (sphere) input.push = sphere->push(tissue, stiffness, Vec3(0.0, 0.0, 10.0));
         ContactForce force;
         addLaw(law, input, force);
         keep(force.elastic_N);
@@ -257,7 +255,7 @@ Result<Json> explainExercise(Exercise exercise, const std::vector<RecommendedSet
       at.position.z = resting_mm - 1.0;
       add("proxy", [&] {
         at.position.x = at.position.x > 10.0 ? -10.0 : at.position.x + 0.01;
-        proxy.follow({grid, bricks, lookup, parameters.tissues}, at, Cutting::nothing);
+        proxy.follow(tissue, at, Cutting::nothing);
         keep(proxy.pull().shift_mm);
       });
     }
@@ -267,7 +265,7 @@ Result<Json> explainExercise(Exercise exercise, const std::vector<RecommendedSet
     Pose moving;
     add("removal sweep", [&] {
       moving.position.x = moving.position.x > 5.0 ? -5.0 : moving.position.x + 0.01;
-      removal.sweep(grid, bricks, lookup, parameters.tissues, moving, removed);
+      removal.sweep(tissue, moving, removed);
     });
     Controller controller =
         makeController(exercise.controller, parameters.arms[i].dynamics, parameters.period_s);

@@ -26,7 +26,8 @@ Pose channelPose_mm(double t_s, double duration_s) {
 double surfaceHeight_mm(const Grid& grid, const Mat4& to_voxel, double x_mm, double y_mm,
                         double from_mm, double to_mm, double step_mm) {
   for (double z_mm = from_mm; z_mm > to_mm; z_mm -= step_mm) {
-    const std::int64_t voxel = nearestVoxel(grid.geometry(), to_voxel, {x_mm, y_mm, z_mm});
+    const Vec3 place(to_voxel * glm::dvec4(x_mm, y_mm, z_mm, 1.0));
+    const std::int64_t voxel = TissueField::voxelAt(grid.geometry(), place);
     if (voxel >= 0 && grid.hu(std::size_t(voxel)) >= kTissue_hu) return z_mm;
   }
   return to_mm;

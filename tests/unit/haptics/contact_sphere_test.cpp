@@ -56,10 +56,8 @@ ElasticPush pushOf(const Volume& volume, const Vec3& centre_mm, double radius_mm
   Grid grid{Volume(volume)};
   StiffnessOfHu stiffness;
   stiffness.set(tissues);
-  TissueLookup lookup;
-  lookup.set(tissues);
   return ContactSphere(grid.geometry(), radius_mm, kBluntDirections)
-      .push(grid, TissueBricks(grid, lookup), stiffness, centre_mm);
+      .push(TissueField(grid, tissues), stiffness, centre_mm);
 }
 
 const Vec3 kNormals[] = {{0, 0, 1},

@@ -12,22 +12,17 @@ using test::boneTable;
 
 struct Probe {
   explicit Probe(const Tool& tool, Volume volume = boneSlab(), const TissueTable& tissues = boneTable())
-      : grid(std::move(volume)), table(tissues), contact(tool, grid.geometry()) {
-    lookup.set(table);
-    bricks = TissueBricks(grid, lookup);
-  }
+      : grid(std::move(volume)), tissue(grid, tissues), contact(tool, grid.geometry()) {}
   // As it is after a few ticks there.
   const Contact& touch(const Vec3& tip_mm, const Quat& orientation = Quat(1, 0, 0, 0)) {
     for (int n = 0; n < 3; ++n) look(tip_mm, orientation);
     return look(tip_mm, orientation);
   }
   const Contact& look(const Vec3& tip_mm, const Quat& orientation) {
-    return contact.update(grid, bricks, lookup, table, {tip_mm, orientation});
+    return contact.update(tissue, {tip_mm, orientation});
   }
   Grid grid;
-  TissueTable table;
-  TissueLookup lookup;
-  TissueBricks bricks{grid, lookup};
+  TissueField tissue;
   ToolContact contact;
 };
 

@@ -136,10 +136,8 @@ TEST(Labels, WhatWasRemovedIsNoTissueAnyMore) {
   Grid hole(bench.grid.snapshot(), halves());
   StiffnessByLabel stiffness;
   stiffness.set(needle.tissues);
-  TissueLookup lookup;
-  lookup.set(needle.tissues);
   const ElasticPush push = ContactSphere(hole.geometry(), 1.0, kBluntDirections)
-                               .push(hole, TissueBricks(hole, lookup), stiffness, {-8, 0, 3});
+                               .push(TissueField(hole, needle.tissues), stiffness, {-8, 0, 3});
   EXPECT_EQ(push.at_centre, 0.0);
   EXPECT_EQ(push.force_N, Vec3(0.0));
   HapticCore core(needle, *hole.takeWriter());
@@ -202,13 +200,11 @@ TEST(Labels, AChangeOfTissuesMayMoveATissueToAnotherLabelAndAllocatesNothing) {
 // Of one HU throughout: the border is the label's alone, at x = 0.
 ElasticPush pushAt(const Vec3& centre_mm, double radius_mm, const TissueTable& tissues) {
   static const Grid grid(block(), halves());
-  TissueLookup lookup;
-  lookup.set(tissues);
   StiffnessByLabel stiffness;
   stiffness.set(tissues);
   static const GridGeometry geometry = block().geometry;
   return ContactSphere(geometry, radius_mm, kBluntDirections)
-      .push(grid, TissueBricks(grid, lookup), stiffness, centre_mm);
+      .push(TissueField(grid, tissues), stiffness, centre_mm);
 }
 
 TEST(Labels, ABorderBetweenLabelsPushesByStiffnessTimesDepth) {
@@ -232,14 +228,13 @@ TEST(Labels, ACutSurfacePushesFromWhereItIsAlsoWhenTheRangeHoldsAir) {
   std::fill(volume.hu.begin() + std::ptrdiff_t(volume.hu.size() / 2), volume.hu.end(), kAirHu);
   const LabelMap all{volume.geometry, std::vector(volume.hu.size(), std::uint8_t(5))};
   const Grid grid(volume, std::make_shared<const LabelMap>(all));
-  TissueLookup lookup;
-  lookup.set(liver());
+  const TissueField tissue(grid, liver());
   StiffnessByLabel stiffness;
   stiffness.set(liver());
   const ContactSphere ball(grid.geometry(), 4.0, kBluntDirections);
   for (double depth_mm : {1.0, 2.0}) {
     const Vec3 centre(0.2, 0.1, 4.0 - depth_mm);
-    const ElasticPush push = ball.push(grid, TissueBricks(grid, lookup), stiffness, centre);
+    const ElasticPush push = ball.push(tissue, stiffness, centre);
     EXPECT_NEAR(push.force_N.z, 1e-3 * 400.0 * depth_mm, 0.06);
   }
 }

@@ -39,11 +39,7 @@ Volume cube() {
 
 struct Surroundings {
   explicit Surroundings(Volume volume, const TissueTable& table = solidBone())
-      : grid(std::move(volume)), tissues(table) {
-    lookup.set(tissues);
-    bricks.emplace(grid, lookup);
-  }
-  TissueAround tissue() const { return {grid, *bricks, lookup, tissues}; }
+      : grid(std::move(volume)), tissue(grid, table) {}
   // How deep the centre of an uncut voxel lies in the tool's body, at most; below 0: nowhere.
   double deepest_mm(const Tool& tool, const Pose& pose_mm) const {
     double deepest = -1e9;
@@ -64,9 +60,7 @@ struct Surroundings {
     return deepest;
   }
   Grid grid;
-  TissueTable tissues;
-  TissueLookup lookup;
-  std::optional<TissueBricks> bricks;
+  TissueField tissue;
 };
 
 Quat turnAbout(const Vec3& axis, double angle) {
@@ -90,8 +84,8 @@ TEST(SolidSurface, FindsAllThatThereIsAroundAToolWithoutAllocating) {
       const std::uint64_t before = rt::guardedAllocations();
       {
         rt::NoAllocation guard;
-        surface.begin(bone.tissue(), surface.place(pose_mm), Cutting::nothing);
-        ASSERT_TRUE(surface.goOn(bone.tissue(), SolidSurface::kAll));
+        surface.begin(bone.tissue, surface.place(pose_mm), Cutting::nothing);
+        ASSERT_TRUE(surface.goOn(bone.tissue, SolidSurface::kAll));
       }
       ASSERT_EQ(rt::guardedAllocations(), before) << int(tool.made_from.kind) << " " << n;
       most = std::max(most, surface.pieces().size());
@@ -106,15 +100,15 @@ TEST(Proxy, HeldBackByAPauseOnItsWayThroughAirIsPulledByNothing) {
   const Quat upright(1, 0, 0, 0);
   proxy.place({{0, 0, 8}, upright});
   for (int i = 0; i < 60; ++i) {
-    proxy.follow(bone.tissue(), {{0, 0, 8 - 0.05 * i}, upright}, Cutting::nothing);
+    proxy.follow(bone.tissue, {{0, 0, 8 - 0.05 * i}, upright}, Cutting::nothing);
   }
   const Pose on_bone = proxy.pose_mm();
   proxy.hold(on_bone);
   EXPECT_EQ(proxy.pull().stiffness, 900.0) << "bone held it";
-  proxy.follow(bone.tissue(), {{0, 0, 5}, upright}, Cutting::nothing);
+  proxy.follow(bone.tissue, {{0, 0, 5}, upright}, Cutting::nothing);
   ASSERT_GT(proxy.pull().stiffness, 0.0);
   // Away from the bone: on the way nothing holds it but the pause.
-  proxy.follow(bone.tissue(), {{0, 0, 16}, upright}, Cutting::nothing);
+  proxy.follow(bone.tissue, {{0, 0, 16}, upright}, Cutting::nothing);
   proxy.hold(on_bone);
   EXPECT_EQ(proxy.pull().stiffness, 0.0);
   EXPECT_FALSE(proxy.held());
@@ -126,7 +120,7 @@ TEST(Proxy, IsAtTheArmWhereNothingIsSolid) {
   proxy.place({{0, 0, 8}, Quat(1, 0, 0, 0)});
   for (int n = 0; n < 100; ++n) {
     const Pose arm{{0.05 * n, 0, 8 - 0.15 * n}, turnAbout({1, 2, 3}, 0.005 * n)};
-    proxy.follow(air.tissue(), arm, Cutting::by_hand);
+    proxy.follow(air.tissue, arm, Cutting::by_hand);
     ASSERT_EQ(proxy.pose_mm().position, arm.position) << "soft tissue lets it through";
     ASSERT_FALSE(proxy.held());
   }
@@ -151,7 +145,7 @@ TEST(Proxy, NeverEntersSolidTissueFromAnySideOverEdgesAndTurning) {
         const double in = std::min(1.0, n / 500.0), over = std::clamp((n - 600) / 600.0, 0.0, 1.0);
         const Pose arm{(18.0 - 33.0 * in) * out + 20.0 * over * aside,
                        turnAbout(aside, 0.5 * std::sin(0.01 * n)) * outwards};
-        proxy.follow(bone.tissue(), arm, Cutting::nothing);
+        proxy.follow(bone.tissue, arm, Cutting::nothing);
         if (n % 100 != 99) continue;
         ASSERT_LE(bone.deepest_mm(tool, proxy.pose_mm()), 0.25)
             << "tool " << &tool - kTools << ", side " << side << ", tick " << n;
@@ -166,7 +160,7 @@ TEST(Proxy, PullsAlongTheSurfacesNormalAsFarAsTheArmIsIn) {
   proxy.place({{0, 0, 5}, Quat(1, 0, 0, 0)});
   const auto shift = [&](double depth_mm) {
     for (int n = 0; n < 40; ++n) {
-      proxy.follow(bone.tissue(), {{0.3, 0.2, -depth_mm}, Quat(1, 0, 0, 0)}, Cutting::nothing);
+      proxy.follow(bone.tissue, {{0.3, 0.2, -depth_mm}, Quat(1, 0, 0, 0)}, Cutting::nothing);
     }
     return proxy.pull().shift_mm;
   };
@@ -183,7 +177,7 @@ TEST(Proxy, StandsStillUnderAnArmThatShakesByACount) {
   Vec3 before(0.0);
   for (int n = 0; n < 600; ++n) {
     const double count = n % 2 ? 0.055 : 0.0;
-    proxy.follow(bone.tissue(), {{1 + count, 1, 3.0 + count}, Quat(1, 0, 0, 0)}, Cutting::nothing);
+    proxy.follow(bone.tissue, {{1 + count, 1, 3.0 + count}, Quat(1, 0, 0, 0)}, Cutting::nothing);
     const double moved = glm::length(proxy.pose_mm().position - before);
     ASSERT_TRUE(n <= 300 || moved < 0.06) << moved << " in tick " << n;
     before = proxy.pose_mm().position;

@@ -106,24 +106,25 @@ void expectSame(const Stroke& stroke, int voxels, double box_mm) {
 void expectSameOnFineGrids(const Stroke& stroke) { expectSame(stroke, 256, 24.6); }
 
 TEST(Removal, SpendsAgainAfterAnUndoWhatTheUndoneStrokeSpent) {
-  const Volume bone = slope(16, 8.0);
+  const Grid bone(slope(16, 8.0));
   TissueTable tissues = test::boneTable(12.0, 900.0, 2.0);
   tissues.classes[0].cutting_J_per_mm3 = 0.06;
-  Removal removal(burrStroke(0.0, 1.0).tool, bone.geometry, RemovalKind::work, 1e-3);
-  const double price_J = 0.06 * bone.geometry.voxelVolume_mm3();
-  removal.giveWork(1.5 * price_J, 1.5 * price_J, tissues);
+  const TissueField tissue(bone, tissues);
+  Removal removal(burrStroke(0.0, 1.0).tool, bone.geometry(), RemovalKind::work, 1e-3);
+  const double price_J = 0.06 * bone.geometry().voxelVolume_mm3();
+  removal.giveWork(1.5 * price_J, 1.5 * price_J, tissue);
   const double before_J = removal.credit_J();
   std::vector<RemovedVoxel> removed;
-  removal.take({1, 1, 1}, 0, tissues, removed);
-  removal.take({1, 1, 2}, 0, tissues, removed);
+  removal.take(tissue, {1, 1, 1}, 0, removed);
+  removal.take(tissue, {1, 1, 2}, 0, removed);
   ASSERT_EQ(removed.size(), 1u) << "it pays for one";
   removal.setCredit(before_J);
-  removal.take({1, 1, 2}, 0, tissues, removed);
+  removal.take(tissue, {1, 1, 2}, 0, removed);
   EXPECT_EQ(removed.size(), 2u);
   // And after a redo it has spent it.
   removal.setCredit(before_J - price_J);
   removal.setCredit(before_J - price_J);
-  removal.take({1, 1, 3}, 0, tissues, removed);
+  removal.take(tissue, {1, 1, 3}, 0, removed);
   EXPECT_EQ(removed.size(), 2u);
 }
 
@@ -394,10 +395,7 @@ TEST(Removal, APoseThatJumpsDoesNoWork) {
 TEST(Removal, LeavesNothingOnItsAxisWhenWorkWasShortAtFirst) {
   const Tool blade = makeBlade(0.010, 11);
   Grid grid(slope(64, 24.6));
-  TissueLookup lookup;
-  const TissueTable table = test::boneTable();
-  lookup.set(table);
-  const TissueBricks bricks(grid, lookup);
+  const TissueField tissue(grid, test::boneTable());
   Removal removal(blade, grid.geometry(), RemovalKind::work, 1e-3);
   Grid::Writer writer = *grid.takeWriter();
   std::vector<RemovedVoxel> removed;
@@ -406,9 +404,9 @@ TEST(Removal, LeavesNothingOnItsAxisWhenWorkWasShortAtFirst) {
   for (int n = 0; n < 400; ++n) {
     // It comes down along a row that it had no work for.
     const Vec3 at = on_a_voxel + Vec3(0, 0, std::max(0.0, 0.05 * (20 - n)));
-    removal.giveWork(n < 30 ? 0.0 : 1.0, 1e3, table);
+    removal.giveWork(n < 30 ? 0.0 : 1.0, 1e3, tissue);
     removed.clear();
-    removal.sweep(grid, bricks, lookup, table, {at, {1, 0, 0, 0}}, removed);
+    removal.sweep(tissue, {at, {1, 0, 0, 0}}, removed);
     for (const RemovedVoxel& r : removed) writer.store(r.voxel[0], r.voxel[1], r.voxel[2], kAirHu);
   }
   for (int k = 3; k < 26; ++k) EXPECT_EQ(grid.hu(32, 32, k), kAirHu) << k;
@@ -416,21 +414,18 @@ TEST(Removal, LeavesNothingOnItsAxisWhenWorkWasShortAtFirst) {
 
 TEST(Removal, SpendsNothingThatAnArmHasGivenBackSince) {
   Grid grid(slope(64, 24.6));
-  TissueLookup lookup;
-  const TissueTable table = test::boneTable();
-  lookup.set(table);
-  const TissueBricks bricks(grid, lookup);
+  const TissueField tissue(grid, test::boneTable());
   Removal removal(burrStroke(3.0, 1.0).tool, grid.geometry(), RemovalKind::work, 1e-3);
   std::vector<RemovedVoxel> removed;
   removed.reserve(Removal::kMostVoxels);
   const Pose inside{grid.geometry().toPatient_mm({32, 32, 4}), {1, 0, 0, 0}};
-  removal.giveWork(1.0, 1.0, table);
-  removal.giveWork(0.0, 0.0, table);  // all of it came back out of the springs
+  removal.giveWork(1.0, 1.0, tissue);
+  removal.giveWork(0.0, 0.0, tissue);  // all of it came back out of the springs
   EXPECT_GT(removal.credit_J(), 0.1);
-  removal.sweep(grid, bricks, lookup, table, inside, removed);
+  removal.sweep(tissue, inside, removed);
   EXPECT_TRUE(removed.empty());
-  removal.giveWork(0.0, 0.5, table);
-  for (int n = 0; n < 20; ++n) removal.sweep(grid, bricks, lookup, table, inside, removed);
+  removal.giveWork(0.0, 0.5, tissue);
+  for (int n = 0; n < 20; ++n) removal.sweep(tissue, inside, removed);
   double spent_J = 0.0;
   for (const RemovedVoxel& voxel : removed) spent_J += voxel.cost_J;
   EXPECT_GT(spent_J, 0.0);
