@@ -84,12 +84,15 @@ class ContactSphere {
   // `directions` is rounded up to a whole number of opposite pairs.
   ContactSphere(const GridGeometry& geometry, double radius_mm, int directions);
 
-  ElasticPush push(const TissueField& tissue, const StiffnessOfHu& stiffness, const Vec3& centre_mm) const;
-  ElasticPush push(const TissueField& tissue, const StiffnessByLabel& stiffness, const Vec3& centre_mm) const;
+  ElasticPush push(const TissueField& tissue, const StiffnessOfHu& stiffness,
+                   const Vec3& centre_mm) const;
+  ElasticPush push(const TissueField& tissue, const StiffnessByLabel& stiffness,
+                   const Vec3& centre_mm) const;
 
  private:
   template <class Field, class Stiffness>
-  ElasticPush pushIn(const TissueField& tissue, const Stiffness& stiffness, const Vec3& centre_mm) const;
+  ElasticPush pushIn(const TissueField& tissue, const Stiffness& stiffness,
+                     const Vec3& centre_mm) const;
 
   struct Ray {
     Vec3 direction;  // patient axes

@@ -19,14 +19,8 @@ HapticCore::ArmTool::ArmTool(const Tool& tool, const HapticParameters& all,
       contact(tool, geometry),
       removal(tool, geometry, all.removal, all.period_s),
       points(all.force_at == ForceAt::tip ? 1 : tool.points_m.size()) {
-  for (LawKind kind : all.laws) {
-    laws.push_back(makeLaw(kind, points.size()));
-    rendered_laws.push_back(makeLaw(kind, points.size()));
-    if (kind == LawKind::elastic) {
-      proxy.emplace(tool, geometry);
-      sphere.emplace(geometry, 1000.0 * tool.sphere_radius_m, sphereDirections(tool.blunt));
-    }
-  }
+  for (LawKind kind : all.laws) laws.push_back(makeLaw(kind, points.size(), tool, geometry));
+  if (stopAtSolid(all.laws)) proxy.emplace(tool, geometry);
   const bool driven = tool.made_from.motor_W > 0.0;
   cutting = driven ? Cutting::driven : Cutting::by_hand;
   // A burr without a motor cuts nothing, but where there is no barrier: there it cuts as the seed
@@ -55,7 +49,6 @@ HapticCore::HapticCore(const HapticParameters& parameters, Grid::Writer writer)
       tissue_(writer_.grid(), parameters_.tissues),
       stroke_gap_ticks_(std::uint64_t(parameters.stroke_gap_s / parameters.period_s)),
       second_ticks_(std::uint64_t(1.0 / parameters.period_s + 0.5)) {
-  elastic_ = names(parameters_.laws, LawKind::elastic);
   for (const ArmParameters& arm : parameters_.arms) {
     arms_.emplace_back(arm, parameters_, writer_.grid().geometry());
   }
@@ -77,7 +70,7 @@ void HapticCore::useTissues() {
     }
     any_cuttable_ = any_cuttable_ || t.cuttable;
   }
-  if (elastic_) setElasticTissues();
+  law_tissues_.use(now, parameters_.laws);
 }
 
 // Other HU ranges or labels make every brick unknown, and those or another `cuttable` make removal
@@ -92,21 +85,6 @@ void HapticCore::changeTissues(const TissueTable& tissues) {
       if (tool.proxy) tool.proxy->changed();
     }
   }
-}
-
-// The stiffness that pushes on a contact sphere: of soft tissue in which the elastic law acts. What
-// is solid stops the proxy instead.
-void HapticCore::setElasticTissues() {
-  TissueTable pushing = parameters_.tissues;
-  soft_push_ = false;
-  for (int c = 0; c < pushing.count; ++c) {
-    TissueClass& tissue = pushing.classes[std::size_t(c)];
-    if (tissue.solid || !acts(parameters_.laws, LawKind::elastic, tissue)) {
-      tissue.stiffness_N_per_m = 0.0;
-    }
-    soft_push_ = soft_push_ || tissue.stiffness_N_per_m > 0.0;
-  }
-  stiffness_.set(pushing);
 }
 
 CarveJournal::Credits HapticCore::credits() const {
@@ -229,7 +207,6 @@ void HapticCore::apply(const Command& command, std::uint64_t tick) {
 
 void HapticCore::forgetLaws(Arm& arm) {
   for (Law& law : arm.tool().laws) forgetLaw(law);
-  for (Law& law : arm.tool().rendered_laws) forgetLaw(law);
 }
 
 // The controller begins without credit. After voxels were put back (`restored`), the laws begin

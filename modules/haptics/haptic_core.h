@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "haptics/contact.h"
-#include "haptics/contact_sphere.h"
 #include "haptics/controllers.h"
 #include "haptics/device_rules.h"
 #include "haptics/hand_work.h"
@@ -72,12 +71,9 @@ class HapticCore {
     ArmTool(const Tool& tool, const HapticParameters& all, const GridGeometry& geometry);
 
     Tool made;
-    std::vector<Law> laws;           // of the model: what the tissue demands
-    std::vector<Law> rendered_laws;  // of what the controller lets the arm render
+    std::vector<Law> laws;
     ToolContact contact;
-    // Both only with the elastic law: without it the tool is where the arm is.
-    std::optional<ContactSphere> sphere;
-    std::optional<Proxy> proxy;
+    std::optional<Proxy> proxy;  // where a law stops it at solid tissue; else it is at its arm
     Removal removal;
     std::vector<TouchPoint> points;
     Cutting cutting = Cutting::by_hand;
@@ -136,7 +132,6 @@ class HapticCore {
   void finishRestore();
   void useTissues();
   void changeTissues(const TissueTable& tissues);
-  void setElasticTissues();
 
   // The tick of an arm, and its steps in their order (haptic_core_step.cpp).
   struct ArmTick;
@@ -169,7 +164,6 @@ class HapticCore {
   void letGoOfHook(ArmTick& now);
   bool wouldTouch(const ArmTool& tool, const Pose& pose_mm) const;
   void touchPoints(ArmTool& tool, const Motion& motion) const;
-  void pressOnElastic(const ArmTool& tool, const Motion& motion, LawInput& in) const;
   bool atWork(const Arm& arm) const;
   static bool motorIsOff(const Arm& arm, std::uint32_t buttons);
 
@@ -196,11 +190,9 @@ class HapticCore {
   Grid::Writer writer_;
   CarveJournal journal_;
   TissueField tissue_;
-  StiffnessByLabel stiffness_;  // only with the elastic law
-  bool elastic_ = false;
+  LawTissues law_tissues_;
   bool tissues_finite_ = true;
   bool any_cuttable_ = false;
-  bool soft_push_ = false;  // the elastic law acts in some soft tissue
   LatenessRule lateness_;
   std::vector<Arm> arms_;
   std::vector<CarveRecord> carves_;

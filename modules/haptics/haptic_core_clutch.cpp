@@ -50,11 +50,7 @@ void HapticCore::engageArm(ArmTick& now, const Pose& device_m) {
       turned && (wouldTouch(arm.tool(), tool_mm) || startsInTissue(arm.tool(), arm_mm));
   arm.limiter.engage();
   forgetForce(arm, in_tissue);
-  for (std::vector<Law>* laws : {&arm.tool().laws, &arm.tool().rendered_laws}) {
-    for (Law& law : *laws) {
-      if (std::holds_alternative<CoulombLaw>(law)) forgetLaw(law);
-    }
-  }
+  for (Law& law : arm.tool().laws) engageLaw(law);
   arm.last_model_N = arm.last_elastic_Nm = Vec3(0.0);
   if (turned && arm.tool().proxy) arm.tool().proxy->place(arm_mm);
 }

@@ -146,7 +146,7 @@ bool HapticCore::sample(ArmTick& now) {
 
 // The force that the tissue demands.
 void HapticCore::demand(ArmTick& now) {
-  for (Law& law : now.arm.tool().laws) addLaw(law, now.contact, now.model);
+  for (Law& law : now.arm.tool().laws) addDemanded(law, now.contact, now.model);
   now.model_N = now.model.at(now.motion.velocity_m_s);
   now.out.demanded_N = now.parameters.map.forceToDevice(now.model_N);
   now.out.demanded_torque_Nm = now.parameters.map.torqueToDevice(now.model.torque_Nm);
@@ -161,7 +161,7 @@ void HapticCore::render(ArmTick& now) {
   Impedance& share = now.contact.share;
   share = {shareOf(limited.damping, demanded.damping),
            shareOf(limited.stiffness, demanded.stiffness)};
-  for (Law& law : now.arm.tool().rendered_laws) addLaw(law, now.contact, now.rendered);
+  for (Law& law : now.arm.tool().laws) addRendered(law, now.contact, now.rendered);
   now.out.rendered_share = shareOf(now.rendered.at(now.motion.velocity_m_s), now.model_N, share);
   now.stored_J = givenBack_J(now.model, now.rendered, share.stiffness,
                              now.parameters.max_force_N / map.force_scale / now.out.rendered_share);
@@ -172,7 +172,7 @@ void HapticCore::bound(ArmTick& now) {
   Arm& arm = now.arm;
   const WorkspaceMap& map = now.parameters.map;
   const double T = parameters_.period_s;
-  now.in_contact = now.contact.touching || now.model.stiffest() > 0.0;
+  now.in_contact = now.contact.touching() || now.model.stiffest() > 0.0;
   ControllerInput in;
   in.demanded_N = now.out.demanded_N;
   in.rendered = atDevice(now.rendered, map);
@@ -202,7 +202,7 @@ void HapticCore::checkFinite(ArmTick& now) {
   Arm& arm = now.arm;
   ArmRecord& out = now.out;
   const Motion& motion = now.motion;
-  now.finite = (tissues_finite_ || !now.contact.touching) && isFinite(now.contact.share.damping) &&
+  now.finite = (tissues_finite_ || !now.contact.touching()) && isFinite(now.contact.share.damping) &&
                isFinite(now.contact.share.stiffness) && isFinite(now.model.stiffest()) &&
                isFinite(now.model.damping) && isFinite(out.demanded_N) &&
                isFinite(out.demanded_torque_Nm) && isFinite(out.bounded_N) &&
@@ -235,7 +235,7 @@ void HapticCore::send(ArmTick& now) {
   const bool held = !(out.flags & TREPHINE_ARM_NO_HAND);
   const bool open = !paused_ && arm.faults == 0 && held;
   // While voxels come back in slices, tissue may yet fill in around the tool.
-  if (arm.clutched) now.in_contact = now.contact.touching;
+  if (arm.clutched) now.in_contact = now.contact.touching();
   const bool in_tissue = (arm.tool().proxy ? arm.waiting : now.in_contact) || journal_.busy();
   if (arm.waiting && !arm.limiter.waitingForAir()) arm.limiter.restored();
   out.sent_N =

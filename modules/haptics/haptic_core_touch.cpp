@@ -17,7 +17,7 @@ bool HapticCore::wouldTouch(const ArmTool& tool, const Pose& pose_mm) const {
   return tool.contact.wouldTouch(tissue_, pose_mm);
 }
 
-// The tool's pose in this tick. Where the exercise has no elastic law it is the arm's. In a pause
+// The tool's pose in this tick. Where no law stops it at solid tissue it is the arm's. In a pause
 // or a fault it only moves through air.
 void HapticCore::moveProxy(ArmTick& now) {
   Arm& arm = now.arm;
@@ -108,10 +108,11 @@ void HapticCore::touch(ArmTick& now) {
   in.velocity_m_s = motion.velocity_m_s;
   in.tool_direction = motion.pose_mm.orientation * Vec3(0.0, 0.0, -1.0);
   in.points = tool.points;
-  in.touching = contact.touching();
+  in.tissue_class = contact.tissue_class;
   in.tip_class = tool.contact.classes()[0];
   in.tissues = &tissue_.tissues();
-  if (tool.proxy) pressOnElastic(tool, motion, in);
+  if (tool.proxy) in.pull = tool.proxy->pull();
+  for (Law& law : tool.laws) law_tissues_.ask(law, tissue_, motion.pose_mm, in);
 
   out.tissue_class = contact.tissue_class;
   if (tool.proxy && tissue_.firmer(tool.proxy->heldBy(), out.tissue_class)) {
@@ -134,20 +135,6 @@ void HapticCore::touchPoints(ArmTool& tool, const Motion& motion) const {
     p.lever_m = motion.pose_mm.orientation * tool.made.points_m[i];
     p.rotational_m_s = glm::cross(motion.angular_velocity_rad_s, p.lever_m);
   }
-}
-
-// For the elastic law: the pull of the proxy that solid tissue holds, and the push of soft tissue
-// on the contact sphere.
-void HapticCore::pressOnElastic(const ArmTool& tool, const Motion& motion, LawInput& in) const {
-  in.sphere_radius_m = tool.made.sphere_radius_m;
-  in.sphere_m = -tool.made.sphere_radius_m * in.tool_direction;
-  in.pull = tool.proxy->pull();
-  const int c = in.tip_class >= 0 ? in.tip_class : tool.contact.contact().tissue_class;
-  in.parts =
-      !tool.made.blunt && (c < 0 || tissue_.ofClass(c).cuttable != 0);
-  if (!soft_push_) return;
-  in.push = tool.sphere->push(tissue_, stiffness_,
-                              motion.pose_mm.position + 1000.0 * in.sphere_m);
 }
 
 // Whether the tool is at something that it may cut: its motor works on it, and what is lost there

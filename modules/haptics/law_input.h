@@ -9,7 +9,6 @@
 
 #include "base/math.h"
 #include "haptics/arm_dynamics.h"
-#include "haptics/contact_sphere.h"
 #include "haptics/proxy.h"
 #include "tissue/tissue_set.h"
 
@@ -35,19 +34,13 @@ struct LawInput {
   Vec3 velocity_m_s{0.0};  // of the arm, at the tip
   Vec3 tool_direction{0.0};  // from the handle to the tip, unit
   std::span<const TouchPoint> points;
-  bool touching = false;   // any of them
-  std::int32_t tip_class = -1;  // where the tip itself is
+  std::int32_t tissue_class = -1;  // the firmest that any of the tool touches; -1 none
+  std::int32_t tip_class = -1;     // where the tip itself is
   const TissueTable* tissues = nullptr;
   Impedance share{1.0, 1.0};  // rendered / demanded, of the tissues' damping and stiffness
-  // For the elastic law: from the arm to the proxy that solid tissue holds; of soft tissue on the
-  // contact sphere, its centre from the tip and its radius; and whether a sharp tool cuts open the
-  // tissue before it.
-  Pull pull;
-  ElasticPush push;
-  Vec3 sphere_m{0.0};
-  double sphere_radius_m = 0.0;
-  bool parts = false;
+  Pull pull;  // from the arm to the proxy that solid tissue holds, if a law stops its tool there
 
+  bool touching() const { return tissue_class >= 0; }
   const TissueClass& tissue(const TouchPoint& p) const {
     return tissues->classes[std::size_t(p.tissue_class)];
   }

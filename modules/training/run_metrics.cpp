@@ -31,7 +31,7 @@ Warning startsInTissue(const std::string& arm, bool barrier) {
 }
 
 RunMeter::RunMeter(const Exercise& exercise)
-    : tips_mm_(exercise.arms.size()), barrier_(names(exercise.laws, LawKind::elastic)) {
+    : tips_mm_(exercise.arms.size()), barrier_(stopAtSolid(exercise.laws)) {
   metrics_.rate_hz = exercise.rate_hz;
   for (const ExerciseArm& arm : exercise.arms) metrics_.arms.push_back({arm.name});
   metrics_.controllers.emplace_back(controllerName(exercise.controller));

@@ -18,6 +18,7 @@ struct CoulombLaw {
   static Impedance impedance(const TissueClass& tissue) { return {0.0, tissue.stiffness_N_per_m}; }
   void add(const LawInput& in, ContactForce& out);
   void forget() { stiffness.assign(stiffness.size(), 0.0); }
+  void engage() { forget(); }
 
   std::vector<Vec3> anchors_m;
   std::vector<double> stiffness;  // of each point's spring; 0: no anchor

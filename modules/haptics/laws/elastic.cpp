@@ -9,9 +9,39 @@ namespace {
 constexpr double kClear = 0.25;
 }  // namespace
 
-void ElasticLaw::add(const LawInput& in, ContactForce& out) {
+void ElasticLaw::Tissues::use(const TissueTable& tissues, std::uint32_t acts_in) {
+  TissueTable pushing = tissues;
+  any = false;
+  for (int c = 0; c < pushing.count; ++c) {
+    TissueClass& tissue = pushing.classes[std::size_t(c)];
+    if (tissue.solid || !(acts_in >> c & 1u)) tissue.stiffness_N_per_m = 0.0;
+    any = any || tissue.stiffness_N_per_m > 0.0;
+  }
+  stiffness.set(pushing);
+}
+
+ElasticLaw::Query::Query(const Tool& tool, const GridGeometry& geometry)
+    : sphere(geometry, 1000.0 * tool.sphere_radius_m, sphereDirections(tool.blunt)),
+      radius_m(tool.sphere_radius_m),
+      blunt(tool.blunt) {}
+
+ElasticLaw::Answer ElasticLaw::Query::ask(const Tissues& tissues, const TissueField& tissue,
+                                          const Pose& tool_mm, const LawInput& in) const {
+  Answer answer;
+  answer.radius_m = radius_m;
+  answer.sphere_m = -radius_m * in.tool_direction;
+  const int c = in.tip_class >= 0 ? in.tip_class : in.tissue_class;
+  answer.parts = !blunt && (c < 0 || tissue.ofClass(c).cuttable != 0);
+  if (tissues.any) {
+    answer.push =
+        sphere.push(tissue, tissues.stiffness, tool_mm.position + 1000.0 * answer.sphere_m);
+  }
+  return answer;
+}
+
+void ElasticLaw::add(const LawInput& in, const Answer& answer, ContactForce& out) {
   addSolid(in, out);
-  addSoft(in, out);
+  addSoft(in, answer, out);
 }
 
 void ElasticLaw::addSolid(const LawInput& in, ContactForce& out) const {
@@ -26,18 +56,19 @@ void ElasticLaw::addSolid(const LawInput& in, ContactForce& out) const {
                              turn_m2 * glm::dot(in.pull.turn, in.pull.turn));
 }
 
-void ElasticLaw::addSoft(const LawInput& in, ContactForce& out) {
-  const double size_N = glm::length(in.push.force_N);
-  const double at_centre_N = in.push.at_centre * in.sphere_radius_m;
+void ElasticLaw::addSoft(const LawInput& in, const Answer& answer, ContactForce& out) {
+  const ElasticPush& push = answer.push;
+  const double size_N = glm::length(push.force_N);
+  const double at_centre_N = push.at_centre * answer.radius_m;
   if (!(size_N > 0.0) && !(at_centre_N > 0.0)) {
     forget();
     return;
   }
-  if (size_N > kClear * at_centre_N && stiffness == 0.0) normal = in.push.force_N / size_N;
-  Vec3 force_N = in.push.force_N;
-  double stored_J = in.push.stored_J;
-  const Vec3 sphere_m = in.tip_m + in.sphere_m;
-  if (in.parts) {
+  if (size_N > kClear * at_centre_N && stiffness == 0.0) normal = push.force_N / size_N;
+  Vec3 force_N = push.force_N;
+  double stored_J = push.stored_J;
+  const Vec3 sphere_m = in.tip_m + answer.sphere_m;
+  if (answer.parts) {
     stiffness = 0.0;
     const bool parts = at_centre_N > size_N;
     most_N = parted ? std::min(most_N, size_N) : size_N;
@@ -49,7 +80,7 @@ void ElasticLaw::addSoft(const LawInput& in, ContactForce& out) {
   } else if (!(at_centre_N > 0.0)) {
     stiffness = 0.0;
   } else {
-    const double k = in.push.at_centre;
+    const double k = push.at_centre;
     if (stiffness == 0.0) {
       depth_m = size_N / k;
     } else {
@@ -63,9 +94,9 @@ void ElasticLaw::addSoft(const LawInput& in, ContactForce& out) {
   centre_m = sphere_m;
   force_N *= in.share.stiffness;
   out.elastic_N += force_N;
-  out.stiffness += in.share.stiffness * in.push.stiffness;
+  out.stiffness += in.share.stiffness * push.stiffness;
   out.stored_J += in.share.stiffness * stored_J;
-  out.addElasticTorque(glm::cross(in.sphere_m, force_N));
+  out.addElasticTorque(glm::cross(answer.sphere_m, force_N));
 }
 
 }  // namespace trephine

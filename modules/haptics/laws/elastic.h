@@ -1,7 +1,9 @@
 #pragma once
 
 #include "haptics/contact_force.h"
+#include "haptics/contact_sphere.h"
 #include "haptics/law_input.h"
+#include "haptics/tool.h"
 
 namespace trephine {
 
@@ -16,9 +18,37 @@ namespace trephine {
 // made. For a sharp tool, which cuts the tissue open, the push fades as the sphere sinks in and
 // does not come back on the way out.
 struct ElasticLaw {
+  static constexpr bool kStopsAtSolid = true;
+
+  // The stiffness that pushes on a contact sphere: of soft tissue in which the law acts. What is
+  // solid stops the proxy instead.
+  struct Tissues {
+    void use(const TissueTable& tissues, std::uint32_t acts_in);
+
+    StiffnessByLabel stiffness;
+    bool any = false;
+  };
+  // The push on the contact sphere, the sphere's centre from the tip and its radius, and whether a
+  // sharp tool cuts open the tissue before it.
+  struct Answer {
+    ElasticPush push;
+    Vec3 sphere_m{0.0};
+    double radius_m = 0.0;
+    bool parts = false;
+  };
+  struct Query {
+    Query(const Tool& tool, const GridGeometry& geometry);
+    Answer ask(const Tissues& tissues, const TissueField& tissue, const Pose& tool_mm,
+               const LawInput& in) const;
+
+    ContactSphere sphere;
+    double radius_m;
+    bool blunt;
+  };
+
   explicit ElasticLaw(std::size_t /*points*/ = 1) {}
   static Impedance impedance(const TissueClass& tissue) { return {0.0, tissue.stiffness_N_per_m}; }
-  void add(const LawInput& in, ContactForce& out);
+  void add(const LawInput& in, const Answer& answer, ContactForce& out);
   void forget() { *this = ElasticLaw(); }
 
   Vec3 normal{0.0};  // the last clear one, out of the tissue
@@ -33,7 +63,7 @@ struct ElasticLaw {
 
  private:
   void addSolid(const LawInput& in, ContactForce& out) const;
-  void addSoft(const LawInput& in, ContactForce& out);
+  void addSoft(const LawInput& in, const Answer& answer, ContactForce& out);
 };
 
 }  // namespace trephine

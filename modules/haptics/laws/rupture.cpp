@@ -4,7 +4,7 @@ namespace trephine {
 
 void RuptureLaw::add(const LawInput& in, ContactForce& out) {
   const auto whole = [this](std::int32_t c) { return !(ruptured >> c & 1u); };
-  if (!in.touching) {  // also where another tool has removed the tissue that was pressed in
+  if (!in.touching()) {  // also where another tool has removed the tissue that was pressed in
     forget();
     return;
   }

@@ -121,7 +121,7 @@ Result<Json> warningsAtStart(Exercise& exercise, const Rig& rig, const Progress&
   for (const Event& event : core.events()) {
     if (event.kind != EventKind::starts_in_tissue) continue;
     const Warning warning = startsInTissue(exercise.arms[std::size_t(event.arm)].name,
-                                           names(exercise.laws, LawKind::elastic));
+                                           stopAtSolid(exercise.laws));
     warnings.push_back({{"code", warning.code}, {"text", warning.text}});
   }
   return warnings;
@@ -223,28 +223,23 @@ Result<Json> explainExercise(Exercise exercise, const std::vector<RecommendedSet
     LawInput input;
     input.points = points;
     input.tissues = &parameters.tissues;
-    input.touching = contact.contact().touching();
+    input.tissue_class = contact.contact().tissue_class;
     input.tip_class = contact.classes()[0];
-    input.sphere_radius_m = tool.sphere_radius_m;
+    LawTissues law_tissues;
+    law_tissues.use(parameters.tissues, exercise.laws);
+    // With no direction the contact sphere is at the tip: half of it in tissue.
+    const Pose at_surface{Vec3(0.0, 0.0, 10.0), Quat(1, 0, 0, 0)};
     for (LawKind kind : exercise.laws) {
-      Law law = makeLaw(kind, points.size());
-      std::optional<ContactSphere> sphere;
-      StiffnessByLabel stiffness;
-      if (kind == LawKind::elastic) {
-        sphere.emplace(grid.geometry(), 1000.0 * tool.sphere_radius_m,
-                       sphereDirections(tool.blunt));
-        stiffness.set(parameters.tissues);
-      }
+      Law law = makeLaw(kind, points.size(), tool, grid.geometry());
       add("law " + nameOf(kLawNames, kind), [&] {
         input.tip_m.x += 1e-6;
-        // Half of the sphere in tissue.
-        if (sphere) input.push = sphere->push(tissue, stiffness, Vec3(0.0, 0.0, 10.0));
+        law_tissues.ask(law, tissue, at_surface, input);
         ContactForce force;
-        addLaw(law, input, force);
+        addDemanded(law, input, force);
         keep(force.elastic_N);
       });
     }
-    if (names(exercise.laws, LawKind::elastic)) {
+    if (stopAtSolid(exercise.laws)) {
       // Sliding over the block's top, pressed by a millimetre. It comes from above: a tool that
       // began in the tissue would be held on all sides.
       const double resting_mm = 10.0 + 1000.0 * (tool.radius_m - tool.solid_from_m.z);
@@ -325,7 +320,7 @@ Result<Json> explainExercise(Exercise exercise, const std::vector<RecommendedSet
               {"laws", laws},
               {"force_at", nameOf(kForceAtNames, exercise.force_at)},
               {"removal", nameOf(kRemovalNames, exercise.removal)},
-              {"barrier", names(exercise.laws, LawKind::elastic)
+              {"barrier", stopAtSolid(exercise.laws)
                               ? "solid tissue stops a tool until it is cut"
                               : "no barrier: a tool is where its arm is"},
               {"tissues", tissues},

@@ -23,7 +23,7 @@ struct Case {
     in.tip_m = tip_m;
     in.points = points;
     in.tissues = &table;
-    in.touching = true;
+    in.tissue_class = 0;
     in.tip_class = 0;
     in.tool_direction = Vec3(0, 0, -1);
   }
@@ -31,16 +31,16 @@ struct Case {
 
   Case& inAir() {
     for (TouchPoint& p : points) p.tissue_class = -1;
-    in.touching = false;
+    in.tissue_class = -1;
     in.tip_class = -1;
     return *this;
   }
 };
 
-template <class L>
-ContactForce contactOf(L&& law, const Case& c) {
+template <class L, class... Answer>
+ContactForce contactOf(L&& law, const Case& c, const Answer&... answer) {
   ContactForce force;
-  law.add(c.in, force);
+  law.add(c.in, answer..., force);
   return force;
 }
 template <class L>
@@ -92,13 +92,14 @@ TEST(Laws, TheForceAndTorqueAtTheHandleHaveThePowerOfThePoints) {
 }
 
 TEST(Laws, GiveNoForceWithoutContact) {
+  const Grid air(Volume{.geometry = {.size = {4, 4, 4}}, .hu = Voxels(64)});
   for (const auto& [name, kind] : kLawNames) {
-    Law law = makeLaw(kind);
+    Law law = makeLaw(kind, 1, makeNeedle(0.05), air.geometry());
     Case c({0, 0, -0.001});
     c.inAir();
     c.in.velocity_m_s = Vec3(1.0);
     ContactForce force;
-    addLaw(law, c.in, force);
+    addDemanded(law, c.in, force);
     EXPECT_EQ(force.at(c.in.velocity_m_s), Vec3(0.0)) << name;
     EXPECT_EQ(force.stiffness, 0.0) << name;
   }
@@ -201,9 +202,9 @@ TEST(CoulombLaw, OfManyPointsIsThatOfOneWhenTheyMoveTogether) {
 
 TEST(ElasticLaw, GivesThePushOfTheBall) {
   Case c;
-  c.in.push = {Vec3(0.1, 0, 0.2), 1e-4, 500.0, 0.0};
   c.in.share.stiffness = 0.5;
-  const ContactForce f = contactOf(ElasticLaw{}, c);
+  const ContactForce f =
+      contactOf(ElasticLaw{}, c, ElasticLaw::Answer{{Vec3(0.1, 0, 0.2), 1e-4, 500.0, 0.0}});
   EXPECT_DOUBLE_EQ(f.elastic_N.z, 0.1);
   EXPECT_DOUBLE_EQ(f.stiffness, 250.0);
 }
@@ -211,11 +212,15 @@ TEST(ElasticLaw, GivesThePushOfTheBall) {
 // k = 500, r = 2 mm, soft tissue below z = 0, the contact sphere's centre at z.
 struct BallCase : Case {
   explicit BallCase(double z, double stiffness = 500.0) : Case({0, 0, z}) {
-    in.sphere_radius_m = 0.002;
+    answer.radius_m = 0.002;
     const double sum_N = stiffness * std::max(0.0, 0.002 - std::abs(z));
-    in.push = {Vec3(0, 0, sum_N), 1e-4, stiffness, z < 0.0 ? stiffness : 0.0};
+    answer.push = {Vec3(0, 0, sum_N), 1e-4, stiffness, z < 0.0 ? stiffness : 0.0};
   }
+  ElasticLaw::Answer answer;
 };
+Vec3 forceOf(ElasticLaw& law, const BallCase& c) {
+  return contactOf(law, c, c.answer).at(c.in.velocity_m_s);
+}
 
 TEST(ElasticLaw, PushesAToolThatPartsNothingByItsDepthHoweverDeepItSinks) {
   ElasticLaw law;
@@ -245,7 +250,7 @@ TEST(ElasticLaw, FadesBeforeASharpToolThatHasPartedTheTissue) {
   ElasticLaw law;
   const auto at = [&](double z) {
     BallCase c(z);
-    c.in.parts = true;
+    c.answer.parts = true;
     return forceOf(law, c).z;
   };
   EXPECT_NEAR(at(0.0005), 0.75, 1e-9);
@@ -258,7 +263,7 @@ TEST(ElasticLaw, PullsTheArmToTheProxyThatSolidTissueHolds) {
   Case c;
   c.in.pull = {Vec3(0, 0, 2.0), Vec3(0.1, 0, 0), 400.0, 900.0};
   c.in.share.stiffness = 0.5;
-  const ContactForce f = contactOf(ElasticLaw{}, c);
+  const ContactForce f = contactOf(ElasticLaw{}, c, ElasticLaw::Answer{});
   EXPECT_NEAR(f.elastic_N.z, 0.5 * 900.0 * 0.002, 1e-12);
   EXPECT_NEAR(f.torque_Nm.x, 0.5 * 900.0 * 400e-6 * 0.1, 1e-12);
   EXPECT_DOUBLE_EQ(f.solid_stiffness, 450.0);
@@ -310,11 +315,14 @@ TEST(RuptureLaw, GivesWayAtTheSamePlaceWhateverTheArmRenders) {
 }
 
 TEST(Laws, AreMadeByName) {
-  EXPECT_TRUE(std::holds_alternative<ViscousLaw>(makeLaw(LawKind::viscous)));
-  EXPECT_TRUE(std::holds_alternative<CoulombLaw>(makeLaw(LawKind::coulomb, 3)));
-  EXPECT_EQ(std::get<CoulombLaw>(makeLaw(LawKind::coulomb, 3)).anchors_m.size(), 3u);
-  EXPECT_TRUE(std::holds_alternative<ElasticLaw>(makeLaw(LawKind::elastic)));
-  EXPECT_TRUE(std::holds_alternative<RuptureLaw>(makeLaw(LawKind::rupture)));
+  const Tool tool = makeNeedle(0.05);
+  const GridGeometry geometry;
+  const auto made = [&](LawKind kind) { return makeLaw(kind, 3, tool, geometry); };
+  EXPECT_TRUE(std::holds_alternative<LawOfTool<ViscousLaw>>(made(LawKind::viscous)));
+  const Law coulomb = made(LawKind::coulomb);
+  EXPECT_EQ(std::get<LawOfTool<CoulombLaw>>(coulomb).rendered.anchors_m.size(), 3u);
+  EXPECT_TRUE(std::holds_alternative<LawOfTool<ElasticLaw>>(made(LawKind::elastic)));
+  EXPECT_TRUE(std::holds_alternative<LawOfTool<RuptureLaw>>(made(LawKind::rupture)));
 }
 
 }  // namespace
