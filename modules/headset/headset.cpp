@@ -5,8 +5,8 @@
 #include <QOpenGLContext>
 #include <QOpenGLExtraFunctions>
 #include <QThread>
-#include <chrono>
 
+#include "base/rt/thread.h"
 #include "headset/openxr_session.h"
 // Xlib comes with it.
 #include "headset/openxr_functions.h"
@@ -15,7 +15,7 @@ namespace trephine {
 
 namespace {
 
-constexpr unsigned long kEnd_ms = 500;
+constexpr std::chrono::milliseconds kEndPatience{500};
 
 }  // namespace
 
@@ -24,9 +24,10 @@ struct Headset::Engine : HeadsetShared {
   std::unique_ptr<QOpenGLContext> context;
   std::unique_ptr<QOffscreenSurface> surface;
   QThread* home = nullptr;
-  QThread* thread = nullptr;
 
   void run() {
+    rt::nameThread("headset");
+    context->moveToThread(QThread::currentThread());
     HeadsetEnd how;
     if (context->makeCurrent(surface.get())) {
       how = runOpenXr(*this, *context->extraFunctions());
@@ -69,10 +70,8 @@ Result<std::unique_ptr<Headset>> Headset::start(QOpenGLContext& share,
   engine->home = QThread::currentThread();
   std::unique_ptr<Headset> headset(new Headset);
   headset->engine_ = engine;
-  engine->thread = QThread::create([engine] { engine->run(); });
-  engine->thread->setObjectName("headset");
-  engine->context->moveToThread(engine->thread);
-  engine->thread->start();
+  engine->context->moveToThread(nullptr);  // its own takes it
+  headset->thread_ = rt::AbandonableThread([engine] { engine->run(); });
   return headset;
 }
 
@@ -82,13 +81,11 @@ bool openXrInstalled() {
 
 Headset::~Headset() {
   stop();
-  if (!engine_->thread->wait(kEnd_ms)) {
-    engine_->abandoned = true;
-    // Its context and surface stay with it: the thread owns the rest of the engine.
+  thread_.end(kEndPatience, [this] {
+    // It ends with the process, and so do its context and surface, which are not its to destroy.
     static_cast<void>(new std::shared_ptr<Engine>(engine_));
-    return;
-  }
-  delete engine_->thread;
+    return engine_->abandoned = true;
+  });
 }
 
 void Headset::stop() {

@@ -13,6 +13,7 @@
 #include <optional>
 
 #include "base/result.h"
+#include "base/rt/abandonable_thread.h"
 #include "headset/pace_rule.h"
 #include "headset/picture_exchange.h"
 
@@ -78,6 +79,7 @@ class Headset {
   Headset() = default;
   struct Engine;
   std::shared_ptr<Engine> engine_;
+  rt::AbandonableThread thread_;
 };
 
 }  // namespace trephine

@@ -1,7 +1,6 @@
 #include "session/arm_trial.h"
 
 #include <algorithm>
-#include <condition_variable>
 #include <map>
 #include <mutex>
 #include <utility>
@@ -46,9 +45,7 @@ struct ArmTrial::Engine {
   std::atomic<double> patience_s[kMostTried]{};  // for the next answer of each; 0: none
   std::atomic<bool> end_force{false}, stop{false};
   DeviceCalls calls;  // those of the thread
-  std::mutex mutex;
-  std::condition_variable changed;
-  bool ended = false, over = false;
+  std::mutex mutex;  // of the devices, which silence() may have beside
   std::atomic<std::uint64_t> ticks{0};
   std::atomic<bool> stands_still{false};
 
@@ -60,7 +57,7 @@ struct ArmTrial::Engine {
   void run();
   void silence();
   void watch();
-  void end(std::thread arms, std::thread watch);
+  void end(rt::AbandonableThread arms, rt::AbandonableThread watch);
 };
 
 // Of those that are not closed, and stay open until it has silenced them.
@@ -90,34 +87,18 @@ void ArmTrial::Engine::watch() {
 }
 
 // Waits for both threads, leaves behind the device that keeps one, and closes the others.
-void ArmTrial::Engine::end(std::thread arms_thread, std::thread watch_thread) {
-  std::optional<std::size_t> held;
-  {
-    std::unique_lock lock(mutex);
-    const auto has_ended = [this] { return ended; };
-    bool done = changed.wait_for(lock, kEndPatience, has_ended);
-    // A thread that is in no call comes to its end, or into one.
-    while (!done && !(held = calls.leaveBehind())) {
-      done = changed.wait_for(lock, std::chrono::milliseconds(5), has_ended);
-    }
-  }
-  if (held) {
-    devices[*held].device->leaveBehind();
-    arms_thread.detach();
-    watch_thread.detach();
-  } else {
-    arms_thread.join();
-    watch_thread.join();
-  }
+void ArmTrial::Engine::end(rt::AbandonableThread arms_thread, rt::AbandonableThread watch_thread) {
+  // A thread that is in no call comes to its end, or into one.
+  const std::optional<std::size_t> held =
+      arms_thread.end(kEndPatience, [this] { return calls.leaveBehind(); });
+  if (held) devices[*held].device->leaveBehind();
+  watch_thread.end(std::chrono::milliseconds(0), [&] { return held.has_value(); });
   for (std::size_t d = 0; d < devices.size(); ++d) {
     if (d == held) continue;
     std::shared_ptr<Device> closing;  // beyond the lock: it may take its time
     std::lock_guard lock(mutex);
     closing.swap(devices[d].device);
   }
-  std::lock_guard lock(mutex);
-  over = true;
-  changed.notify_all();
 }
 
 void ArmTrial::Engine::take(std::size_t i, const TrephineArmState& state) {
@@ -196,9 +177,6 @@ void ArmTrial::Engine::run() {
   for (std::size_t d = 0; here && d < devices.size(); ++d) {
     here = calls.make(d, [&] { devices[d].device->stop(); });
   }
-  std::lock_guard lock(mutex);
-  ended = true;
-  changed.notify_all();
 }
 
 // These arms of one plugin as one device.
@@ -246,21 +224,18 @@ std::unique_ptr<ArmTrial> ArmTrial::start(const std::vector<FoundArm>& arms) {
   }
   std::unique_ptr<ArmTrial> trial(new ArmTrial);
   trial->engine_ = engine;
-  trial->thread_ = std::thread([engine] { engine->run(); });
-  trial->watch_thread_ = std::thread([engine] { engine->watch(); });
+  trial->thread_ = rt::AbandonableThread([engine] { engine->run(); });
+  trial->watch_thread_ = rt::AbandonableThread([engine] { engine->watch(); });
   return trial;
 }
 
 ArmTrial::~ArmTrial() {
-  if (!thread_.joinable()) return;
   engine_->stop = true;
   // Whatever a plugin does in these calls, it does not keep this thread.
-  std::thread([engine = engine_, arms = std::move(thread_),
-               watch = std::move(watch_thread_)]() mutable {
+  rt::AbandonableThread([engine = engine_, arms = std::move(thread_),
+                         watch = std::move(watch_thread_)]() mutable {
     engine->end(std::move(arms), std::move(watch));
-  }).detach();
-  std::unique_lock lock(engine_->mutex);
-  engine_->changed.wait_for(lock, kLetGoPatience, [this] { return engine_->over; });
+  }).end(kLetGoPatience, [] { return true; });
 }
 
 std::size_t ArmTrial::size() const {

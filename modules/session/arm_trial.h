@@ -6,11 +6,11 @@
 #include <atomic>
 #include <memory>
 #include <optional>
-#include <thread>
 #include <vector>
 
 #include "base/math.h"
 #include "base/result.h"
+#include "base/rt/abandonable_thread.h"
 #include "base/rt/latest_value.h"
 #include "device/device.h"
 #include "device/find_arms.h"
@@ -60,7 +60,7 @@ class ArmTrial {
   struct Engine;
   ArmTrial() = default;
   std::shared_ptr<Engine> engine_;
-  std::thread thread_, watch_thread_;
+  rt::AbandonableThread thread_, watch_thread_;
   TriedArms shown_{};
 };
 

@@ -174,7 +174,7 @@ Status Session::start(double seconds) {
     stop_recorder_ = true;
     engine_->watchdog.end();
     if (recorder_thread_.joinable()) recorder_thread_.join();
-    if (watchdog_thread_.joinable()) watchdog_thread_.join();
+    watchdog_thread_.end(0ms, [] { return false; });
     return outOfMemory("for the threads of the exercise", "the system");
   }
   running_ = true;
@@ -186,12 +186,12 @@ void Session::startThreads(double seconds) {
   const auto last_tick = std::uint64_t(std::llround(seconds * exercise_.rate_hz));
   engine_->oper.useHostClock();
   recorder_thread_ = std::thread([this] { record(); });
-  watchdog_thread_ = std::thread([engine = engine_] {
+  watchdog_thread_ = rt::AbandonableThread([engine = engine_] {
     rt::nameThread("watchdog");
     rt::requestRealTime(kWatchdogPriority);
     engine->watchdog.run();
   });
-  haptic_thread_ = std::thread([engine = engine_, last_tick] {
+  haptic_thread_ = rt::AbandonableThread([engine = engine_, last_tick] {
     rt::nameThread("haptic");
     rt::sharpenTimers();
     rt::touchStack();
@@ -207,9 +207,6 @@ void Session::startThreads(double seconds) {
     const bool here = engine->loop.run(clock, engine->stop, last_tick);
     engine->finished.store(true, std::memory_order_release);
     if (here) engine->loop.stopDevices();
-    std::lock_guard lock(engine->mutex);
-    engine->ended = true;
-    engine->changed.notify_all();
   });
 }
 
@@ -267,28 +264,11 @@ Status Session::stop() {
   if (stepped_) return stopStepped();
   engine_->stop = true;
   const bool silenced = engine_->watchdog.silence(kSilencePatience);
-  bool ended = false;
-  {
-    std::unique_lock lock(engine_->mutex);
-    ended = engine_->changed.wait_for(lock, kStopPatience, [this] { return engine_->ended; });
-  }
   // A thread that is in no device's call comes to its end: a tick is short.
-  std::optional<std::size_t> held;
-  while (!ended && !(held = loop_->leaveBehind())) {
-    std::unique_lock lock(engine_->mutex);
-    ended = engine_->changed.wait_for(lock, 5ms, [this] { return engine_->ended; });
-  }
+  const std::optional<std::size_t> held =
+      haptic_thread_.end(kStopPatience, [this] { return loop_->leaveBehind(); });
   engine_->watchdog.end();
-  if (silenced) {
-    watchdog_thread_.join();
-  } else {
-    watchdog_thread_.detach();
-  }
-  if (held) {
-    haptic_thread_.detach();
-  } else {
-    haptic_thread_.join();
-  }
+  watchdog_thread_.end(0ms, [&] { return !silenced; });
   stop_recorder_ = true;
   recorder_thread_.join();
   if (held) leaveBehind(*held, silenced);

@@ -19,6 +19,7 @@
 
 #include "base/progress.h"
 #include "base/result.h"
+#include "base/rt/abandonable_thread.h"
 #include "haptics/haptic_loop.h"
 #include "exercise/exercise.h"
 #include "case/placement.h"
@@ -237,7 +238,8 @@ class Session : public SessionView {
   bool paused_before_ = false;
   std::uint64_t unsettled_tick_ = 0;  // the last at which a command waited or a job ran
   std::atomic<bool> stop_recorder_{false};
-  std::thread haptic_thread_, watchdog_thread_, recorder_thread_;
+  rt::AbandonableThread haptic_thread_, watchdog_thread_;
+  std::thread recorder_thread_;
   std::optional<Error> left_behind_;
   // What is made of the records, each a sink of the recorder's thread; what the owner reads of them
   // meanwhile is behind the mutex.

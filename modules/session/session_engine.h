@@ -1,7 +1,6 @@
 // The running part of a session. Inside it alone.
 #pragma once
 
-#include <condition_variable>
 #include <deque>
 
 #include "base/rt/thread.h"
@@ -27,11 +26,6 @@ struct Session::Engine {
   std::atomic<bool> stop{false}, finished{false};
   std::optional<rt::LockedMemory> locked;  // from before the first tick to the end of stop()
   std::atomic<bool> memory_known{false};
-
-  // Until the loop's thread has ended, or nothing more is to be waited for.
-  std::mutex mutex;
-  std::condition_variable changed;
-  bool ended = false;
 };
 
 }  // namespace trephine
