@@ -1,18 +1,15 @@
-// Phantom and Touch arms behind the C ABI: arguments, states, configuration. The maker's library is
-// hd.h, what goes on in its scheduler arms.h.
+// Phantom and Touch arms behind the C ABI: states, configuration. The maker's library is hd.h, what
+// goes on in its scheduler arms.h.
 #include "../common/plugin.h"
 
 #include <algorithm>
 #include <atomic>
 #include <cmath>
-#include <cstdio>
-#include <memory>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
+#include "../common/config.h"
 #include "arms.h"
-#include "trephine_device.h"
 
 using namespace trephine::openhaptics;
 using namespace trephine::plugin;
@@ -28,201 +25,52 @@ struct Config {
   double latency_s = 0.0015;
 };
 
-// The maker's scheduler is one a process.
-std::atomic<bool> in_use{false};
-thread_local std::string open_error;
-
-}  // namespace
-
-struct TrephineDevice : trephine::plugin::Opened {
-  explicit TrephineDevice(const Library& hd) : arms(hd, silence) {}
-  std::vector<std::uint32_t> places;  // of its arms among the configured names
-  Arms arms;
-  Config config;
-  std::array<std::array<double, 3>, kMostArms> centre_m{};  // of the workspace
-  std::uint64_t given = 0;                                  // number of the last sample read
-};
-
-namespace {
-
-// The library finds no arms by itself: these are places for the names that a configuration gives.
-uint32_t enumerate(TrephineArmInfo* infos, uint32_t capacity) try {
-  open_error.clear();
-  if (!loadLibrary(open_error)) return 0;
-  for (std::uint32_t i = 0; infos && i < std::min<std::uint32_t>(capacity, kMostArms); ++i) {
-    TrephineArmInfo* info = element(infos, i);
-    if (infos->size < sizeof(TrephineArmInfo)) break;
-    std::snprintf(info->bus_path, sizeof(info->bus_path), "openhaptics-%u", i);
-    std::snprintf(info->model, sizeof(info->model), "Phantom or Touch");
-  }
-  return kMostArms;
-} catch (const std::exception&) {
-  return 0;
-}
-
-int open(const uint32_t* places, uint32_t n_arms, TrephineDevice** out) try {
-  if (!out) return TREPHINE_ERROR_ARGUMENT;
-  *out = nullptr;
-  if (!places || n_arms == 0 || n_arms > kMostArms) {
-    open_error = "OpenHaptics opens one or two arms.";
-    return TREPHINE_ERROR_ARGUMENT;
-  }
-  for (std::uint32_t i = 0; i < n_arms; ++i) {
-    if (places[i] >= kMostArms || std::count(places, places + i, places[i]) > 0) {
-      open_error = "OpenHaptics arm " + std::to_string(places[i]) +
-                   " is none, or is asked for twice: the arms are 0 and 1.";
-      return TREPHINE_ERROR_NO_DEVICE;
-    }
-  }
-  const Library* hd = loadLibrary(open_error);
-  if (!hd) return TREPHINE_ERROR_NO_DEVICE;
-  if (in_use.exchange(true)) {
-    open_error = "The OpenHaptics arms are in use already: stop the exercise that has them.";
-    return TREPHINE_ERROR_STATE;
-  }
-  try {
-    auto device = std::make_unique<TrephineDevice>(*hd);
-    device->places.assign(places, places + n_arms);
-    *out = device.release();
-  } catch (...) {
-    in_use = false;
-    throw;
-  }
-  return TREPHINE_OK;
-} catch (const std::exception& e) {
-  open_error = e.what();
-  return TREPHINE_ERROR_DEVICE;
-}
-
-struct ConfigNumber {
-  const char* key;
-  double low, high;
-  double Config::*member;
-};
-constexpr ConfigNumber kConfigNumbers[] = {
+constexpr NumberOf<Config> kConfigNumbers[] = {
     {"rate_hz", 500.0, 1600.0, &Config::rate_hz},
     {"apparent_mass_kg", 1e-4, 100.0, &Config::apparent_mass_kg},
     {"encoder_step_m", 0.0, 0.01, &Config::encoder_step_m},
     {"latency_s", 0.0, 0.1, &Config::latency_s},
 };
 
-// Empty, or what is wrong: README.md has the fields.
-std::string parse(const char* text, const std::vector<std::uint32_t>& places, Config& into) {
-  const auto root = nlohmann::json::parse(text, nullptr, false);
-  if (!root.is_object()) return "The text is no JSON object.";
-  for (const auto& [key, value] : root.items()) {
-    const bool number = std::any_of(std::begin(kConfigNumbers), std::end(kConfigNumbers),
-                                    [&key = key](const ConfigNumber& n) { return key == n.key; });
-    if (!number && key != "format" && key != "version" && key != "model" && key != "names") {
-      return "Field '" + key + "': unknown; remove it or correct its name.";
-    }
+// The maker's scheduler is one a process.
+std::atomic<bool> in_use{false};
+struct InUse {
+  InUse() {
+    if (!in_use.exchange(true)) return;
+    throw Refused{TREPHINE_ERROR_STATE,
+                  "The OpenHaptics arms are in use already: stop the exercise that has them."};
   }
-  if (root.value("format", nlohmann::json()) != "trephine.device") {
-    return "Field 'format': it must be 'trephine.device'.";
+  ~InUse() { in_use = false; }
+  InUse(const InUse&) = delete;
+};
+
+const Library& library() {
+  std::string why;
+  const Library* hd = loadLibrary(why);
+  if (!hd) throw Refused{TREPHINE_ERROR_NO_DEVICE, std::move(why)};
+  return *hd;
+}
+
+// README.md has the fields.
+Config parse(const char* text, const std::vector<std::uint32_t>& places) {
+  std::vector<std::string_view> keys = keysOf(kConfigNumbers);
+  keys.push_back("names");
+  const Json root = parseConfig(text, keys);
+  Config config;
+  readNumbers(root, kConfigNumbers, config);
+  if (config.rate_hz != 500.0 && config.rate_hz != 1000.0 && config.rate_hz != 1600.0) {
+    refuseField("rate_hz", "the maker's scheduler has 500, 1000 or 1600.");
   }
-  if (root.value("version", nlohmann::json()) != 1) return "Field 'version': this plugin reads 1.";
-  for (const ConfigNumber& number : kConfigNumbers) {
-    if (!root.contains(number.key)) continue;
-    const auto& value = root[number.key];
-    if (!value.is_number() || !(value >= number.low && value <= number.high)) {
-      return "Field '" + std::string(number.key) + "': expected a number from " +
-             nlohmann::json(number.low).dump() + " to " + nlohmann::json(number.high).dump() + ".";
-    }
-    into.*number.member = value;
-  }
-  if (into.rate_hz != 500.0 && into.rate_hz != 1000.0 && into.rate_hz != 1600.0) {
-    return "Field 'rate_hz': the maker's scheduler has 500, 1000 or 1600.";
-  }
-  const auto names = root.value("names", nlohmann::json::array({""}));
+  const Json names = root.value("names", Json::array({""}));
   const std::uint32_t most = *std::max_element(places.begin(), places.end());
   bool words = names.is_array();
-  for (const auto& each : names) words = words && each.is_string();
+  for (const Json& each : names) words = words && each.is_string();
   if (!words || names.size() <= most) {
-    return "Field 'names': expected the names of " + std::to_string(most + 1) +
-           " arms, as the maker's set-up has them.";
+    refuseField("names", "expected the names of " + std::to_string(most + 1) +
+                             " arms, as the maker's set-up has them.");
   }
-  for (std::uint32_t place : places) into.names.push_back(names[place]);
-  return {};
-}
-
-int configure(TrephineDevice* device, const char* json) try {
-  if (!device || !json) return TREPHINE_ERROR_ARGUMENT;
-  if (device->running) {
-    return fail(device, TREPHINE_ERROR_STATE, "The arms are running: stop them to configure them.");
-  }
-  Config config;
-  std::string wrong = parse(json, device->places, config);
-  if (!wrong.empty()) return failWith(device, TREPHINE_ERROR_ARGUMENT, std::move(wrong));
-  device->configured = false;
-  wrong = device->arms.open(config.names);
-  if (!wrong.empty()) return failWith(device, TREPHINE_ERROR_NO_DEVICE, std::move(wrong));
-  for (std::size_t arm = 0; arm < device->places.size(); ++arm) {
-    const std::array<double, 6> box_mm = device->arms.workspace_mm(arm);
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      device->centre_m[arm][axis] = 0.5e-3 * (box_mm[axis + 3] + box_mm[axis]);
-    }
-  }
-  device->config = std::move(config);
-  device->configured = true;
-  return TREPHINE_OK;
-} catch (const std::exception& e) {
-  return failWith(device, TREPHINE_ERROR_ARGUMENT, e.what());
-}
-
-int capabilities(TrephineDevice* device, uint32_t arm, TrephineCapabilities* out) {
-  if (!device || !out || out->size < sizeof(TrephineCapabilities)) return TREPHINE_ERROR_ARGUMENT;
-  if (arm >= device->places.size()) {
-    return fail(device, TREPHINE_ERROR_ARGUMENT, "There is no opened arm of that number.");
-  }
-  if (!device->configured) {
-    return fail(device, TREPHINE_ERROR_STATE, "The arms have no configuration yet.");
-  }
-  Arms& arms = device->arms;
-  out->input_dof = arms.integer(arm, kInputDof) >= 6 ? 6 : 3;
-  const std::array<double, 6> box_mm = arms.workspace_mm(arm);
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    out->workspace_m[axis] = 1e-3 * (box_mm[axis + 3] - box_mm[axis]);
-  }
-  out->peak_force_N = arms.number(arm, kNominalMaxForce);
-  out->continuous_force_N =
-      std::min(out->peak_force_N, arms.number(arm, kNominalMaxContinuousForce));
-  out->thermal_s = 0.0;  // its driver watches its motors and says so
-  out->apparent_mass_kg = device->config.apparent_mass_kg;
-  out->encoder_step_m = device->config.encoder_step_m;
-  out->rate_hz = device->config.rate_hz;
-  out->latency_s = device->config.latency_s;
-  return TREPHINE_OK;
-}
-
-int calibrate(TrephineDevice* device, uint32_t arm) try {
-  if (!device) return TREPHINE_ERROR_ARGUMENT;
-  if (arm >= device->places.size()) {
-    return fail(device, TREPHINE_ERROR_ARGUMENT, "There is no opened arm of that number.");
-  }
-  if (!device->configured) {
-    return fail(device, TREPHINE_ERROR_STATE, "The arms have no configuration yet.");
-  }
-  std::string why = device->arms.calibrate(arm);
-  return why.empty() ? TREPHINE_OK : failWith(device, TREPHINE_ERROR_DEVICE, std::move(why));
-} catch (const std::exception&) {
-  return fail(device, TREPHINE_ERROR_DEVICE, "There is no memory for the arms.");
-}
-
-int start(TrephineDevice* device) try {
-  if (!device) return TREPHINE_ERROR_ARGUMENT;
-  if (!device->configured || device->running) {
-    return fail(
-        device, TREPHINE_ERROR_STATE,
-        device->running ? "The arms are already running." : "The arms have no configuration yet.");
-  }
-  device->silence.answer(device->silence.asked());
-  device->given = 0;
-  std::string why = device->arms.start(device->config.rate_hz);
-  if (!why.empty()) return failWith(device, TREPHINE_ERROR_DEVICE, std::move(why));
-  device->running = true;
-  return TREPHINE_OK;
-} catch (const std::exception&) {
-  return fail(device, TREPHINE_ERROR_DEVICE, "There is no memory for the arms.");
+  for (std::uint32_t place : places) config.names.push_back(names[place]);
+  return config;
 }
 
 // A rotation as a unit quaternion: the largest part first, so that nothing is divided by almost
@@ -245,18 +93,90 @@ void turnOf(const double* m, double out[4]) {
   out[k + 1] = (r[k][i] + r[i][k]) * s;
 }
 
-int read(TrephineDevice* device, double, TrephineArmState* states) {
-  if (const int refused = beginExchange(device, states)) return refused;
-  Arms& arms = device->arms;
+}  // namespace
+
+struct TrephineDevice : Opened {
+  static constexpr const char *kName = "openhaptics", *kArm = "OpenHaptics arm";
+  static constexpr std::uint32_t kMostArms = trephine::openhaptics::kMostArms;
+
+  InUse alone;
+  std::vector<std::uint32_t> places;  // of its arms among the configured names
+  Arms arms;
+  Config config;
+  std::array<std::array<double, 3>, kMostArms> centre_m{};  // of the workspace
+  std::uint64_t given = 0;                                  // number of the last sample read
+
+  // The library finds no arms by itself: these are places for the names that a configuration gives.
+  static std::vector<std::uint32_t> find() {
+    (void)library();
+    return {0, 1};
+  }
+  static void describe(std::uint32_t place, TrephineArmInfo& info) {
+    copyText(info.bus_path, "openhaptics-" + std::to_string(place));
+    copyText(info.model, "Phantom or Touch");
+  }
+  explicit TrephineDevice(const std::vector<std::uint32_t>& chosen)
+      : places(chosen), arms(library(), silence) {}
+  std::size_t size() const { return places.size(); }
+
+  void configure(const char* json);
+  void capabilities(std::size_t arm, TrephineCapabilities& out);
+  void calibrate(std::size_t arm) { orRefuse(arms.calibrate(arm)); }
+  void start() {
+    given = 0;
+    orRefuse(arms.start(config.rate_hz));
+  }
+  void stop() { arms.stop(); }
+
+  int read(double, TrephineArmState* states);
+  int command(const Forces& forces_N);
+  bool waitForOther(double timeout_s) { return arms.waitForOther(given, timeout_s); }
+
+ private:
+  static void orRefuse(std::string why) {
+    if (!why.empty()) throw Refused{TREPHINE_ERROR_DEVICE, std::move(why)};
+  }
+};
+
+void TrephineDevice::configure(const char* json) {
+  Config read = parse(json, places);
+  configured = false;
+  std::string why = arms.open(read.names);
+  if (!why.empty()) throw Refused{TREPHINE_ERROR_NO_DEVICE, std::move(why)};
+  for (std::size_t arm = 0; arm < places.size(); ++arm) {
+    const std::array<double, 6> box_mm = arms.workspace_mm(arm);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      centre_m[arm][axis] = 0.5e-3 * (box_mm[axis + 3] + box_mm[axis]);
+    }
+  }
+  config = std::move(read);
+}
+
+void TrephineDevice::capabilities(std::size_t arm, TrephineCapabilities& out) {
+  out.input_dof = arms.integer(arm, kInputDof) >= 6 ? 6 : 3;
+  const std::array<double, 6> box_mm = arms.workspace_mm(arm);
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    out.workspace_m[axis] = 1e-3 * (box_mm[axis + 3] - box_mm[axis]);
+  }
+  out.peak_force_N = arms.number(arm, kNominalMaxForce);
+  out.continuous_force_N = std::min(out.peak_force_N, arms.number(arm, kNominalMaxContinuousForce));
+  out.thermal_s = 0.0;  // its driver watches its motors and says so
+  out.apparent_mass_kg = config.apparent_mass_kg;
+  out.encoder_step_m = config.encoder_step_m;
+  out.rate_hz = config.rate_hz;
+  out.latency_s = config.latency_s;
+}
+
+int TrephineDevice::read(double, TrephineArmState* states) {
   const Arms::Samples& samples = arms.latest();
-  device->given = samples.number;
-  for (std::size_t i = 0; i < device->places.size(); ++i) {
+  given = samples.number;
+  for (std::size_t i = 0; i < places.size(); ++i) {
     TrephineArmState& state = *element(states, i);
     const double* m = samples.of[i].transform;
-    state.sequence = device->given;
+    state.sequence = given;
     state.time_ns = samples.time_ns;
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      state.position_m[axis] = 1e-3 * m[12 + axis] - device->centre_m[i][axis];
+      state.position_m[axis] = 1e-3 * m[12 + axis] - centre_m[i][axis];
     }
     turnOf(m, state.orientation);
     state.buttons = std::uint32_t(samples.of[i].buttons);
@@ -266,79 +186,21 @@ int read(TrephineDevice* device, double, TrephineArmState* states) {
     if (arms.hadError(i)) state.flags |= TREPHINE_ARM_ERROR;
     if (!arms.lost(i)) continue;
     state.flags |= TREPHINE_ARM_LOST;
-    device->error = "An OpenHaptics arm reports a fault: check its cable and power, and try again.";
+    error = "An OpenHaptics arm reports a fault: check its cable and power, and try again.";
   }
   return TREPHINE_OK;
 }
 
-int write(TrephineDevice* device, const TrephineArmCommand* commands) {
-  const std::uint32_t silences = device ? device->silence.asked() : 0;
-  if (const int refused = beginExchange(device, commands)) return refused;
-  std::array<std::array<double, 3>, kMostArms> forces_N{};
-  bool refused = false;
-  for (std::size_t i = 0; i < device->places.size(); ++i) {
-    const double* force_N = element(commands, i)->force_N;
-    if (finite(force_N, 3)) {
-      std::copy_n(force_N, 3, forces_N[i].begin());
-    } else {
-      refused = true;
-    }
+int TrephineDevice::command(const Forces& forces_N) {
+  std::array<std::array<double, 3>, kMostArms> sent_N{};
+  for (std::size_t i = 0; i < kMostArms; ++i) {
+    if (forces_N[i]) std::copy_n(forces_N[i], 3, sent_N[i].begin());
   }
-  device->arms.command(forces_N);
-  return endWrite(device, silences, commands, device->places.size(), refused);
-}
-
-int wait(TrephineDevice* device, double timeout_s) {
-  if (!device || !device->running || !(timeout_s >= 0.0)) return TREPHINE_ERROR_ARGUMENT;
-  return device->arms.waitForOther(device->given, std::min(timeout_s, 1.0))
-             ? TREPHINE_OK
-             : TREPHINE_ERROR_TIMEOUT;
-}
-
-int stop(TrephineDevice* device) {
-  if (!device) return TREPHINE_ERROR_ARGUMENT;
-  device->running = false;
-  device->arms.stop();
+  arms.command(sent_N);
   return TREPHINE_OK;
 }
-
-// The next frame sends zero.
-void safeStop(TrephineDevice* device) {
-  if (device) device->silence.ask();
-}
-
-const char* lastError(TrephineDevice* device) {
-  return device ? device->error : open_error.c_str();
-}
-
-void close(TrephineDevice* device) {
-  if (!device) return;
-  stop(device);
-  delete device;
-  in_use = false;
-}
-
-const TrephineDeviceApi kApi = {sizeof(TrephineDeviceApi),
-                                TREPHINE_DEVICE_ABI,
-                                "openhaptics",
-                                enumerate,
-                                open,
-                                configure,
-                                capabilities,
-                                calibrate,
-                                start,
-                                read,
-                                write,
-                                wait,
-                                nullptr,  // no simulated hand
-                                stop,
-                                safeStop,
-                                lastError,
-                                close};
-
-}  // namespace
 
 extern "C" __attribute__((visibility("default"))) const TrephineDeviceApi* trephine_device_plugin(
     std::uint32_t host_abi) {
-  return host_abi == TREPHINE_DEVICE_ABI ? &kApi : nullptr;
+  return trephine::plugin::Plugin<TrephineDevice>::table(host_abi);
 }

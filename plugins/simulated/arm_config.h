@@ -3,7 +3,6 @@
 #pragma once
 
 #include <cstddef>
-#include <string>
 #include <vector>
 
 #include "simulated_arm.h"
@@ -105,9 +104,9 @@ struct DeviceConfig {
   Troubles troubles;
 };
 
-// Reads `text` for `n_arms` opened arms. False with one sentence in `error` that names the field
-// and its value: not JSON, another format or a newer version, an unknown or missing field, a wrong
-// type, an impossible number, a number without source, too few or too many arms.
-bool parseConfig(const char* text, std::size_t n_arms, DeviceConfig& config, std::string& error);
+// Reads `text` for `n_arms` opened arms. Throws plugin::Refused with one sentence that names the
+// field and its value: not JSON, another format or a newer version, an unknown or missing field, a
+// wrong type, an impossible number, a number without source, too few or too many arms.
+DeviceConfig parseConfig(const char* text, std::size_t n_arms);
 
 }  // namespace trephine::simulated
