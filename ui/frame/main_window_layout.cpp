@@ -13,7 +13,7 @@
 #include "ui/frame/main_window.h"
 #include "ui/headset/headset_view.h"
 #include "ui/headset/stereo_view.h"
-#include "ui/views/view_tools.h"
+#include "ui/views/view_strip.h"
 
 namespace trephine {
 

@@ -1,13 +1,61 @@
 #include "ui/prepare/entry_tool.h"
 
+#include <QPainter>
+#include <algorithm>
+#include <cmath>
+
 #include "exercise/entry_point.h"
+#include "ui/common/colours.h"
 
 namespace trephine {
 
 EntryTool::EntryTool(AppContext& app)
-    : QObject(&app), app_(app), workstation_(app.workstation()), views_(&app.views()) {
-  connect(views_, &FourUp::entryChosen, this, &EntryTool::place);
-  connect(views_, &FourUp::entryLeft, this, &EntryTool::leave);
+    : ViewTool({"sliceEntryTool",
+                Qt::Key_I,
+                {},
+                tr("Where the exercise enters: click, and drag to where the instrument comes from "
+                   "(I)"),
+                tr("Click where the exercise enters; drag to where the instrument comes from. Del: "
+                   "back to its own place."),
+                [](QPainter& painter) {  // an arrow into a surface
+                  painter.drawArc(QRectF(-1.0, 10.0, 20.0, 20.0), 30 * 16, 120 * 16);
+                  painter.drawLine(QPointF(9, 1.5), QPointF(9, 9));
+                  painter.drawPolyline(QPolygonF({{6.0, 6.0}, {9.0, 9.5}, {12.0, 6.0}}));
+                }},
+               nullptr),
+      app_(app),
+      workstation_(app.workstation()),
+      toolbox_(app.views().toolbox()) {
+  toolbox_.add(*this);
+  connect(&toolbox_, &Toolbox::taken, this, [this] { once_ = false; });
+}
+
+void EntryTool::useOnce() {
+  toolbox_.take(*this);
+  once_ = true;
+}
+
+void EntryTool::press(const ToolEvent& event) {
+  if (!event.slice) return place(event.at_mm, event.at_mm);
+  if (event.in_picture) pressed_ = event;
+}
+
+void EntryTool::release(const ToolEvent& event) {
+  const std::optional<ToolEvent> from = std::exchange(pressed_, {});
+  if (!from) return;
+  place(from->at_mm, isClick(from->in_widget, event.in_widget) ? from->at_mm : event.at_mm);
+}
+
+bool EntryTool::key(int key, const Vec3* point_mm) {
+  const bool here = key == Qt::Key_Return || key == Qt::Key_Enter;
+  if (here && point_mm) {
+    place(*point_mm, *point_mm);
+  } else if (key == Qt::Key_Delete || key == Qt::Key_Backspace) {
+    leave();
+  } else {
+    return false;
+  }
+  return true;
 }
 
 void EntryTool::place(const Vec3& at_mm, const Vec3& from_mm) {
@@ -28,7 +76,7 @@ void EntryTool::place(const Vec3& at_mm, const Vec3& from_mm) {
   const Landmark entry = placedAt(*landmark, at_mm, glm::normalize(outward));
   app_.unlessLost({AppContext::UnsavedWork::cuts}, [this, entry] {
     asked_ = workstation_.placeEntry(entry);
-    if (asked_ && wantsOne()) views_->setTool(SliceTool::window);
+    if (asked_ && once_) toolbox_.putDown();
     app_.say(asked_ ? tr("The exercise enters here now. Del: back to its own place.")
                     : tr("Busy: try again in a moment."));
   });
@@ -43,10 +91,33 @@ void EntryTool::leave() {
   });
 }
 
-void EntryTool::show() {
-  const auto frame = workstation_.viewLandmark();
-  if (!frame) return views_->setEntry({});
-  views_->setEntry(SliceView::Entry{frame->position_mm, frame->rotation * Vec3(0.0, 0.0, 1.0)});
+// A ring where the exercise enters and an arrow along which the instrument comes: thin and broken
+// where that is before or behind the slice.
+void EntryTool::paint(QPainter& painter, const SliceView& on) const {
+  constexpr double kArrow_mm = 30.0, kHead_pixels = 7.0;
+  const auto draw = [&](const QPointF& at, const QPointF& from, bool in_slice) {
+    const QPointF along = from - at;
+    const double long_pixels = std::hypot(along.x(), along.y());
+    const QPen pen =
+        in_slice ? QPen(colours::kAccent, 2.0) : QPen(colours::kAccent, 1.2, Qt::DotLine);
+    drawRimmed(painter, pen, in_slice ? 2.5 : 1.3, [&] {
+      painter.drawEllipse(at, 5.0, 5.0);
+      if (long_pixels < 2.0 * kHead_pixels) return;
+      const QPointF unit = along / long_pixels, aside(-unit.y(), unit.x());
+      const QPointF tip = at + 6.0 * unit;
+      painter.drawLine(tip, from);
+      painter.drawPolyline(QPolygonF({tip + kHead_pixels * (unit + 0.6 * aside), tip,
+                                      tip + kHead_pixels * (unit - 0.6 * aside)}));
+    });
+  };
+  if (pressed_ && pressed_->slice == &on && on.pointer()) {
+    return draw(pressed_->in_widget, *on.pointer(), true);
+  }
+  const auto entry = workstation_.viewLandmark();
+  if (!entry) return;
+  const Vec3 outward = entry->rotation * Vec3(0.0, 0.0, 1.0);
+  draw(on.fromPatient(entry->position_mm), on.fromPatient(entry->position_mm + kArrow_mm * outward),
+       on.offSlice_mm(entry->position_mm) <= std::max(1.0, 0.5 * on.stack().spacing_mm.z));
 }
 
 }  // namespace trephine

@@ -1,25 +1,30 @@
-// Where the exercise enters the open case, as a person clicks it in the views.
+// Where the exercise enters the open case, as a person clicks it in the views; in a slice a drag
+// says where the instrument comes from.
 #pragma once
 
-#include <QObject>
-#include <functional>
+#include <optional>
 #include <utility>
 
+#include "ui/views/view_tool.h"
 #include "ui/work/app_context.h"
 
 namespace trephine {
 
-class EntryTool : public QObject {
-  Q_OBJECT
+class EntryTool : public ViewTool {
  public:
   explicit EntryTool(AppContext& app);
 
-  // The tool goes once it was used.
-  std::function<bool()> wantsOne = [] { return false; };
-  // In the views, as the exercise is placed now.
-  void show();
+  // Takes it in hand until it was used.
+  void useOnce();
   // Whether the case was placed anew for it; asked once.
   bool takeAsked() { return std::exchange(asked_, false); }
+
+  bool worksIn3D() const override { return true; }
+  void press(const ToolEvent& event) override;
+  void release(const ToolEvent& event) override;
+  bool key(int key, const Vec3* point_mm) override;
+  bool giveUp() override { return std::exchange(pressed_, {}).has_value(); }
+  void paint(QPainter& painter, const SliceView& on) const override;
 
  private:
   // From nowhere: out of what was clicked.
@@ -28,8 +33,9 @@ class EntryTool : public QObject {
 
   AppContext& app_;
   Workstation& workstation_;
-  FourUp* views_;
-  bool asked_ = false;
+  Toolbox& toolbox_;
+  std::optional<ToolEvent> pressed_;
+  bool asked_ = false, once_ = false;
 };
 
 }  // namespace trephine

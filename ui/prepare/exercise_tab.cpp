@@ -38,16 +38,14 @@ ExerciseTab::ExerciseTab(AppContext& bench, ExerciseForm& form)
     : QObject(&bench),
       app_(bench),
       workstation_(bench.workstation()),
-      views_(&bench.views()),
+      toolbox_(bench.views().toolbox()),
+      outline_(bench),
       form_(&form) {
   form_->wanted = [this](const std::string& what, const auto& change) {
     return workstation_.edit(what, change);
   };
   connect(form_, &ExerciseForm::drawingWanted, this, &ExerciseTab::draw);
-  connect(form_, &ExerciseForm::entryWanted, this, [this] {
-    views_->setTool(SliceTool::entry);
-    entry_once_ = true;
-  });
+  connect(form_, &ExerciseForm::entryWanted, this, &ExerciseTab::entryWanted);
   connect(form_, &ExerciseForm::looksWanted, this, [this] {
     if (!workstation_.exercise()) return;
     const Status done = workstation_.edit("looks", [this](Exercise& exercise) {
@@ -78,13 +76,8 @@ ExerciseTab::ExerciseTab(AppContext& bench, ExerciseForm& form)
   connect(form_, &ExerciseForm::tryWanted, this, &ExerciseTab::tryIt);
   connect(form_, &ExerciseForm::exportWanted, this, &ExerciseTab::exportIt);
   connect(form_, &ExerciseForm::importWanted, this, &ExerciseTab::importIt);
-  connect(views_, &FourUp::structureClicked, this, [this](SliceTool tool, const Vec3& at_mm) {
-    if (tool == SliceTool::outline) outlineClicked(at_mm);
-  });
-  connect(views_, &FourUp::toolChanged, this, [this](SliceTool tool) {
-    form_->showDrawing(tool == SliceTool::outline);
-    entry_once_ = false;
-  });
+  connect(&toolbox_, &Toolbox::taken, this,
+          [this](ViewTool* tool) { form_->showDrawing(tool == &outline_); });
   connect(&workstation_, &Workstation::exerciseOpening, this,
           [this](const Exercise&, const std::filesystem::path& file) { opened_ = onDisk(file); });
   connect(&workstation_, &Workstation::caseOpened, this, &ExerciseTab::refresh);
@@ -137,39 +130,8 @@ QString ExerciseTab::caseWords() const {
 // --- The outline ---
 
 void ExerciseTab::draw(bool on) {
-  outline_first_.reset();
-  if (on == (views_->tool() == SliceTool::outline)) return;
-  views_->setTool(on ? SliceTool::outline : SliceTool::window);
-  if (on) app_.say(tr("Each click on the surface adds a point to the outline. Esc: done."));
-}
-
-void ExerciseTab::outlineClicked(const Vec3& at_mm) {
-  const std::optional<Placement>& placed = workstation_.placed();
-  if (!placed || placed->landmarks.empty()) return;
-  const std::vector<PlacedLandmark>& landmarks = placed->landmarks;
-  const Exercise& exercise = *workstation_.exercise();
-  // It goes with the landmark that is looked at, or the first.
-  const PlacedLandmark* with = &landmarks.front();
-  for (const PlacedLandmark& landmark : landmarks) {
-    if (landmark.id == exercise.view.landmark) with = &landmark;
-  }
-  if (!exercise.outline && !outline_first_) {
-    outline_first_ = at_mm;
-    return app_.say(tr("The first point is set: click the next."));
-  }
-  ExerciseOutline outline;
-  if (exercise.outline) {
-    const auto here = placedOutline(*exercise.outline, landmarks);
-    outline = here ? *here : *exercise.outline;
-  } else {
-    outline.points_mm = {*outline_first_};
-    outline.frame = ExerciseOutline::Frame{with->id, with->frame};
-  }
-  outline.points_mm.push_back(at_mm);
-  const Status done = workstation_.edit("outline", [&](Exercise& now) { now.outline = outline; });
-  if (!done) return app_.report(done.error());
-  outline_first_.reset();
-  app_.say(tr("The outline has %1 points. Esc: done.").arg(outline.points_mm.size()));
+  if (on == (&toolbox_.inHand() == &outline_)) return;
+  on ? toolbox_.take(outline_) : toolbox_.putDown();
 }
 
 // --- Saving, trying ---

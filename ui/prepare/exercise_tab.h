@@ -9,6 +9,7 @@
 #include <string>
 
 #include "ui/prepare/exercise_form.h"
+#include "ui/prepare/outline_tool.h"
 #include "ui/work/app_context.h"
 
 namespace trephine {
@@ -24,9 +25,6 @@ class ExerciseTab : public QObject {
   // `on_another_case`: in the place of one that was made on another case, which is asked otherwise.
   void save(bool copy, AppContext::Next then, bool on_another_case = false);
 
-  // The tool that places the entry goes once it was used.
-  bool wantsOneEntry() const { return entry_once_; }
-
   // Whether the case has the structures as they are now, and what gives it them.
   std::function<bool()> structuresInCase;
   std::function<void(AppContext::Next then)> saveInCase;
@@ -34,13 +32,13 @@ class ExerciseTab : public QObject {
  signals:
   void saved();
   void labelsWanted();  // structures of the case from a file
+  void entryWanted();   // the tool that places it, to be used once
 
  private:
   void refresh();
   QString caseWords() const;
   void takeElsewhere(const std::filesystem::path& file);
   void draw(bool on);
-  void outlineClicked(const Vec3& at_mm);
   std::optional<Exercise> exerciseToSave();
   bool isOwn() const;
   std::string freeName(const std::string& wanted) const;
@@ -58,12 +56,11 @@ class ExerciseTab : public QObject {
 
   AppContext& app_;
   Workstation& workstation_;
-  FourUp* views_;
+  Toolbox& toolbox_;
+  OutlineTool outline_;
   ExerciseForm* form_;
   bool in_front_ = false;
-  bool entry_once_ = false;            // the entry tool goes once it was used
-  std::optional<Vec3> outline_first_;  // the first point of a new outline
-  OnDisk opened_;                      // the exercise's file as it was opened, or saved, here
+  OnDisk opened_;  // the exercise's file as it was opened, or saved, here
 };
 
 }  // namespace trephine

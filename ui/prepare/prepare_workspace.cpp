@@ -75,7 +75,7 @@ void PrepareWorkspace::connectTabs() {
   connect(poke_, &PokeTab::frontWanted, tabs_, [this] { tabs_->setCurrentIndex(kTissueTab); });
   connect(structures_, &StructureTab::frontWanted, tabs_,
           [this] { tabs_->setCurrentIndex(kStructureTab); });
-  structures_->entry().wantsOne = [this] { return exercise_->wantsOneEntry(); };
+  connect(exercise_, &ExerciseTab::entryWanted, &structures_->entry(), &EntryTool::useOnce);
   exercise_->structuresInCase = [this] { return structures_->inCase(); };
   exercise_->saveInCase = [this](AppContext::Next then) {
     structures_->saveInCase(std::move(then));

@@ -4,6 +4,8 @@
 #include <QFileInfo>
 #include <QMessageBox>
 #include <QPushButton>
+#include <algorithm>
+#include <array>
 #include <utility>
 
 #include "ui/common/question.h"
@@ -24,6 +26,7 @@ StructureTab::StructureTab(AppContext& app, StructurePanel& structures, Structur
       app_(app),
       workstation_(app.workstation()),
       views_(&app.views()),
+      toolbox_(app.views().toolbox()),
       view_(&app.view()),
       structures_(structures),
       editor_(editor),
@@ -31,31 +34,14 @@ StructureTab::StructureTab(AppContext& app, StructurePanel& structures, Structur
       exports_(app, structures, editor),
       questions_(app),
       entry_(app) {
-  connect(&structures_, &StructurePanel::toolChosen, views_, &FourUp::setTool);
-  connect(&structures_, &StructurePanel::brushChanged, this,
-          [this] { views_->setBrushRadius(structures_.brushRadius_mm()); });
+  for (ViewTool* tool : structures_.tools()) toolbox_.add(*tool);
+  toolbox_.other_keys = [this](int of) { return key(of); };
+  connect(&structures_, &StructurePanel::toolChosen, this,
+          [this](ViewTool* tool) { tool ? toolbox_.take(*tool) : toolbox_.putDown(); });
+  connect(&toolbox_, &Toolbox::taken, this, &StructureTab::toolTaken);
   connect(&structures_, &StructurePanel::openWanted, this, &StructureTab::askForLabels);
   connect(&structures_, &StructurePanel::saveWanted, this, [this] { saveThen({}); });
-  connect(views_, &FourUp::toolChanged, this, &StructureTab::toolChanged);
-  connect(views_, &FourUp::structureClicked, this, [this](SliceTool tool, const Vec3& at_mm) {
-    if (tool == SliceTool::grow) {
-      editor_.growAt(at_mm, structures_.name(), structures_.growing());
-    } else if (tool == SliceTool::piece) {
-      editor_.keepPieceAt(at_mm);
-    }
-  });
-  connect(views_, &FourUp::boxDrawn, &editor_, &StructureEditor::limitTo);
-  connect(&editor_, &StructureEditor::boxChanged, this, [this] { views_->setBox(editor_.box()); });
-  connect(views_, &FourUp::strokeBegan, this, [this](const Vec3& at_mm, int across) {
-    const SliceTool tool = views_->tool();
-    const Brush brush = structures_.brush(tool, across);
-    if (tool == SliceTool::wall) return editor_.beginWall(at_mm, brush);
-    editor_.beginStroke(at_mm, brush, structures_.name());
-  });
-  connect(views_, &FourUp::strokeMoved, &editor_, &StructureEditor::moveStroke);
-  connect(views_, &FourUp::strokeEnded, &editor_, &StructureEditor::endStroke);
-  connect(views_, &FourUp::structureKey, this, &StructureTab::key);
-  connect(views_, &FourUp::nothingThere, this, [this] {
+  connect(view_, &ViewWidget::nothingThere, this, [this] {
     structures_.say(tr("Nothing solid is seen there: ghosts are passed through."));
   });
   connect(&structures_, &StructurePanel::lookWanted, &picture_, &TissuePicture::setLook);
@@ -102,7 +88,6 @@ StructureTab::StructureTab(AppContext& app, StructurePanel& structures, Structur
   });
   connect(&workstation_, &Workstation::structuresChanged, this, &StructureTab::showPlaced);
   connect(&workstation_, &Workstation::placingFailed, this, &StructureTab::placingFailed);
-  views_->setBrushRadius(structures_.brushRadius_mm());
 }
 
 void StructureTab::show(bool here, bool in_front) {
@@ -137,7 +122,7 @@ void StructureTab::showPlaced() {
   }
   if (app_.carved() && !app_.cutsUnsaved()) app_.showWholeCase();
   showViews();
-  entry_.show();
+  emit entry_.changed();
   if (entry_.takeAsked()) app_.lookAtCase();
   // Not by a dialog: it would come with every stroke.
   if (const auto& why = workstation_.placed()->error) structures_.say(toQt(why->sentence()));
@@ -154,7 +139,7 @@ void StructureTab::placingFailed() {
   start_when_placed_ = {};
   own_structures_ = workstation_.currentCase()->structures;
   editor_.giveBack();
-  entry_.show();
+  emit entry_.changed();
 }
 
 // Of those that came from a file: beside the window, which goes on.
@@ -172,7 +157,7 @@ void StructureTab::showOpened() {
   if (of.structures != own_structures_) showReport();
   if (of.structures != own_structures_ || !editor_.isOf(of.volume)) {  // not another exercise alone
     picture_.forgetLooks();
-    views_->setTool(SliceTool::window);  // what was in hand was for another case
+    toolbox_.putDown();  // what was in hand was for another case
     structures_.suitVoxels(of.volume->geometry.spacing_mm);
     editor_.setCase(of.volume, of.structures);
     in_case_ = editor_.changes();
@@ -182,7 +167,7 @@ void StructureTab::showOpened() {
   structures_.setWanted(workstation_.exercise()->structures);
   structures_.setSourceAtHand(exports_.sourceAtHand());
   showViews();
-  entry_.show();
+  emit entry_.changed();
   if (here_) (void)offerMissing();
 }
 
@@ -197,7 +182,7 @@ bool StructureTab::offerMissing() {
   }
   if (!lacks) return false;
   emit frontWanted();
-  views_->setTool(SliceTool::grow);
+  toolbox_.take(*structures_.tools()[0]);
   structures_.say(tr("The exercise needs the structure \"%1\", which the case lacks: click into "
                       "it, well inside. Or start at once: tissue is then told by its HU.")
                        .arg(structures_.name()));
@@ -207,7 +192,7 @@ bool StructureTab::offerMissing() {
 void StructureTab::makeMissing() {
   app_.go(Place::prepare);
   emit frontWanted();
-  views_->setTool(SliceTool::grow);
+  toolbox_.take(*structures_.tools()[0]);
   structures_.offerWanted();
 }
 
@@ -234,46 +219,51 @@ void StructureTab::showViews() {
     if (views_->viewLayout().kind == ViewLayout::Kind::single && views_->viewLayout().large == 0) {
       views_->setLayout({ViewLayout::Kind::four, 0});  // they are made in slices
     }
-  } else if (isForStructures(views_->tool())) {
-    views_->setTool(SliceTool::window);
+  } else if (structures_.holds(toolbox_.inHand())) {
+    toolbox_.putDown();
   }
 }
 
-void StructureTab::toolChanged(SliceTool tool) {
-  if (isForStructures(tool) && !here_) {
-    views_->setTool(SliceTool::window);
+void StructureTab::toolTaken(ViewTool* tool) {
+  const bool ours = structures_.holds(*tool);
+  if (ours && !here_) {
+    toolbox_.putDown();
     return app_.say(tr("Structures are made in Prepare (Ctrl+2)."));
   }
-  if (isForStructures(tool)) emit frontWanted();
-  structures_.showTool(tool);
-  if (tool == SliceTool::entry) {
-    app_.say(
-        tr("Click where the exercise enters; drag to where the instrument comes from. Del: back to "
-           "its own place."));
-  }
+  if (ours) emit frontWanted();
+  structures_.showTool(*tool);
+  if (!ours && !tool->facts().hint.isEmpty()) app_.say(tool->facts().hint);
 }
 
-void StructureTab::key(int key) {
-  if (!here_ && key != Qt::Key_V && key != Qt::Key_Escape) {
-    return app_.say(tr("Structures are made in Prepare (Ctrl+2)."));
+bool StructureTab::key(int key) {
+  constexpr std::array kKeys{Qt::Key_K,           Qt::Key_S,     Qt::Key_V,
+                             Qt::Key_Return,      Qt::Key_Enter, Qt::Key_BracketLeft,
+                             Qt::Key_BracketRight};
+  if (std::ranges::count(kKeys, key) == 0) return false;
+  if (!here_ && key != Qt::Key_V) {
+    app_.say(tr("Structures are made in Prepare (Ctrl+2)."));
+    return true;
   }
   switch (key) {
     case Qt::Key_K:
       emit frontWanted();
-      return editor_.makeSkull();
+      editor_.makeSkull();
+      break;
     case Qt::Key_S:
       emit frontWanted();
-      return structures_.makeSkin();
+      structures_.makeSkin();
+      break;
     case Qt::Key_V:
-      return structures_.nextLook();
-    case Qt::Key_Escape:
-      return editor_.preview() ? editor_.leavePreview() : views_->setTool(SliceTool::window);
+      structures_.nextLook();
+      break;
     case Qt::Key_BracketLeft:
     case Qt::Key_BracketRight:
-      return structures_.stepRadius(key == Qt::Key_BracketRight ? 1 : -1);
+      structures_.stepRadius(key == Qt::Key_BracketRight ? 1 : -1);
+      break;
     default:
       editor_.takePreview();
   }
+  return true;
 }
 
 // What was grown and reaches too far, perhaps, before an exercise runs on it.

@@ -52,8 +52,8 @@ class StructureTab : public QObject {
   void showReport();
   void showLabels();
   void showViews();
-  void toolChanged(SliceTool tool);
-  void key(int key);
+  void toolTaken(ViewTool* tool);
+  bool key(int key);
   void askAboutPreview(AppContext::Next go_on);
   void saveThen(AppContext::Next then);
   void unlessLost(AppContext::Next go_on);
@@ -61,6 +61,7 @@ class StructureTab : public QObject {
   AppContext& app_;
   Workstation& workstation_;
   FourUp* views_;
+  Toolbox& toolbox_;
   ViewWidget* view_;
   StructurePanel& structures_;
   StructureEditor& editor_;

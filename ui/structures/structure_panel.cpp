@@ -47,29 +47,13 @@ void StructurePanel::setWanted(const std::vector<std::string>& names) {
   showList();
 }
 
-void StructurePanel::showTool(SliceTool tool) {
-  tool_ = tool;
-  for (std::size_t n = 0; n < tools_.size(); ++n) tools_[n]->setChecked(kToolButtons[n] == tool);
+void StructurePanel::showTool(const ViewTool& tool) {
+  for (std::size_t n = 0; n < tools_.size(); ++n) tool_buttons_[n]->setChecked(tools_[n] == &tool);
+  hint_ = holds(tool) ? tool.facts().hint : QString();
   say({});
 }
 
-QString StructurePanel::hint() const {
-  switch (tool_) {
-    case SliceTool::grow:
-      return tr("Click into the organ, well inside. Drag a box first where it runs on.");
-    case SliceTool::brush:
-    case SliceTool::eraser:
-      return tr("Drag in a slice or over what is seen in 3-D; [ and ] change the size.");
-    case SliceTool::wall:
-      return tr("Paint where growing has to stop, then grow again (G).");
-    case SliceTool::piece:
-      return tr("Click the piece that stays.");
-    default:
-      return {};
-  }
-}
-
-Brush StructurePanel::brush(SliceTool tool, int across) const {
+Brush StructurePanel::brush(bool erase, int across) const {
   Brush brush;
   brush.shape = shape_->currentIndex() == 0 ? Brush::Shape::ball : Brush::Shape::disc;
   brush.radius_mm = radius_->wanted();
@@ -77,7 +61,7 @@ Brush StructurePanel::brush(SliceTool tool, int across) const {
   if (only_hu_->isChecked()) {
     brush.hu = HuSpan{double(hu_low_->wanted()), double(hu_high_->wanted())};
   }
-  brush.erase = tool == SliceTool::eraser;
+  brush.erase = erase;
   return brush;
 }
 
@@ -141,7 +125,7 @@ void StructurePanel::chooseColour(int label) {
 }
 
 void StructurePanel::say(const QString& text) {
-  said_->setText(text.isEmpty() ? hint() : text);
+  said_->setText(text.isEmpty() ? hint_ : text);
 }
 
 void StructurePanel::offerWanted() {
@@ -264,7 +248,7 @@ void StructurePanel::nextLook(int label) {
 void StructurePanel::showState() {
   const bool at_hand = editor_.hasCase(), busy = editor_.busy();
   const bool chosen = at_hand && editor_.current() != 0;
-  for (QToolButton* tool : tools_) tool->setEnabled(at_hand);
+  for (QToolButton* tool : tool_buttons_) tool->setEnabled(at_hand);
   for (QToolButton* tool : {skull_button_, skin_button_}) tool->setEnabled(at_hand && !busy);
   for (QToolButton* tool : {fill_, smooth_button_, shell_button_, delete_}) {
     tool->setEnabled(chosen && !busy);

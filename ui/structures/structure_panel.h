@@ -14,12 +14,13 @@
 #include <QStackedLayout>
 #include <QToolButton>
 #include <QTreeWidget>
+#include <algorithm>
 #include <array>
 
 #include "ui/common/number_field.h"
 #include "ui/structures/structure_editor.h"
 #include "ui/structures/structure_look_row.h"
-#include "ui/views/slice_view.h"
+#include "ui/views/view_tool.h"
 
 namespace trephine {
 
@@ -33,12 +34,15 @@ class StructurePanel : public QWidget {
   void setSourceAtHand(bool at_hand) { for_source_->setEnabled(at_hand); }
   // Names that the exercise needs and the case lacks come first among those that are offered.
   void setWanted(const std::vector<std::string>& names);
-  void showTool(SliceTool tool);
+  // Those that are chosen here; and the one that the views have in hand, of these or another.
+  const std::array<ViewTool*, 5>& tools() const { return tools_; }
+  bool holds(const ViewTool& tool) const { return std::ranges::count(tools_, &tool) > 0; }
+  void showTool(const ViewTool& tool);
   // How the 3-D view shows them.
   void showLooks(const std::vector<SeenStructure>& seen);
   void nextLook();  // of the chosen one: shown, ghosted, hidden
   // What a click or a stroke of the chosen tool does.
-  Brush brush(SliceTool tool, int across) const;
+  Brush brush(bool erase, int across) const;
   GrowOptions growing() const;
   QString name() const;  // of what is made next
   double brushRadius_mm() const { return radius_->wanted(); }
@@ -50,7 +54,7 @@ class StructurePanel : public QWidget {
   void offerWanted();  // the first that the exercise lacks, as the next one's name
 
  signals:
-  void toolChosen(trephine::SliceTool tool);
+  void toolChosen(trephine::ViewTool* tool);  // null: put down
   void brushChanged();
   void lookWanted(int label, trephine::TissueLook look);
   void colourChosen(int label, const trephine::Vec3& colour);
@@ -65,8 +69,6 @@ class StructurePanel : public QWidget {
  private:
   static constexpr int kNameColumn = 0, kMlColumn = 1, kLookColumn = 2;
   static constexpr int kProgressSteps = 1000;
-  static constexpr std::array kToolButtons{SliceTool::grow, SliceTool::wall, SliceTool::piece,
-                                           SliceTool::brush, SliceTool::eraser};
 
   void build();  // structure_panel_layout.cpp
   QLayout* buildTools();
@@ -74,7 +76,6 @@ class StructurePanel : public QWidget {
   QMenu* buildSaving();
   void buildListMenu();
   void buildBoxLine(QWidget* parent);
-  QString hint() const;  // what the tool in hand does
   void showList();
   void showState();
   void showBox();
@@ -92,7 +93,8 @@ class StructurePanel : public QWidget {
   QLabel* no_room_;
   std::vector<SeenStructure> seen_;
   QComboBox* name_;
-  std::array<QToolButton*, 5> tools_;  // as kToolButtons
+  std::array<ViewTool*, 5> tools_;
+  std::array<QToolButton*, 5> tool_buttons_;
   DecimalField *open_, *radius_, *smooth_, *shell_, *skin_;
   WholeNumberField *hu_low_, *hu_high_;
   QComboBox* shape_;
@@ -108,7 +110,7 @@ class StructurePanel : public QWidget {
   QProgressBar* progress_;
   std::vector<std::string> wanted_;
   bool listing_ = false;
-  SliceTool tool_ = SliceTool::window;
+  QString hint_;  // what the tool in hand does
 };
 
 }  // namespace trephine

@@ -11,7 +11,7 @@
 
 #include "ui/common/colours.h"
 #include "ui/common/words.h"
-#include "ui/structures/structure_panel.h"
+#include "ui/structures/structure_tool.h"
 
 namespace trephine {
 
@@ -256,23 +256,19 @@ void StructurePanel::buildBoxLine(QWidget* parent) {
 }
 
 QLayout* StructurePanel::buildTools() {
-  tools_ = {button("structureGrow", tr("Grow"),
-                   tr("Click into an organ: what hangs together with it is taken. Drag a box that "
-                      "it keeps to (G)")),
-            button("structureWall", tr("Wall"),
-                   tr("Paint where growing stops; it is in no exercise and no file (L)")),
-            button("structurePiece", tr("Keep piece"),
-                   tr("Click the piece that stays; the rest of the chosen one goes (P)")),
-            button("structureBrush", tr("Brush"), tr("Paint the chosen structure (B)")),
-            button("structureEraser", tr("Eraser"), tr("Take away from the chosen one (E)"))};
+  tools_ = {growTool(editor_, *this), brushTool(Stroke::wall, editor_, *this),
+            pieceTool(editor_, *this), brushTool(Stroke::brush, editor_, *this),
+            brushTool(Stroke::eraser, editor_, *this)};
   auto* row = new QGridLayout;
   row->setSpacing(4);
   for (int n = 0; n < int(tools_.size()); ++n) {
-    QToolButton* tool = tools_[std::size_t(n)];
-    tool->setCheckable(true);
-    row->addWidget(tool, n / kToolsInARow, n % kToolsInARow);
-    connect(tool, &QToolButton::clicked, this,
-            [this, n](bool on) { emit toolChosen(on ? kToolButtons[n] : SliceTool::window); });
+    ViewTool* tool = tools_[std::size_t(n)];
+    QToolButton* taken = button(tool->facts().name, tool->facts().text, tool->facts().tip);
+    taken->setCheckable(true);
+    row->addWidget(taken, n / kToolsInARow, n % kToolsInARow);
+    connect(taken, &QToolButton::clicked, this,
+            [this, tool](bool on) { emit toolChosen(on ? tool : nullptr); });
+    tool_buttons_[std::size_t(n)] = taken;
   }
   open_ = millimetres("growOpen", GrowOptions().open_mm, 0.0, 50.0, this);
   open_->setToolTip(

@@ -36,24 +36,15 @@ std::optional<int> placeOf(const std::array<const char*, N>& names, const QStrin
 FourUp::FourUp(QWidget* parent) : QWidget(parent) {
   setObjectName("views");
   setMinimumSize(320, 240);
-  three_d_ = new ViewWidget(this);
+  three_d_ = new ViewWidget(toolbox_, this);
   three_d_->setMinimumSize(60, 60);
   three_d_->setMirror(mirror_);
   three_d_->installEventFilter(this);
   setFocusProxy(three_d_);
-  connect(three_d_, &ViewWidget::structureClicked, this, &FourUp::structureClicked);
-  connect(three_d_, &ViewWidget::strokeBegan, this, &FourUp::strokeBegan);
-  connect(three_d_, &ViewWidget::strokeMoved, this, &FourUp::strokeMoved);
-  connect(three_d_, &ViewWidget::strokeEnded, this, &FourUp::strokeEnded);
-  connect(three_d_, &ViewWidget::structureKey, this, &FourUp::structureKey);
-  connect(three_d_, &ViewWidget::entryChosen, this, &FourUp::entryChosen);
-  connect(three_d_, &ViewWidget::entryLeft, this, &FourUp::entryLeft);
-  connect(three_d_, &ViewWidget::nothingThere, this, &FourUp::nothingThere);
   for (SliceAxis axis : kSliceAxes) slices_[std::size_t(axis)] = makeSlices(axis);
-  bar_ = new SliceBar(this);
+  bar_ = new SliceBar(toolbox_, this);
   bar_->setObjectName("sliceBar");
   bar_->setAutoFillBackground(true);
-  connect(bar_, &SliceBar::toolChosen, this, &FourUp::setTool);
   connect(bar_, &SliceBar::windowChosen, this, &FourUp::setWindow);
   connect(bar_, &SliceBar::overlayChosen, this, &FourUp::setOverlay);
   four_ = makeAction("fourViews", tr("&Four views"), Qt::Key_F6,
@@ -68,7 +59,6 @@ FourUp::FourUp(QWidget* parent) : QWidget(parent) {
   // Until it has painted the 3-D view cannot say whether it can.
   connect(three_d_, &ViewWidget::framePainted, this, &FourUp::restore,
           Qt::ConnectionType(Qt::QueuedConnection | Qt::SingleShotConnection));
-  setTool(SliceTool::window);
   setWindow(colours_.window());
   setOverlay(colours_.overlay(), colours_.opacity());
   arrange();
@@ -90,7 +80,7 @@ FourUp::Slices FourUp::makeSlices(SliceAxis axis) {
   Slices made;
   made.box = new QWidget(this);
   made.box->setAutoFillBackground(true);
-  made.view = new SliceView(axis, mirror_, colours_, made.box);
+  made.view = new SliceView(axis, mirror_, colours_, toolbox_, made.box);
   made.view->setObjectName(name);
   made.view->installEventFilter(this);
   made.view->setAccessibleName(tr("%1 slices").arg(name));
@@ -108,20 +98,11 @@ FourUp::Slices FourUp::makeSlices(SliceAxis axis) {
   layout->addWidget(made.slider);
   connect(made.view, &SliceView::pointChosen, this, &FourUp::setPoint);
   connect(made.view, &SliceView::windowChosen, this, &FourUp::setWindow);
-  connect(made.view, &SliceView::toolChosen, this, &FourUp::setTool);
   connect(made.view, &SliceView::overlayWanted, this, [this] {
     const int kinds = mirror_->labels() ? 3 : 2;
     setOverlay(Overlay((int(colours_.overlay()) + 1) % kinds), colours_.opacity());
   });
-  connect(made.view, &SliceView::structureClicked, this, &FourUp::structureClicked);
-  connect(made.view, &SliceView::boxDrawn, this, &FourUp::boxDrawn);
-  connect(made.view, &SliceView::entryChosen, this, &FourUp::entryChosen);
-  connect(made.view, &SliceView::entryLeft, this, &FourUp::entryLeft);
   connect(made.view, &SliceView::workspaceMoved, this, &FourUp::workspaceMoved);
-  connect(made.view, &SliceView::strokeBegan, this, &FourUp::strokeBegan);
-  connect(made.view, &SliceView::strokeMoved, this, &FourUp::strokeMoved);
-  connect(made.view, &SliceView::strokeEnded, this, &FourUp::strokeEnded);
-  connect(made.view, &SliceView::structureKey, this, &FourUp::structureKey);
   connect(made.view, &SliceView::enlargeWanted, this, [this, axis] { enlarge(int(axis) + 1); });
   connect(made.view, &SliceView::sliceShown, made.slider, [slider = made.slider](int k) {
     const QSignalBlocker quiet(slider);
@@ -230,23 +211,6 @@ void FourUp::setWindow(const HuWindow& window) {
   for (const Slices& of : slices_) of.view->coloursChanged();
 }
 
-void FourUp::setTool(SliceTool tool) {
-  const bool another = std::exchange(tool_, tool) != tool;
-  bar_->showTool(tool);
-  for (const Slices& of : slices_) of.view->setTool(tool);
-  three_d_->setTool(tool);
-  if (another) emit toolChanged(tool);
-}
-
-void FourUp::setBrushRadius(double mm) {
-  for (const Slices& of : slices_) of.view->setBrushRadius(mm);
-  three_d_->setBrushRadius(mm);
-}
-
-void FourUp::setBox(const std::optional<VoxelBox>& box) {
-  for (const Slices& of : slices_) of.view->setBox(box);
-}
-
 const QWidget* FourUp::bar() const {
   return bar_;
 }
@@ -254,10 +218,6 @@ const QWidget* FourUp::bar() const {
 void FourUp::setWorkspaces(const std::vector<WorkspaceBox>& boxes) {
   for (const Slices& of : slices_) of.view->setWorkspaces(boxes);
   three_d_->setWorkspaces(boxes);
-}
-
-void FourUp::setEntry(const std::optional<SliceView::Entry>& entry) {
-  for (const Slices& of : slices_) of.view->setEntry(entry);
 }
 
 void FourUp::setOverlay(Overlay overlay, double opacity) {
@@ -398,7 +358,7 @@ bool FourUp::eventFilter(QObject* watched, QEvent* event) {
   }
   if (watched == three_d_ && event->type() == QEvent::FocusIn) emit helpChanged({});
   if (watched == three_d_ && event->type() == QEvent::MouseButtonDblClick && !training_ &&
-      !isForStructures(tool_) && tool_ != SliceTool::entry && tool_ != SliceTool::outline &&
+      !toolbox_.inHand().worksIn3D() &&
       static_cast<QMouseEvent*>(event)->button() == Qt::LeftButton) {
     enlarge(0);
     return true;

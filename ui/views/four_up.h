@@ -8,6 +8,7 @@
 #include <array>
 
 #include "ui/views/slice_bar.h"
+#include "ui/views/slice_view.h"
 #include "ui/views/view_widget.h"
 
 namespace trephine {
@@ -55,13 +56,8 @@ class FourUp : public QWidget {
   // While an exercise runs a double click in the 3-D view is a hand's.
   void setTraining(bool training) { training_ = training; }
 
-  // What the mouse does in the slices and, of those for structures, in 3-D; `mm`: of the brush.
-  void setTool(SliceTool tool);
-  SliceTool tool() const { return tool_; }
-  void setBrushRadius(double mm);
-  // Of the slices, as SliceView has them.
-  void setBox(const std::optional<VoxelBox>& box);
-  void setEntry(const std::optional<SliceView::Entry>& entry);
+  // What the mouse does in the slices and in 3-D.
+  Toolbox& toolbox() { return toolbox_; }
   // Where arms reach, in all four; the chosen one is dragged in the slices.
   void setWorkspaces(const std::vector<WorkspaceBox>& boxes);
   // Above the views: what lies over them stays below it.
@@ -99,18 +95,7 @@ class FourUp : public QWidget {
  signals:
   // What mouse and keys do where the focus went; empty in the 3-D view.
   void helpChanged(const QString& words);
-  void toolChanged(trephine::SliceTool tool);
-  // Of the slices, as SliceView has them, and of the 3-D view.
-  void structureClicked(trephine::SliceTool tool, const trephine::Vec3& patient_mm);
-  void boxDrawn(const trephine::Vec3& from_mm, const trephine::Vec3& to_mm, int across);
-  void entryChosen(const trephine::Vec3& at_mm, const trephine::Vec3& from_mm);
-  void entryLeft();
-  void workspaceMoved(const trephine::Vec3& centre_mm, bool done);
-  void strokeBegan(const trephine::Vec3& patient_mm, int across);
-  void strokeMoved(const trephine::Vec3& patient_mm);
-  void strokeEnded();
-  void structureKey(int key);
-  void nothingThere();  // in 3-D, where a tool was to work
+  void workspaceMoved(const trephine::Vec3& centre_mm, bool done);  // as SliceView has it
 
  protected:
   void resizeEvent(QResizeEvent* event) override;
@@ -137,6 +122,7 @@ class FourUp : public QWidget {
   void changed();
   void setWindow(const HuWindow& window);
 
+  Toolbox toolbox_;
   int still_ = 0;
   std::shared_ptr<VolumeMirror> mirror_ = std::make_shared<VolumeMirror>();
   SliceColours colours_;
@@ -152,7 +138,6 @@ class FourUp : public QWidget {
   bool layout_used_ = false;  // of a workspace
   bool painted_ = false, restored_ = false;
   bool training_ = false;
-  SliceTool tool_ = SliceTool::window;
 };
 
 }  // namespace trephine

@@ -3,29 +3,35 @@
 
 #include <QButtonGroup>
 #include <QComboBox>
+#include <QHBoxLayout>
 #include <QSlider>
 #include <QWidget>
 
-#include "ui/views/slice_view.h"
+#include "ui/views/slice_image.h"
+#include "ui/views/toolbox.h"
 
 namespace trephine {
 
 class SliceBar : public QWidget {
   Q_OBJECT
  public:
-  explicit SliceBar(QWidget* parent = nullptr);
+  // The tools outlive it.
+  explicit SliceBar(Toolbox& toolbox, QWidget* parent = nullptr);
 
-  void showTool(SliceTool tool);
   void showWindow(const HuWindow& window);
   void showOverlay(Overlay overlay, double opacity);
   void setLabelsAtHand(bool at_hand);
 
  signals:
-  void toolChosen(trephine::SliceTool tool);
   void windowChosen(const trephine::HuWindow& window);
   void overlayChosen(trephine::Overlay overlay, double opacity);
 
  private:
+  void addTool(ViewTool* tool);
+  void showTool();
+
+  Toolbox& toolbox_;
+  QHBoxLayout* row_;
   QButtonGroup* tools_;
   QComboBox *windows_, *overlays_;
   QSlider* opacity_;

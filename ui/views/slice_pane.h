@@ -3,12 +3,11 @@
 // What the slice is, and what lies over it, is its subclasses' matter.
 #pragma once
 
+#include <QPainter>
 #include <QWidget>
 #include <optional>
 
 #include "ui/views/slice_plane.h"
-
-class QPainter;
 
 namespace trephine {
 
@@ -61,5 +60,16 @@ class SlicePane : public QWidget {
 // Words that can be read on black and on bone alike.
 void paintWords(QPainter& painter, const QRectF& inside, int alignment, const QString& words,
                 const QColor& colour);
+// Lines that can be seen on any picture: dark and broader by `rim` first, then with the pen.
+template <class Draw>
+void drawRimmed(QPainter& painter, const QPen& pen, double rim, const Draw& draw) {
+  painter.setBrush(Qt::NoBrush);
+  if (rim > 0.0) {
+    painter.setPen(QPen(QColor(0, 0, 0, 180), pen.widthF() + rim, pen.style()));
+    draw();
+  }
+  painter.setPen(pen);
+  draw();
+}
 
 }  // namespace trephine

@@ -146,6 +146,10 @@ Mirroring mirroringOf(const Mat3& direction) {
   return {across[mainAxis(across)] < 0.0, mainAxis(down) == 2 ? onwards > 0.0 : onwards < 0.0};
 }
 
+int axisAlong(const GridGeometry& grid, const Vec3& direction) {
+  return mainAxis(glm::transpose(grid.direction) * direction);
+}
+
 char patientLetter(const Vec3& direction) {
   const int axis = mainAxis(direction);
   return (direction[axis] > 0.0 ? "LPS" : "RAI")[axis];

@@ -40,6 +40,8 @@ struct Mirroring {
 Mirroring mirroringOf(const Mat3& direction);
 // The axis (0 to 2, of LPS) along which it mostly points.
 int mainAxis(const Vec3& direction);
+// The grid's axis that lies most along a direction.
+int axisAlong(const GridGeometry& grid, const Vec3& direction);
 // L, R, A, P, S or I: where in the patient the direction mostly points.
 char patientLetter(const Vec3& direction);
 

@@ -12,22 +12,27 @@
 namespace trephine {
 
 namespace {
-constexpr double kShortestDrag_pixels = 3.0;    // less is a click
-constexpr double kWidthPerPixel = 0.006;        // natural logarithm
-constexpr double kLevelPerPixel = 1.0 / 300.0;  // of the width
-constexpr double kWidest_HU = 8000.0;
-constexpr double kHighest_HU = 4000.0;
 constexpr int kLine_pixels = 2;       // what a line may cover beside its pixel
 constexpr double kGrab_pixels = 4.0;  // so near to a line a press takes hold of it
 }  // namespace
 
 SliceView::SliceView(SliceAxis axis, std::shared_ptr<VolumeMirror> mirror,
-                     const SliceColours& colours, QWidget* parent)
-    : SlicePane(parent), axis_(axis), mirror_(mirror), news_(mirror), colours_(colours) {
+                     const SliceColours& colours, Toolbox& tools, QWidget* parent)
+    : SlicePane(parent),
+      axis_(axis),
+      mirror_(mirror),
+      news_(mirror),
+      colours_(colours),
+      toolbox_(tools) {
   setFocusPolicy(Qt::StrongFocus);
   setMouseTracking(true);
   setMinimumSize(60, 60);
   setMessage(tr("No case is open."));
+  connect(&toolbox_, &Toolbox::taken, this, [this] {
+    showCursor(pointer_.value_or(QPointF(-1.0, -1.0)));
+    update();
+  });
+  connect(&toolbox_, &Toolbox::changed, this, qOverload<>(&SliceView::update));
 }
 
 void SliceView::takeChanges() {
@@ -38,7 +43,7 @@ void SliceView::takeChanges() {
     stack_ = mirror_->empty() ? GridGeometry{} : sliceStack(grid, axis_);
     if (!(stack_ == before)) {
       measures_.clear();
-      drawing_.reset();
+      (void)toolbox_.inHand().giveUp();
       fit();
     }
     setShape({stack_.size[0], stack_.size[1]}, {stack_.spacing_mm.x, stack_.spacing_mm.y});
@@ -87,48 +92,14 @@ void SliceView::setSlice(int k) {
   emit pointChosen(stack_.toPatient_mm(at));
 }
 
-void SliceView::setTool(SliceTool tool) {
-  tool_ = tool;
-  drawing_.reset();
-  showCursor(pointer_.value_or(QPointF(-1.0, -1.0)));
-  update();
-}
-
 void SliceView::setTools(const std::vector<ToolView>& tools) {
   const QRect before = toolsRect();
   tools_ = tools;
   update(before | toolsRect());
 }
 
-void SliceView::setBrushRadius(double mm) {
-  brush_mm_ = mm;
-  if (isBrush(tool_)) update();
-}
-
-void SliceView::setBox(const std::optional<VoxelBox>& box) {
-  box_ = box;
-  update();
-}
-
-void SliceView::setEntry(const std::optional<Entry>& entry) {
-  if (std::exchange(entry_, entry) != entry) update();
-}
-
-// Slices of a stack lie along axes of the grid.
 int SliceView::gridAxis() const {
-  const Mat3& grid = mirror_->volume().geometry.direction;
-  int most = 0;
-  for (int axis = 1; axis < 3; ++axis) {
-    const auto along = [&](int a) { return std::abs(glm::dot(grid[a], stack_.direction[2])); };
-    if (along(axis) > along(most)) most = axis;
-  }
-  return most;
-}
-
-QRect SliceView::brushRect() const {
-  if (!pointer_ || !isBrush(tool_)) return {};
-  const double more = brush_mm_ * pixelsPerMm() + 4.0;
-  return QRectF(*pointer_, *pointer_).adjusted(-more, -more, more, more).toAlignedRect();
+  return axisAlong(grid(), stack_.direction[2]);
 }
 
 Vec3 SliceView::toPatient_mm(const QPointF& in_widget) const {
@@ -168,15 +139,18 @@ bool SliceView::isShown(const Measure& measure) const {
 
 // --- Mouse and keys ---
 
-void SliceView::placePoint(const QPointF& in_widget) {
-  const QPointF at = toSlice(in_widget);
-  const Vec3 kept(std::clamp(at.x() - 0.5, 0.0, stack_.size[0] - 1.0),
-                  std::clamp(at.y() - 0.5, 0.0, stack_.size[1] - 1.0), slice_);
-  emit pointChosen(stack_.toPatient_mm(kept));
+Vec3 SliceView::nearestInSlice_mm(const Vec3& patient_mm) const {
+  const Vec3 at = toVoxel(stack_, patient_mm);
+  return stack_.toPatient_mm(Vec3(std::clamp(at.x, 0.0, stack_.size[0] - 1.0),
+                                  std::clamp(at.y, 0.0, stack_.size[1] - 1.0), slice_));
+}
+
+double SliceView::offSlice_mm(const Vec3& patient_mm) const {
+  return std::abs(toVoxel(stack_, patient_mm).z - slice_) * stack_.spacing_mm.z;
 }
 
 SliceView::Lines SliceView::linesAt(const QPointF& in_widget) const {
-  if (!hasSlice() || tool_ != SliceTool::window || !target().contains(in_widget)) return {};
+  if (!hasSlice() || !toolbox_.isEmptyHanded() || !target().contains(in_widget)) return {};
   const QPointF off = in_widget - fromPatient(point_mm_);
   return {std::abs(off.y()) <= kGrab_pixels, std::abs(off.x()) <= kGrab_pixels};
 }
@@ -229,7 +203,7 @@ void SliceView::showCursor(const QPointF& in_widget) {
   }
   const Lines lines = drag_ == Drag::lines ? held_ : linesAt(in_widget);
   if (!lines) {
-    setCursor(tool_ == SliceTool::window ? Qt::ArrowCursor : Qt::CrossCursor);
+    setCursor(toolbox_.inHand().cursor());
   } else {
     setCursor(!lines.down     ? Qt::SplitVCursor
               : !lines.across ? Qt::SplitHCursor
@@ -237,19 +211,14 @@ void SliceView::showCursor(const QPointF& in_widget) {
   }
 }
 
-void SliceView::addMeasurePoint(const QPointF& in_widget) {
-  const Vec3 point = toPatient_mm(in_widget);
-  if (!drawing_) {
-    drawing_ =
-        Measure{tool_ == SliceTool::ruler ? Measure::Kind::ruler : Measure::Kind::angle, {point}};
-  }
-  drawing_->points_mm.back() = point;
-  if (drawing_->complete()) {
-    measures_.push_back(*std::exchange(drawing_, {}));
-  } else {
-    drawing_->points_mm.push_back(point);
-  }
-  update();
+ToolEvent SliceView::eventAt(const QPointF& in_widget) {
+  ToolEvent event;
+  event.at_mm = event.inside_mm = toPatient_mm(in_widget);
+  event.across = gridAxis();
+  event.in_widget = in_widget;
+  event.in_picture = target().contains(in_widget);
+  event.slice = this;
+  return event;
 }
 
 void SliceView::mousePressEvent(QMouseEvent* event) {
@@ -257,104 +226,61 @@ void SliceView::mousePressEvent(QMouseEvent* event) {
   event->accept();
   pointer_ = pressed_ = event->position();
   if (!hasSlice() || event->button() != Qt::LeftButton) return;
-  if ((event->modifiers() & Qt::ShiftModifier) || tool_ == SliceTool::point) {
-    drag_ = Drag::point;
-    placePoint(event->position());
-  } else if (const WorkspaceBox* box = workspaceAt(event->position())) {
+  ViewTool& tool = event->modifiers() & Qt::ShiftModifier ? toolbox_.point() : toolbox_.inHand();
+  const bool points = &tool == &toolbox_.point();
+  const WorkspaceBox* box = points ? nullptr : workspaceAt(pressed_);
+  if (box) {
     drag_ = Drag::workspace;
     workspace_before_mm_ = box->centre_mm;
-  } else if (const Lines lines = linesAt(event->position())) {
+  } else if (const Lines lines = points ? Lines{} : linesAt(pressed_)) {
     drag_ = Drag::lines;
     held_ = lines;
     point_before_mm_ = point_mm_;
-  } else if (tool_ == SliceTool::window) {
-    drag_ = Drag::window;
-    window_before_ = colours_.window();
-  } else if (isBrush(tool_)) {
-    drag_ = Drag::stroke;
-    emit strokeBegan(toPatient_mm(event->position()), gridAxis());
-  } else if (tool_ == SliceTool::grow || tool_ == SliceTool::entry) {
-    if (target().contains(event->position())) {
-      drag_ = tool_ == SliceTool::grow ? Drag::box : Drag::entry;
-    }
-  } else if (isForStructures(tool_) || tool_ == SliceTool::outline) {
-    if (target().contains(event->position())) {
-      emit structureClicked(tool_, toPatient_mm(event->position()));
-    }
   } else {
-    if (tool_ == SliceTool::ruler) drag_ = Drag::ruler;
-    addMeasurePoint(event->position());
+    used_ = &tool;
+    tool.press(eventAt(pressed_));
+    update();
   }
 }
 
 void SliceView::mouseMoveEvent(QMouseEvent* event) {
-  const QRect ring = brushRect();
   pointer_ = event->position();
-  if (isBrush(tool_)) update(ring | brushRect());
-  const QPointF moved = event->position() - pressed_;
   if (!(event->buttons() & Qt::LeftButton)) {
-    if (drag_ == Drag::stroke) emit strokeEnded();
     drag_ = Drag::none;
+    if (used_ && !used_->giveUp()) used_->release(eventAt(*pointer_));  // the release was not ours
+    used_ = nullptr;
   }
-  if (drag_ == Drag::box || drag_ == Drag::entry) update();
-  if (drawing_) drawing_->points_mm.back() = toPatient_mm(event->position());
-  if (drag_ == Drag::point) {
-    placePoint(event->position());
-  } else if (drag_ == Drag::workspace) {
-    emit workspaceMoved(draggedWorkspace(event->position()), false);
+  if (drag_ == Drag::workspace) {
+    emit workspaceMoved(draggedWorkspace(*pointer_), false);
   } else if (drag_ == Drag::lines) {
-    if (!moved.isNull()) dragLines(moved);
-  } else if (drag_ == Drag::stroke) {
-    emit strokeMoved(toPatient_mm(event->position()));
-  } else if (drag_ == Drag::window && !moved.isNull()) {
-    const double width = window_before_.width_hu * std::exp(kWidthPerPixel * moved.x());
-    const double centre =
-        window_before_.centre_hu + kLevelPerPixel * moved.y() * window_before_.width_hu;
-    emit windowChosen({std::round(std::clamp(centre, -kHighest_HU, kHighest_HU)),
-                       std::round(std::clamp(width, 1.0, kWidest_HU))});
+    if (const QPointF moved = *pointer_ - pressed_; !moved.isNull()) dragLines(moved);
+  } else if (used_) {
+    used_->move(eventAt(*pointer_));
   } else {
+    if (hasSlice()) toolbox_.inHand().hover(eventAt(*pointer_));
     SlicePane::mouseMoveEvent(event);
   }
   event->accept();
-  if (!event->buttons() || drag_ == Drag::lines) showCursor(event->position());
+  if (!event->buttons() || drag_ == Drag::lines) showCursor(*pointer_);
   const int words = 3 * fontMetrics().height() + 14;  // where HU and tissue are written
-  drawing_ ? update() : update(0, height() - words, width(), words);
+  toolbox_.isEmptyHanded() ? update(0, height() - words, width(), words) : update();
 }
 
 void SliceView::mouseReleaseEvent(QMouseEvent* event) {
   if (event->button() != Qt::LeftButton) return;
-  if (drag_ == Drag::stroke) emit strokeEnded();
-  const Vec3 from = toPatient_mm(pressed_);
-  const bool click = isClick(event->position());
-  const Vec3 to = click ? from : toPatient_mm(event->position());
-  if (drag_ == Drag::box) {
-    click ? emit structureClicked(tool_, from) : emit boxDrawn(from, to, gridAxis());
+  if (std::exchange(drag_, Drag::none) == Drag::workspace) {
+    emit workspaceMoved(draggedWorkspace(event->position()), true);
   }
-  if (drag_ == Drag::entry) emit entryChosen(from, to);
-  if (drag_ == Drag::workspace) emit workspaceMoved(draggedWorkspace(event->position()), true);
-  if (drag_ == Drag::ruler && drawing_) {
-    if (!isClick(event->position())) {
-      addMeasurePoint(event->position());
-    } else {
-      drawing_.reset();
-      update();
-    }
+  if (ViewTool* tool = std::exchange(used_, nullptr)) {
+    tool->release(eventAt(event->position()));
+    update();
   }
-  drag_ = Drag::none;
-  if (tool_ == SliceTool::grow || tool_ == SliceTool::entry) update();
-}
-
-bool SliceView::isClick(const QPointF& released) const {
-  const QPointF moved = released - pressed_;
-  return std::hypot(moved.x(), moved.y()) < kShortestDrag_pixels;
 }
 
 void SliceView::mouseDoubleClickEvent(QMouseEvent* event) {
-  if (tool_ == SliceTool::angle || tool_ == SliceTool::entry || isForStructures(tool_) ||
-      event->button() != Qt::LeftButton) {
+  if (toolbox_.inHand().takesDoubleClicks() || event->button() != Qt::LeftButton) {
     return mousePressEvent(event);
   }
-  drag_ = Drag::none;
   emit enlargeWanted();
 }
 
@@ -369,114 +295,43 @@ void SliceView::wheelEvent(QWheelEvent* event) {
 }
 
 bool SliceView::handleKey(int key) {
+  if (toolbox_.useKey(key, &point_mm_) || toolbox_.takeByKey(key)) return true;
+  const auto go = [this](int k) {
+    setSlice(k);
+    return true;
+  };
   switch (key) {
     case Qt::Key_Up:
     case Qt::Key_Right:
-      setSlice(slice_ + 1);
-      break;
+      return go(slice_ + 1);
     case Qt::Key_Down:
     case Qt::Key_Left:
-      setSlice(slice_ - 1);
-      break;
+      return go(slice_ - 1);
     case Qt::Key_PageUp:
-      setSlice(slice_ + kPageOfSlices);
-      break;
+      return go(slice_ + kPageOfSlices);
     case Qt::Key_PageDown:
-      setSlice(slice_ - kPageOfSlices);
-      break;
+      return go(slice_ - kPageOfSlices);
     case Qt::Key_Home:
-      setSlice(0);
-      break;
+      return go(0);
     case Qt::Key_End:
-      setSlice(slices() - 1);
-      break;
-    case Qt::Key_W:
-      emit toolChosen(SliceTool::window);
-      break;
-    case Qt::Key_X:
-      emit toolChosen(SliceTool::point);
-      break;
-    case Qt::Key_M:
-      emit toolChosen(SliceTool::ruler);
-      break;
-    case Qt::Key_N:
-      emit toolChosen(SliceTool::angle);
-      break;
+      return go(slices() - 1);
     case Qt::Key_O:
       emit overlayWanted();
-      break;
-    case Qt::Key_I:
-      emit toolChosen(SliceTool::entry);
-      break;
-    case Qt::Key_L:
-      emit toolChosen(SliceTool::wall);
-      break;
-    case Qt::Key_G:
-      emit toolChosen(SliceTool::grow);
-      break;
-    case Qt::Key_B:
-      emit toolChosen(SliceTool::brush);
-      break;
-    case Qt::Key_E:
-      emit toolChosen(SliceTool::eraser);
-      break;
-    case Qt::Key_P:
-      emit toolChosen(SliceTool::piece);
-      break;
-    case Qt::Key_K:
-    case Qt::Key_S:
-    case Qt::Key_V:
-    case Qt::Key_Return:
-    case Qt::Key_Enter:
-      // Without a mouse: at the common point.
-      if (tool_ == SliceTool::outline) {
-        emit structureClicked(tool_, point_mm_);
-        break;
-      }
-      if (tool_ == SliceTool::entry) {
-        emit entryChosen(point_mm_, point_mm_);
-        break;
-      }
-      [[fallthrough]];
-    case Qt::Key_BracketLeft:
-    case Qt::Key_BracketRight:
-      emit structureKey(key);
-      break;
+      return true;
     case Qt::Key_Delete:
     case Qt::Key_Backspace: {
       const auto last = std::find_if(measures_.rbegin(), measures_.rend(),
                                      [&](const Measure& m) { return isShown(m); });
-      if (tool_ == SliceTool::entry) {
-        emit entryLeft();
-      } else if (drawing_) {
-        drawing_.reset();
-      } else if (last != measures_.rend()) {
-        measures_.erase(std::next(last).base());
-      }
+      if (last != measures_.rend()) measures_.erase(std::next(last).base());
       update();
-      break;
+      return true;
     }
-    case Qt::Key_Escape:
-      if (drawing_ || drag_ == Drag::box || drag_ == Drag::entry) {
-        drawing_.reset();
-        drag_ = Drag::none;
-        update();
-      } else if (isForStructures(tool_)) {
-        emit structureKey(key);  // what was grown goes first
-      } else if (tool_ != SliceTool::window) {
-        emit toolChosen(SliceTool::window);
-      } else {
-        return false;  // the window's: back to the hands
-      }
-      break;
-    default:
-      if (key >= Qt::Key_1 && key < Qt::Key_1 + int(kWindowPresets.size())) {
-        emit windowChosen(kWindowPresets[std::size_t(key - Qt::Key_1)].window);
-      } else {
-        return zoomKey(key);
-      }
   }
-  return true;
+  if (key >= Qt::Key_1 && key < Qt::Key_1 + int(kWindowPresets.size())) {
+    emit windowChosen(kWindowPresets[std::size_t(key - Qt::Key_1)].window);
+    return true;
+  }
+  return zoomKey(key) || toolbox_.other_keys(key);
 }
 
 // A key that is this view's is no shortcut of the window's meanwhile: Home, for one.
@@ -498,7 +353,7 @@ void SliceView::keyPressEvent(QKeyEvent* event) {
 }
 
 void SliceView::leaveEvent(QEvent*) {
-  if (drag_ != Drag::stroke) pointer_.reset();
+  if (!used_) pointer_.reset();
   update();
 }
 
@@ -510,7 +365,9 @@ void SliceView::focusInEvent(QFocusEvent*) {
 void SliceView::focusOutEvent(QFocusEvent* event) {
   // What was begun here is not what is wanted next; another program's window is no next.
   const Qt::FocusReason why = event->reason();
-  if (why != Qt::ActiveWindowFocusReason && why != Qt::PopupFocusReason) drawing_.reset();
+  if (why != Qt::ActiveWindowFocusReason && why != Qt::PopupFocusReason && !used_) {
+    (void)toolbox_.inHand().giveUp();
+  }
   update();
 }
 

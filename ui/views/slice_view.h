@@ -1,13 +1,10 @@
 // An axial, coronal or sagittal slice of what the mirror holds, as it is cut. It asks for what
 // concerns all views (the common point, window, tool) by signals and is told what came of it.
 //
-// Left drag does what the tool in hand does: window (right: wider, up: brighter), ruler, angle
-// (three clicks), common point; with Shift it moves the common point with any tool. Where the
-// window is in hand, a line of another view is dragged to another slice of that view. Wheel, Page
-// Up/Down, arrow keys, Home, End go through the slices. Del takes the last measure away, Esc gives
-// a tool up. The tools for structures and the entry point only say where they are used; what comes
-// of it is not the view's. Where one grows, a drag draws a box; where the entry point is placed, it
-// goes to where the instrument comes from.
+// Left drag is the tool's that is in hand; with Shift it moves the common point with any tool.
+// Where the window is in hand, a line of another view is dragged to another slice of that view.
+// Wheel, Page Up/Down, arrow keys, Home, End go through the slices. Del takes the last measure
+// away, Esc gives a tool up.
 #pragma once
 
 #include <QImage>
@@ -17,7 +14,7 @@
 #include "ui/views/slice_image.h"
 #include "ui/views/slice_measure.h"
 #include "ui/views/slice_pane.h"
-#include "ui/views/slice_tool.h"
+#include "ui/views/toolbox.h"
 #include "ui/views/workspace_box.h"
 
 namespace trephine {
@@ -28,9 +25,9 @@ QColor colourOf(SliceAxis axis);
 class SliceView : public SlicePane {
   Q_OBJECT
  public:
-  // `colours` outlives the view; coloursChanged() once they were.
+  // `colours` and `tools` outlive the view; coloursChanged() once they were.
   SliceView(SliceAxis axis, std::shared_ptr<VolumeMirror> mirror, const SliceColours& colours,
-            QWidget* parent = nullptr);
+            Toolbox& tools, QWidget* parent = nullptr);
 
   // What is new in the mirror. Draws only where the slice shows a voxel that changed.
   void takeChanges();
@@ -38,19 +35,10 @@ class SliceView : public SlicePane {
   void labelsChanged(const VoxelBox& box);  // of the mirror's labels
   // All three views show the slice that holds it.
   void setPoint(const Vec3& patient_mm);
-  void setTool(SliceTool tool);
   void setTools(const std::vector<ToolView>& tools);  // of the exercise
-  void setBrushRadius(double mm);                     // of the ring that shows it
-  void setBox(const std::optional<VoxelBox>& box);  // of the mirror's voxels, that growing keeps to
-  // Where the exercise enters, and the direction from which: an arrow.
-  struct Entry {
-    Vec3 at_mm{0.0}, outward{0.0};
-    friend bool operator==(const Entry&, const Entry&) = default;
-  };
-  void setEntry(const std::optional<Entry>& entry);
   // Where arms reach: the chosen one is dragged by its middle.
   void setWorkspaces(const std::vector<WorkspaceBox>& boxes);
-  void setSlice(int k);                               // asks for the point that lies in it
+  void setSlice(int k);  // asks for the point that lies in it
 
   SliceAxis axis() const { return axis_; }
   int slice() const { return slice_; }
@@ -63,27 +51,26 @@ class SliceView : public SlicePane {
   // HU, tissue and label under the pointer; empty where it is not over the volume.
   QString readout() const;
   const std::vector<Measure>& measures() const { return measures_; }
+  void addMeasure(const Measure& measure) { measures_.push_back(measure); }
+
+  // ---- For tools, while there is a case.
+  const HuWindow& window() const { return colours_.window(); }
+  const GridGeometry& grid() const { return mirror_->volume().geometry; }
+  int gridAxis() const;  // across which its slices lie
+  // The place of the slice's picture that is nearest to one of its plane.
+  Vec3 nearestInSlice_mm(const Vec3& patient_mm) const;
+  double offSlice_mm(const Vec3& patient_mm) const;  // along the normal, not below 0
+  const std::optional<QPointF>& pointer() const { return pointer_; }
+  void paintMeasure(QPainter& painter, const Measure& measure) const;
   // What the slice was drawn from, without what lies over it.
   int drawn() const { return drawn_; }  // how often it was, for tests
 
  signals:
   void pointChosen(const trephine::Vec3& patient_mm);
   void windowChosen(const trephine::HuWindow& window);
-  void toolChosen(trephine::SliceTool tool);
   void overlayWanted();  // the next kind of overlay
-  void structureClicked(trephine::SliceTool tool, const trephine::Vec3& patient_mm);
-  // Two corners of a rectangle in the slice.
-  void boxDrawn(const trephine::Vec3& from_mm, const trephine::Vec3& to_mm, int across);
-  // Of the exercise; `from_mm` is where the drag ended, the same place after a click.
-  void entryChosen(const trephine::Vec3& at_mm, const trephine::Vec3& from_mm);
-  void entryLeft();  // back to where the exercise says
   // The chosen workspace's middle, dragged in the slice; `done` when it is let go of.
   void workspaceMoved(const trephine::Vec3& centre_mm, bool done);
-  // `across`: the axis of the grid that this view's slices lie across.
-  void strokeBegan(const trephine::Vec3& patient_mm, int across);
-  void strokeMoved(const trephine::Vec3& patient_mm);
-  void strokeEnded();
-  void structureKey(int key);  // K, S, V, Return, [ and ]; Esc with a tool for them
   void sliceShown(int k);
   void enlargeWanted();
   void focused();
@@ -104,16 +91,10 @@ class SliceView : public SlicePane {
 
  private:
   bool handleKey(int key);
-  int gridAxis() const;
-  QRect brushRect() const;
-  void paintBrush(QPainter& painter) const;
-  void paintBox(QPainter& painter) const;
-  void paintEntry(QPainter& painter) const;
+  ToolEvent eventAt(const QPointF& in_widget);
   void paintWorkspaces(QPainter& painter) const;
   const WorkspaceBox* workspaceAt(const QPointF& in_widget) const;
   Vec3 draggedWorkspace(const QPointF& to) const;
-  bool isClick(const QPointF& released) const;
-  void placePoint(const QPointF& in_widget);
   struct Lines {  // of the other views
     bool across = false, down = false;
     explicit operator bool() const { return across || down; }
@@ -121,7 +102,6 @@ class SliceView : public SlicePane {
   Lines linesAt(const QPointF& in_widget) const;  // that a press there takes hold of
   void dragLines(const QPointF& moved);
   void showCursor(const QPointF& in_widget);
-  void addMeasurePoint(const QPointF& in_widget);
   bool isShown(const Measure& measure) const;
   struct ToolMark {  // in the widget
     QPointF tip, back;
@@ -132,8 +112,6 @@ class SliceView : public SlicePane {
   QRect toolsRect() const;  // what the marks of the tools cover
   void paintCross(QPainter& painter) const;
   void paintTools(QPainter& painter) const;
-  void paintMeasures(QPainter& painter) const;
-  void paintMeasure(QPainter& painter, const Measure& measure) const;
   void paintText(QPainter& painter) const;
 
   SliceAxis axis_;
@@ -148,29 +126,15 @@ class SliceView : public SlicePane {
   bool stale_ = true;
   int drawn_ = 0;
 
-  SliceTool tool_ = SliceTool::window;
+  Toolbox& toolbox_;
+  ViewTool* used_ = nullptr;  // while the button is down
   std::vector<ToolView> tools_;
   std::vector<Measure> measures_;
-  std::optional<Measure> drawing_;  // its last point follows the pointer
   std::optional<QPointF> pointer_;
   QPointF pressed_;
-  enum class Drag {
-    none,
-    window,
-    point,
-    lines,
-    ruler,
-    stroke,
-    box,
-    entry,
-    workspace
-  } drag_ = Drag::none;
-  double brush_mm_ = 5.0;
-  std::optional<VoxelBox> box_;
-  std::optional<Entry> entry_;
+  enum class Drag { none, lines, workspace } drag_ = Drag::none;  // without a tool
   std::vector<WorkspaceBox> workspaces_;
   Vec3 workspace_before_mm_{0.0};  // where it was taken hold of
-  HuWindow window_before_;
   Lines held_;
   Vec3 point_before_mm_{0.0};
   int turned_ = 0;  // of the wheel, since the last whole notch

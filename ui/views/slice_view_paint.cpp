@@ -66,11 +66,11 @@ void SliceView::paintOver(QPainter& painter) {
   paintCross(painter);
   painter.setRenderHint(QPainter::Antialiasing);
   paintTools(painter);
-  paintMeasures(painter);
-  paintBrush(painter);
-  if (tool_ == SliceTool::grow) paintBox(painter);
+  for (const Measure& measure : measures_) {
+    if (isShown(measure)) paintMeasure(painter, measure);
+  }
   paintWorkspaces(painter);
-  if (tool_ == SliceTool::entry) paintEntry(painter);
+  toolbox_.inHand().paint(painter, *this);
   paintText(painter);
   if (hasFocus()) {
     painter.setRenderHint(QPainter::Antialiasing, false);
@@ -105,9 +105,8 @@ void SliceView::paintCross(QPainter& painter) const {
 SliceView::ToolMark SliceView::markOf(const ToolView& tool) const {
   const Vec3 tip = tool.pose_mm.position;
   const Vec3 back = tip + tool.pose_mm.orientation * Vec3(0.0, 0.0, std::max(5.0, tool.length_mm));
-  const double off_mm = std::abs(toVoxel(stack_, tip).z - slice_) * stack_.spacing_mm.z;
   return {fromPatient(tip), fromPatient(back), std::max(5.0, tool.radius_mm * pixelsPerMm()),
-          off_mm <= std::max(tool.radius_mm, 0.5 * stack_.spacing_mm.z) + 1e-9};
+          offSlice_mm(tip) <= std::max(tool.radius_mm, 0.5 * stack_.spacing_mm.z) + 1e-9};
 }
 
 QRect SliceView::toolsRect() const {
@@ -129,82 +128,16 @@ void SliceView::paintTools(QPainter& painter) const {
     const ToolMark mark = markOf(tool);
     QColor colour = colours::of(tool.colour);
     if (!mark.in_slice) colour.setAlpha(150);
-    const auto draw = [&](const QColor& with, double thick) {
-      painter.setBrush(Qt::NoBrush);
-      painter.setPen(QPen(with, thick, mark.in_slice ? Qt::SolidLine : Qt::DotLine));
+    const QPen pen = mark.in_slice ? QPen(colour, 2.5) : QPen(colour, 1.2, Qt::DotLine);
+    drawRimmed(painter, pen, mark.in_slice ? 2.0 : 0.0, [&] {
       painter.drawLine(mark.tip, mark.back);
       painter.drawEllipse(mark.tip, mark.ring, mark.ring);
-    };
-    if (mark.in_slice) draw(QColor(0, 0, 0, 180), 4.5);
-    draw(colour, mark.in_slice ? 2.5 : 1.2);
+    });
     if (!mark.in_slice) continue;
     painter.setPen(Qt::NoPen);
     painter.setBrush(colour);
     painter.drawEllipse(mark.tip, 2.0, 2.0);
   }
-}
-
-// As large as what it takes.
-void SliceView::paintBrush(QPainter& painter) const {
-  if (!pointer_ || !isBrush(tool_)) return;
-  const double pixels = std::max(1.5, brush_mm_ * pixelsPerMm());
-  painter.setBrush(Qt::NoBrush);
-  const QColor colour = tool_ == SliceTool::eraser ? colours::kCaution : colours::kOnPicture;
-  for (const auto& [with, thick] : {std::pair(QColor(0, 0, 0, 180), 3.0), {colour, 1.2}}) {
-    painter.setPen(QPen(with, thick));
-    painter.drawEllipse(*pointer_, pixels, pixels);
-  }
-}
-
-// What growing keeps to, and the one that is being drawn: dotted in slices outside of it.
-void SliceView::paintBox(QPainter& painter) const {
-  const auto draw = [&](const QRectF& sides, Qt::PenStyle style) {
-    painter.setBrush(Qt::NoBrush);
-    for (const auto& [with, thick] :
-         {std::pair(QColor(0, 0, 0, 180), 3.0), std::pair(QColor(colours::kOnPicture), 1.2)}) {
-      painter.setPen(QPen(with, thick, style));
-      painter.drawRect(sides);
-    }
-  };
-  if (drag_ == Drag::box && pointer_ && !isClick(*pointer_)) {
-    draw(QRectF(pressed_, *pointer_).normalized(), Qt::DashLine);
-  }
-  if (!box_ || !hasSlice()) return;
-  const GridGeometry& grid = mirror_->volume().geometry;
-  const Vec3 low = Vec3(box_->low[0], box_->low[1], box_->low[2]) - 0.5;
-  const Vec3 high = Vec3(box_->high[0], box_->high[1], box_->high[2]) - 0.5;
-  const int axis = gridAxis();
-  const double here = toVoxel(grid, stack_.toPatient_mm(Vec3(0.0, 0.0, slice_)))[axis];
-  draw(QRectF(fromPatient(grid.toPatient_mm(low)), fromPatient(grid.toPatient_mm(high)))
-           .normalized(),
-       here >= low[axis] && here <= high[axis] ? Qt::DashLine : Qt::DotLine);
-}
-
-// A ring where the exercise enters and an arrow along which the instrument comes: thin and broken
-// where that is before or behind the slice.
-void SliceView::paintEntry(QPainter& painter) const {
-  constexpr double kArrow_mm = 30.0, kHead_pixels = 7.0;
-  const auto draw = [&](const QPointF& at, const QPointF& from, bool in_slice) {
-    const QPointF along = from - at;
-    const double long_pixels = std::hypot(along.x(), along.y());
-    painter.setBrush(Qt::NoBrush);
-    for (const auto& [with, thick] : {std::pair(QColor(0, 0, 0, 180), in_slice ? 4.5 : 2.5),
-                                      std::pair(QColor(colours::kAccent), in_slice ? 2.0 : 1.2)}) {
-      painter.setPen(QPen(with, thick, in_slice ? Qt::SolidLine : Qt::DotLine));
-      painter.drawEllipse(at, 5.0, 5.0);
-      if (long_pixels < 2.0 * kHead_pixels) continue;
-      const QPointF unit = along / long_pixels, aside(-unit.y(), unit.x());
-      const QPointF tip = at + 6.0 * unit;
-      painter.drawLine(tip, from);
-      painter.drawPolyline(QPolygonF({tip + kHead_pixels * (unit + 0.6 * aside), tip,
-                                      tip + kHead_pixels * (unit - 0.6 * aside)}));
-    }
-  };
-  if (drag_ == Drag::entry && pointer_) return draw(pressed_, *pointer_, true);
-  if (!entry_ || !hasSlice()) return;
-  const double off_mm = std::abs(toVoxel(stack_, entry_->at_mm).z - slice_) * stack_.spacing_mm.z;
-  draw(fromPatient(entry_->at_mm), fromPatient(entry_->at_mm + kArrow_mm * entry_->outward),
-       off_mm <= std::max(1.0, 0.5 * stack_.spacing_mm.z));
 }
 
 // Their edges as they lie over the slice, dotted where it does not cut the box, and what they are
@@ -228,10 +161,7 @@ void SliceView::paintWorkspaces(QPainter& painter) const {
       painter.drawLine(fromPatient(corners[std::size_t(a)]), fromPatient(corners[std::size_t(b)]));
     }
     const QPointF middle = fromPatient(box.centre_mm);
-    painter.setPen(QPen(QColor(0, 0, 0, 180), 4.0));
-    painter.drawEllipse(middle, 7.0, 7.0);
-    painter.setPen(QPen(colour, 2.0));
-    painter.drawEllipse(middle, 7.0, 7.0);
+    drawRimmed(painter, {colour, 2.0}, 2.0, [&] { painter.drawEllipse(middle, 7.0, 7.0); });
     if (box.chosen) {
       painter.drawLine(middle - QPointF(11, 0), middle + QPointF(11, 0));
       painter.drawLine(middle - QPointF(0, 11), middle + QPointF(0, 11));
@@ -239,23 +169,13 @@ void SliceView::paintWorkspaces(QPainter& painter) const {
   }
 }
 
-void SliceView::paintMeasures(QPainter& painter) const {
-  for (const Measure& measure : measures_) {
-    if (isShown(measure)) paintMeasure(painter, measure);
-  }
-  if (drawing_) paintMeasure(painter, *drawing_);
-}
-
 void SliceView::paintMeasure(QPainter& painter, const Measure& measure) const {
   QPolygonF line;
   for (const Vec3& point : measure.points_mm) line << fromPatient(point);
-  painter.setBrush(Qt::NoBrush);
-  for (const auto& [colour, thick] :
-       {std::pair(QColor(0, 0, 0, 180), 3.5), {colours::kCaution, 1.5}}) {
-    painter.setPen(QPen(colour, thick));
+  drawRimmed(painter, {colours::kCaution, 1.5}, 2.0, [&] {
     painter.drawPolyline(line);
     for (const QPointF& end : line) painter.drawEllipse(end, 3.0, 3.0);
-  }
+  });
   const bool angle = measure.kind == Measure::Kind::angle;
   if (angle && line.size() < 3) return;
   const QString words = angle ? tr("%1\u00b0").arg(angle_deg(measure), 0, 'f', 1)

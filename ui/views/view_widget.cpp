@@ -12,7 +12,7 @@
 #include "ui/common/colours.h"
 #include "ui/common/event_loop.h"
 #include "ui/views/steps.h"
-#include "ui/views/view_tools.h"
+#include "ui/views/view_strip.h"
 
 namespace trephine {
 
@@ -43,11 +43,12 @@ bool looksAlike(const ToolView& a, const ToolView& b) {
 
 }  // namespace
 
-ViewWidget::ViewWidget(QWidget* parent)
+ViewWidget::ViewWidget(Toolbox& toolbox, QWidget* parent)
     : QOpenGLWidget(parent),
+      toolbox_(toolbox),
       hint_(new QLabel(this)),
       level_(new QLabel(this)),
-      strip_(new ViewTools(this)) {
+      strip_(new ViewStrip(this)) {
   setObjectName("view");
   setAccessibleName(tr("3-D view"));
   setFocusPolicy(Qt::StrongFocus);
@@ -66,6 +67,8 @@ ViewWidget::ViewWidget(QWidget* parent)
   level_->setWordWrap(true);
   strip_->hide();
   connectTools();
+  connect(&toolbox_, &Toolbox::taken, this, &ViewWidget::showCursor);
+  connect(&toolbox_, &Toolbox::changed, this, &ViewWidget::showCursor);
   still_.setObjectName("still");
   still_.setSingleShot(true);
   connect(&still_, &QTimer::timeout, this, [this] {
@@ -129,34 +132,34 @@ void ViewWidget::resizeGL(int, int) {
 }
 
 void ViewWidget::connectTools() {
-  connect(strip_, &ViewTools::viewWanted, this, [this](StandardView side) {
+  connect(strip_, &ViewStrip::viewWanted, this, [this](StandardView side) {
     renderer_.lookFrom(side);
     redraw();
   });
-  connect(strip_, &ViewTools::parallelWanted, this, [this](bool on) {
+  connect(strip_, &ViewStrip::parallelWanted, this, [this](bool on) {
     renderer_.setParallel(on);
     redraw();
   });
-  connect(strip_, &ViewTools::boxWanted, this, [this](bool on) {
+  connect(strip_, &ViewStrip::boxWanted, this, [this](bool on) {
     clip_.showBox(on);
     showClip();
   });
-  connect(strip_, &ViewTools::planeWanted, this, [this](bool on) {
+  connect(strip_, &ViewStrip::planeWanted, this, [this](bool on) {
     clip_.showPlane(on, renderer_.camera());
     showClip();
   });
-  connect(strip_, &ViewTools::throughToolWanted, this, &ViewWidget::throughTool);
-  connect(strip_, &ViewTools::planeMoved, this, [this](double mm) {
+  connect(strip_, &ViewStrip::throughToolWanted, this, &ViewWidget::throughTool);
+  connect(strip_, &ViewStrip::planeMoved, this, [this](double mm) {
     if (!clip_.planeShown()) return;
     clip_.movePlane(mm);
     showClip();
   });
-  connect(strip_, &ViewTools::lightWanted, this, [this](bool on) {
+  connect(strip_, &ViewStrip::lightWanted, this, [this](bool on) {
     moving_light_ = on;
     showCursor();
     update();
   });
-  connect(strip_, &ViewTools::resetWanted, this, &ViewWidget::resetTools);
+  connect(strip_, &ViewStrip::resetWanted, this, &ViewWidget::resetTools);
 }
 
 void ViewWidget::showClip() {
@@ -403,7 +406,7 @@ void ViewWidget::setTools(const std::vector<ToolView>& tools) {
 
 void ViewWidget::setTraining(bool training) {
   training_ = training;
-  if (training) endStroke();
+  if (training) endUse();
   showCursor();
 }
 
@@ -441,14 +444,14 @@ void ViewWidget::mousePressEvent(QMouseEvent* event) {
   const double ratio = devicePixelRatioF();
   dragged_ = clip_.handleAt(pixelAt(last_), renderer_.camera(), int(std::lround(width() * ratio)),
                             int(std::lround(height() * ratio)), kReach_pixels * ratio);
-  if (!dragged_ && hasTool()) useTool(last_);
+  if (!dragged_ && hasTool()) useTool();
 }
 
 void ViewWidget::mouseMoveEvent(QMouseEvent* event) {
-  const QPointF before = last_, moved = event->position() - last_;
+  const QPointF moved = event->position() - last_;
   last_ = event->position();
-  if (!(event->buttons() & Qt::LeftButton)) endStroke();
-  if (isBrush(tool_)) showCursor();
+  if (!(event->buttons() & Qt::LeftButton)) endUse();
+  if (toolbox_.inHand().ring_mm() > 0.0) showCursor();
   const bool points = event->buttons() == Qt::NoButton ||
                       (event->buttons() == Qt::LeftButton && !dragged_ && !moving_light_);
   if (training_ && points && renderer_.hasVolume()) return emit pointed(last_);
@@ -470,15 +473,15 @@ void ViewWidget::mouseMoveEvent(QMouseEvent* event) {
   } else if (event->buttons() & Qt::MiddleButton) {
     renderer_.pan(moved.x() * devicePixelRatioF(), moved.y() * devicePixelRatioF());
     redraw();
-  } else if (left && stroke_at_mm_) {
-    moveStroke(before, last_);
+  } else if (left && used_) {
+    if (const auto at = eventAt(last_, moved)) used_->move(last_use_ = *at);
   } else if (!left || !hasTool()) {
     turn(moved.x(), moved.y());
   }
 }
 
 void ViewWidget::mouseReleaseEvent(QMouseEvent* event) {
-  if (event->button() == Qt::LeftButton) endStroke();
+  if (event->button() == Qt::LeftButton) endUse();
   dragged_.reset();
 }
 
@@ -491,7 +494,7 @@ void ViewWidget::wheelEvent(QWheelEvent* event) {
     emit pushStepped(notches);
   } else {
     renderer_.zoom(std::pow(kZoomStep, notches));
-    if (isBrush(tool_)) showCursor();
+    if (toolbox_.inHand().ring_mm() > 0.0) showCursor();
     redraw();
   }
   event->accept();

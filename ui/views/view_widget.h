@@ -6,8 +6,8 @@
 // the tool, Shift+Home straightens it, Tab takes the other hand. The squares of the crop box and
 // the clip plane are dragged with the left button, and while the light is to be moved, the light.
 // Right drag turns the camera, middle drag shifts it, Ctrl+wheel zooms; without an exercise the
-// left button, the wheel and the keys move the camera too. With a tool for structures in hand the
-// left button works at what is seen under the pointer instead; what comes of it is not the view's.
+// left button, the wheel and the keys move the camera too. With a tool in hand that works in 3-D
+// the left button is the tool's, at what is seen under the pointer.
 #pragma once
 
 #include <QElapsedTimer>
@@ -19,21 +19,21 @@
 #include <optional>
 
 #include "base/result.h"
+#include "exercise/landmark.h"
 #include "render/clip_tools.h"
 #include "render/pick.h"
 #include "render/scene_renderer.h"
-#include "exercise/landmark.h"
-#include "ui/views/slice_tool.h"
+#include "ui/views/toolbox.h"
 #include "ui/views/workspace_box.h"
 
 namespace trephine {
 
-class ViewTools;
+class ViewStrip;
 
 class ViewWidget : public QOpenGLWidget {
   Q_OBJECT
  public:
-  explicit ViewWidget(QWidget* parent = nullptr);
+  explicit ViewWidget(Toolbox& toolbox, QWidget* parent = nullptr);  // which outlives it
   ~ViewWidget() override;
 
   // What it draws, from now on; once what the mirror holds has changed, takeChanges().
@@ -53,13 +53,6 @@ class ViewWidget : public QOpenGLWidget {
   // Where arms reach, as boxes of lines.
   void setWorkspaces(const std::vector<WorkspaceBox>& boxes);
 
-  // One for structures, the outline or the entry point; others leave the left button to the camera.
-  // `mm`: of the brush.
-  void setTool(SliceTool tool);
-  void setBrushRadius(double mm) {
-    brush_mm_ = mm;
-    showCursor();
-  }
   // What is seen at a place of the widget.
   std::optional<Picked> pickAt(const QPointF& place) const;
   // The line of sight there; none without a case.
@@ -68,7 +61,7 @@ class ViewWidget : public QOpenGLWidget {
   double mmPerUnitAt(const QPointF& place) const;
 
   // Standard views, crop box and what else the strip over the view offers.
-  const ViewTools& tools() const { return *strip_; }
+  const ViewStrip& tools() const { return *strip_; }
 
   const ViewCamera& camera() const { return renderer_.camera(); }
   // The picture is of what there is now, at full quality.
@@ -101,15 +94,7 @@ class ViewWidget : public QOpenGLWidget {
   void otherHandWanted();
   // Something else is under each place now.
   void resized();
-  // As SliceView has them; `across` is the axis of the grid along which one looks most.
-  void structureClicked(trephine::SliceTool tool, const trephine::Vec3& patient_mm);
-  void strokeBegan(const trephine::Vec3& patient_mm, int across);
-  void strokeMoved(const trephine::Vec3& patient_mm);
-  void strokeEnded();
-  void entryChosen(const trephine::Vec3& at_mm, const trephine::Vec3& from_mm);
-  void entryLeft();
-  void structureKey(int key);  // V; Return, Esc, [ and ] with a tool for them
-  void nothingThere();         // under the pointer, where a tool was to work
+  void nothingThere();  // under the pointer, where a tool was to work
   void framePainted(double paint_ms, bool with_volume);
   void failed(const trephine::Error& error);
 
@@ -140,16 +125,16 @@ class ViewWidget : public QOpenGLWidget {
   void resetTools();
   bool hasTool() const;
   void showCursor();
-  int axisSeenAlong() const;
-  void useTool(const QPointF& place);
-  void moveStroke(const QPointF& from, const QPointF& to);
-  void endStroke();
+  std::optional<ToolEvent> eventAt(const QPointF& place, const QPointF& moved = {}) const;
+  void useTool();
+  void endUse();
   bool toolKey(int key);
   glm::dvec2 pixelAt(const QPointF& place) const;  // of the renderer, from the lower left corner
   void addWorkspaces(int wide, int high, ScreenLines& to) const;
   void fitRenderer();
   void paintInstead(int wide, int high);
 
+  Toolbox& toolbox_;
   SceneRenderer renderer_;
   std::shared_ptr<const VolumeMirror> mirror_ = std::make_shared<VolumeMirror>();
   TissueSet seen_;
@@ -160,7 +145,7 @@ class ViewWidget : public QOpenGLWidget {
   std::string gl_description_;
   QLabel* hint_;
   QLabel* level_;
-  ViewTools* strip_;
+  ViewStrip* strip_;
   QTimer still_, refine_, warm_;
   ClipTools clip_;
   std::optional<ClipTools::Handle> dragged_;
@@ -170,11 +155,10 @@ class ViewWidget : public QOpenGLWidget {
   QPointF last_;
   std::vector<ToolView> tools_;  // of the exercise
   std::vector<WorkspaceBox> workspaces_;
-  SliceTool tool_ = SliceTool::window;
-  double brush_mm_ = 5.0;
   int ring_ = 0;                                   // pixels of the radius that the pointer shows
-  std::optional<Vec3> stroke_at_mm_;               // while a stroke goes on
-  std::shared_ptr<const LabelMap> stroke_labels_;  // as they were when it began
+  ViewTool* used_ = nullptr;                       // while the button is down
+  ToolEvent last_use_;                             // of it
+  std::shared_ptr<const LabelMap> stroke_labels_;  // as they were when a brush's drag began
   bool training_ = false;
   bool resizing_ = false;
   bool worked_ = false;  // since the event loop came round

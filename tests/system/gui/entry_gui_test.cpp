@@ -68,7 +68,7 @@ class EntryGuiTest : public test::WindowTest {
   void aClickOnTheSkinIsWhereTheExerciseEnters() {
     const Vec3 before = entry().position_mm;
     key(Qt::Key_I);
-    QVERIFY(views().tool() == SliceTool::entry);
+    QVERIFY(inHand("sliceEntryTool"));
     const Vec3 skin = skinBefore(kInLiver_mm);
     click(skin);
     untilPlaced();
@@ -99,7 +99,7 @@ class EntryGuiTest : public test::WindowTest {
     const ExerciseArm& right = workstation().session()->exercise().arms.back();
     QVERIFY(right.map.fixed);
     QVERIFY(glm::length(right.map.fixed->centre_mm - place) < 30.0);
-    views().setTool(SliceTool::entry);
+    take("sliceEntryTool");
     click(kInLiver_mm);
     rest();
     untilPlaced();  // what it would have done by now
@@ -112,7 +112,7 @@ class EntryGuiTest : public test::WindowTest {
   void aClickOnWhatIsSeenIn3DPlacesItThere() {
     views().setLayout({ViewLayout::Kind::single, 0});
     restRefined();
-    views().setTool(SliceTool::entry);
+    take("sliceEntryTool");
     const QPointF middle = QRectF(window_->view().rect()).center();
     const auto seen = window_->view().pickAt(middle);
     QVERIFY(seen);
@@ -131,7 +131,7 @@ class EntryGuiTest : public test::WindowTest {
     untilPlaced();
     QVERIFY(!workstation().entry());
     key(Qt::Key_Escape);
-    QVERIFY(views().tool() == SliceTool::window);
+    QVERIFY(inHand("sliceWindowTool"));
   }
 
   void aDragOfTheGrowToolDrawsABoxAndAButtonTakesItAway() {

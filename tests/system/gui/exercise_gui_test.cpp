@@ -507,11 +507,11 @@ class ExerciseGuiTest : public test::WindowTest {
     give("operatorDialog", toQt(script));
     QCOMPARE(exercise().operator_file, script.string());
     find<QToolButton>("placeEntry")->click();
-    QCOMPARE(window_->views().tool(), SliceTool::entry);
+    QVERIFY(inHand("sliceEntryTool"));
     QTest::mouseClick(&window_->view(), Qt::LeftButton, {}, window_->view().rect().center());
     untilPlaced();
     QVERIFY(workstation().entry());
-    QCOMPARE(window_->views().tool(), SliceTool::window);  // the next click turns the view
+    QVERIFY(inHand("sliceWindowTool"));  // the next click turns the view
     undoAll();
     // Locks hold at once, so the last.
     for (const char* lock : {"controller", "rate"}) {
@@ -623,7 +623,7 @@ class ExerciseGuiTest : public test::WindowTest {
     restRefined();
     const QImage before = view.grabFramebuffer();
     find<QToolButton>("drawOutline")->click();
-    QCOMPARE(window_->views().tool(), SliceTool::outline);
+    QVERIFY(inHand("outlineTool"));
     const QPoint middle = view.rect().center();
     for (const QPoint& by : {QPoint(-30, -20), QPoint(30, -20), QPoint(30, 20), QPoint(-30, 20)}) {
       QTest::mouseClick(&view, Qt::LeftButton, {}, middle + by);
@@ -676,7 +676,7 @@ class ExerciseGuiTest : public test::WindowTest {
     find<QToolButton>("outlineBack")->click();
     QCOMPARE(exercise().outline->points_mm.size(), std::size_t(2));
     key(&slice(SliceAxis::axial), Qt::Key_Escape);
-    QCOMPARE(window_->views().tool(), SliceTool::window);
+    QVERIFY(inHand("sliceWindowTool"));
     QVERIFY(!find<QToolButton>("drawOutline")->isChecked());
   }
 
@@ -817,11 +817,11 @@ class ExerciseGuiTest : public test::WindowTest {
 
   void changedStructuresAreAskedAboutBeforeAnExport() {
     showStructures();
-    window_->views().setTool(SliceTool::brush);
+    take("structureBrush");
     SliceView& axial = slice(SliceAxis::axial);
     QTest::mouseClick(&axial, Qt::LeftButton, {}, axial.rect().center());
     QTRY_VERIFY(window_->findChild<PrepareWorkspace*>()->structuresEdited());
-    window_->views().setTool(SliceTool::window);
+    take("sliceWindowTool");
     untilStructuresAreTaken();
     untilPlaced();
     showTab(PrepareWorkspace::kExerciseTab);

@@ -158,6 +158,16 @@ class WindowTest : public QObject {
     find<QTabWidget>("prepareTabs")->setCurrentIndex(PrepareWorkspace::kStructureTab);
   }
 
+  // A tool of the views, by its name.
+  void take(const char* name) {
+    Toolbox& toolbox = window_->views().toolbox();
+    const auto named = [&](ViewTool* tool) { return tool->objectName() == name; };
+    const auto tool = std::ranges::find_if(toolbox.tools(), named);
+    if (tool == toolbox.tools().end()) qFatal("the views have no %s", name);
+    toolbox.take(**tool);
+  }
+  bool inHand(const char* name) { return window_->views().toolbox().inHand().objectName() == name; }
+
   // An empty window with settings of its own, 1280 x 800.
   void openWindow(const char* application) {
     QApplication::setApplicationName(application);

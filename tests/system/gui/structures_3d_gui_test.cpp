@@ -13,7 +13,7 @@
 #include "gui_support.h"
 #include "ui/common/settings.h"
 #include "ui/common/words.h"
-#include "ui/views/view_tools.h"
+#include "ui/views/view_strip.h"
 
 using namespace trephine;
 
@@ -88,7 +88,7 @@ class Structures3dGuiTest : public test::WindowTest {
   // At the liver's surface, through the ghost of the ribs.
   void aClickInThePictureGrowsTheLiver() {
     QVERIFY(!workstation().currentCase()->structures);
-    views().setTool(SliceTool::grow);
+    take("structureGrow");
     QCOMPARE(view().cursor().shape(), Qt::CrossCursor);
     const auto picked = view().pickAt(inView(kInLiver_mm));
     QVERIFY(picked);
@@ -111,7 +111,7 @@ class Structures3dGuiTest : public test::WindowTest {
 
   // The skin hides the liver, shows it as a ghost, and is gone.
   void aStructureThatNoTissueIsOfIsSeenShownGhostedAndHidden() {
-    views().setTool(SliceTool::window);
+    take("sliceWindowTool");
     list()->setCurrentItem(row("liver"));
     wholePicture();
     const QPointF at = inView(kInLiver_mm);
@@ -144,7 +144,7 @@ class Structures3dGuiTest : public test::WindowTest {
   void theLiverIsErasedWhereTheStrokeGoesInThePictureAndSeenAtOnce() {
     wholePicture();
     const double before = ml("liver");
-    views().setTool(SliceTool::eraser);
+    take("structureEraser");
     const QPointF at = inView(kInLiver_mm);
     const Vec3 eye = view().camera().eye(), focus = view().camera().focus();
     const QImage was = view().grabFramebuffer();
@@ -163,14 +163,14 @@ class Structures3dGuiTest : public test::WindowTest {
     // Brushed back from the same places.
     window_->findChild<QAction*>("undo")->trigger();
     QCOMPARE(ml("liver"), before);
-    views().setTool(SliceTool::brush);
+    take("structureBrush");
     drag(at, at + QPointF(25, 0));
     QVERIFY2(ml("liver") > before, "the brush adds what is free around the surface");
     window_->findChild<QAction*>("undo")->trigger();
   }
 
   void theRightButtonTurnsTheCameraWithAToolInHand() {
-    views().setTool(SliceTool::eraser);
+    take("structureEraser");
     const double before = ml("liver");
     const Vec3 eye = view().camera().eye();
     drag(inView(kInLiver_mm), inView(kInLiver_mm) + QPointF(40, 10), Qt::RightButton);
@@ -179,7 +179,7 @@ class Structures3dGuiTest : public test::WindowTest {
   }
 
   void aBrushIsARingAsWideAsItPaintsThere() {
-    views().setTool(SliceTool::brush);
+    take("structureBrush");
     const QPointF at = inView(kInLiver_mm);
     QTest::mouseMove(handle(), inWindow(at));
     QTRY_COMPARE(view().cursor().shape(), Qt::BitmapCursor);
@@ -203,10 +203,10 @@ class Structures3dGuiTest : public test::WindowTest {
   }
 
   void escLeavesTheTool() {
-    views().setTool(SliceTool::brush);
+    take("structureBrush");
     QVERIFY(view().cursor().shape() != Qt::ArrowCursor);
     key(Qt::Key_Escape);
-    QVERIFY(views().tool() == SliceTool::window);
+    QVERIFY(inHand("sliceWindowTool"));
     QCOMPARE(view().cursor().shape(), Qt::ArrowCursor);
     const Vec3 eye = view().camera().eye();
     drag(inView(kInLiver_mm), inView(kInLiver_mm) + QPointF(-40, -10));
@@ -259,12 +259,12 @@ class Structures3dGuiTest : public test::WindowTest {
     }
     // A hand's, not a tool's.
     const double before = ml("liver");
-    views().setTool(SliceTool::eraser);
+    take("structureEraser");
     drag(inView(kInLiver_mm), inView(kInLiver_mm) + QPointF(20, 0));
     QCOMPARE(ml("liver"), before);
     workstation().stop();
     QTRY_VERIFY_WITH_TIMEOUT(workstation().phase() == Workstation::Phase::ready, kLong_ms);
-    views().setTool(SliceTool::window);
+    take("sliceWindowTool");
   }
 };
 

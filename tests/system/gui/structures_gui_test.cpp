@@ -117,8 +117,8 @@ class StructuresGuiTest : public test::WindowTest {
     QVERIFY(!workstation().currentCase()->structures);
     // The liver that the exercise needs is offered to be made.
     QVERIFY2(said().contains("liver"), qPrintable(said()));
-    QVERIFY(views().tool() == SliceTool::grow);
-    views().setTool(SliceTool::window);
+    QVERIFY(inHand("structureGrow"));
+    take("sliceWindowTool");
   }
 
   void anExerciseThatNeedsALiverAsksAndLeadsToMakingIt() {
@@ -130,7 +130,7 @@ class StructuresGuiTest : public test::WindowTest {
     auto* make = question->findChild<QPushButton*>("makeStructure");
     QVERIFY(make);
     QTest::mouseClick(make, Qt::LeftButton);
-    QTRY_VERIFY(views().tool() == SliceTool::grow);
+    QTRY_VERIFY(inHand("structureGrow"));
     QVERIFY(list()->topLevelItemCount() == 0);
     QCOMPARE(find<QComboBox>("structureName")->currentText(), QString("liver"));
     QVERIFY(views().viewLayout().kind == ViewLayout::Kind::four);
@@ -151,7 +151,7 @@ class StructuresGuiTest : public test::WindowTest {
     --clicks_;
     QTRY_VERIFY(!find<QPushButton>("takePreview")->isVisible());
     QCOMPARE(list()->topLevelItemCount(), 0);
-    views().setTool(SliceTool::grow);
+    take("structureGrow");
     clickAt(in_liver_mm_);
     --clicks_;
     QTRY_VERIFY_WITH_TIMEOUT(find<QPushButton>("takePreview")->isVisible(), kLong_ms);
@@ -165,7 +165,7 @@ class StructuresGuiTest : public test::WindowTest {
   void twoStrokesMendItAndEachCanBeUndone() {
     const double before = ml("liver");
     key(Qt::Key_E);
-    QVERIFY(views().tool() == SliceTool::eraser);
+    QVERIFY(inHand("structureEraser"));
     drag(in_liver_mm_, in_liver_mm_ + Vec3(20, 0, 0));
     const double erased = ml("liver");
     QVERIFY(erased < before - 0.5);
@@ -202,7 +202,7 @@ class StructuresGuiTest : public test::WindowTest {
 
   // Where the brush was the slice changes at once.
   void aStrokeIsSeenAtOnce() {
-    views().setTool(SliceTool::eraser);
+    take("structureEraser");
     const QPoint at = axial().fromPatient(in_liver_mm_ + Vec3(5, 25, 0)).toPoint();
     QTest::mouseMove(handle(), axial().mapTo(window_.get(), at + QPoint(60, 0)));
     rest();
@@ -256,7 +256,7 @@ class StructuresGuiTest : public test::WindowTest {
     showStructures();
     views().setLayout({ViewLayout::Kind::four, 0});
     rest();
-    views().setTool(SliceTool::brush);
+    take("structureBrush");
     drag(in_liver_mm_, in_liver_mm_ + Vec3(10, 0, 0));
     --clicks_;
     QCOMPARE(ml("liver"), before);
@@ -334,7 +334,7 @@ class StructuresGuiTest : public test::WindowTest {
   }
 
   void unsavedStructuresAreAskedAboutBeforeTheyGo() {
-    views().setTool(SliceTool::eraser);
+    take("structureEraser");
     drag(in_liver_mm_, in_liver_mm_ + Vec3(10, 0, 0));
     prepareBuiltIn("cranium");
     QTRY_VERIFY(window_->findChild<QMessageBox*>("structuresUnsaved"));

@@ -14,7 +14,7 @@
 #include "render/picture.h"
 #include "ui/common/words.h"
 #include "ui/frame/main_window.h"
-#include "ui/views/view_tools.h"
+#include "ui/views/view_strip.h"
 
 using namespace trephine;
 

@@ -42,7 +42,7 @@ class SliceViewTest : public testing::Test {
             std::shared_ptr<const LabelMap> labels = nullptr) {
     colours_.setTissues(bone());
     mirror_->show(std::move(volume), std::move(labels));
-    view_ = std::make_unique<SliceView>(axis, mirror_, colours_);
+    view_ = std::make_unique<SliceView>(axis, mirror_, colours_, toolbox_);
     QObject::connect(view_.get(), &SliceView::pointChosen, view_.get(),
                      [this](const Vec3& point) { view_->setPoint(point); });
     QObject::connect(view_.get(), &SliceView::windowChosen, view_.get(),
@@ -50,8 +50,6 @@ class SliceViewTest : public testing::Test {
                        colours_.setWindow(window);
                        view_->coloursChanged();
                      });
-    QObject::connect(view_.get(), &SliceView::toolChosen, view_.get(),
-                     [this](SliceTool tool) { view_->setTool(tool); });
     view_->resize(400, 420);
     view_->show();
     view_->takeChanges();
@@ -85,6 +83,7 @@ class SliceViewTest : public testing::Test {
   int grey(const QPointF& at) { return qRed(picture().pixel(at.toPoint())); }
 
   SliceColours colours_;
+  Toolbox toolbox_;
   std::shared_ptr<VolumeMirror> mirror_ = std::make_shared<VolumeMirror>();
   std::unique_ptr<SliceView> view_;
 };
@@ -412,7 +411,7 @@ TEST_F(SliceViewTest, OfOneSliceOfEqualHuOrOfNoSizeIsAPictureAndNoCrash) {
 }
 
 TEST_F(SliceViewTest, WithoutACaseItSaysSo) {
-  view_ = std::make_unique<SliceView>(SliceAxis::axial, mirror_, colours_);
+  view_ = std::make_unique<SliceView>(SliceAxis::axial, mirror_, colours_, toolbox_);
   view_->resize(200, 200);
   view_->takeChanges();
   press(Qt::Key_PageUp);

@@ -12,11 +12,11 @@ class QGridLayout;
 
 namespace trephine {
 
-class ViewTools : public QFrame {
+class ViewStrip : public QFrame {
   Q_OBJECT
  public:
   // Over `view`, at its right upper corner; hidden where the view has no room for it.
-  explicit ViewTools(QWidget* view);
+  explicit ViewStrip(QWidget* view);
 
   void place();
   // What the strip holds, a separator (null) between groups.

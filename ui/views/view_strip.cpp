@@ -1,4 +1,4 @@
-#include "ui/views/view_tools.h"
+#include "ui/views/view_strip.h"
 
 #include <QGridLayout>
 #include <QToolButton>
@@ -10,7 +10,7 @@ constexpr int kMargin = 8;
 constexpr double kPlaneStep_mm = 1.0;
 }  // namespace
 
-ViewTools::ViewTools(QWidget* view) : QFrame(view), grid_(new QGridLayout(this)) {
+ViewStrip::ViewStrip(QWidget* view) : QFrame(view), grid_(new QGridLayout(this)) {
   setObjectName("viewTools");
   setAutoFillBackground(true);
   grid_->setContentsMargins(3, 3, 3, 3);
@@ -35,23 +35,23 @@ ViewTools::ViewTools(QWidget* view) : QFrame(view), grid_(new QGridLayout(this))
   all_.append(nullptr);
   parallel_ = makeSwitch("viewParallel", tr("Orthographic"), tr("Ortho"), Qt::Key_O,
                          tr("Without perspective: the scale bar holds everywhere"));
-  connect(parallel_, &QAction::toggled, this, &ViewTools::parallelWanted);
+  connect(parallel_, &QAction::toggled, this, &ViewStrip::parallelWanted);
   all_.append(nullptr);
   box_ = makeSwitch("cropBox", tr("Crop box"), tr("Box"), Qt::Key_B,
                     tr("Cut the picture to a box: drag its squares"));
-  connect(box_, &QAction::toggled, this, &ViewTools::boxWanted);
+  connect(box_, &QAction::toggled, this, &ViewStrip::boxWanted);
   plane_ = makeSwitch("clipPlane", tr("Clip plane"), tr("Plane"), Qt::Key_C,
                       tr("Cut the picture with a plane: drag its squares, or comma and period"));
-  connect(plane_, &QAction::toggled, this, &ViewTools::planeWanted);
+  connect(plane_, &QAction::toggled, this, &ViewStrip::planeWanted);
   through_ = make("clipThroughTool", tr("Clip through the tool"), tr("At tool"), Qt::Key_T,
                   tr("The plane through the tool's tip, facing you; again: along the tool"));
-  connect(through_, &QAction::triggered, this, &ViewTools::throughToolWanted);
+  connect(through_, &QAction::triggered, this, &ViewStrip::throughToolWanted);
   light_ = makeSwitch("moveLight", tr("Move the light"), tr("Light"), Qt::SHIFT | Qt::Key_L,
                       tr("Drag to move the light"));
-  connect(light_, &QAction::toggled, this, &ViewTools::lightWanted);
+  connect(light_, &QAction::toggled, this, &ViewStrip::lightWanted);
   reset_ = make("resetClip", tr("Reset box, plane and light"), tr("Reset"), Qt::Key_X,
                 tr("Show everything again, with the light back in its place"));
-  connect(reset_, &QAction::triggered, this, &ViewTools::resetWanted);
+  connect(reset_, &QAction::triggered, this, &ViewStrip::resetWanted);
   for (const double way : {1.0, -1.0}) {
     auto* step = new QAction(way > 0 ? tr("Clip plane nearer") : tr("Clip plane farther"), this);
     step->setToolTip(tr("By %1 mm").arg(kPlaneStep_mm));
@@ -65,7 +65,7 @@ ViewTools::ViewTools(QWidget* view) : QFrame(view), grid_(new QGridLayout(this))
   adjustSize();
 }
 
-QAction* ViewTools::make(const char* name, const QString& text, const QString& word,
+QAction* ViewStrip::make(const char* name, const QString& text, const QString& word,
                          const QKeySequence& key, const QString& tip) {
   auto* action = new QAction(text, this);
   action->setObjectName(name);
@@ -86,21 +86,21 @@ QAction* ViewTools::make(const char* name, const QString& text, const QString& w
   return action;
 }
 
-QAction* ViewTools::makeSwitch(const char* name, const QString& text, const QString& word,
+QAction* ViewStrip::makeSwitch(const char* name, const QString& text, const QString& word,
                                const QKeySequence& key, const QString& tip) {
   QAction* action = make(name, text, word, key, tip);
   action->setCheckable(true);
   return action;
 }
 
-void ViewTools::setUsable(bool usable) {
+void ViewStrip::setUsable(bool usable) {
   for (QAction* action : all_) {
     if (action && action != through_) action->setEnabled(usable);
   }
   if (!usable) through_->setEnabled(false);
 }
 
-void ViewTools::place() {
+void ViewStrip::place() {
   adjustSize();
   const QWidget* view = parentWidget();
   move(view->width() - width() - kMargin, kMargin);

@@ -1,5 +1,4 @@
-// The tools for structures and the entry point in the 3-D view: they work at what is seen under the
-// pointer.
+// The tool in hand in the 3-D view: it works at what is seen under the pointer.
 #include <QKeyEvent>
 #include <QMouseEvent>
 #include <QPainter>
@@ -9,7 +8,8 @@
 #include <new>
 #include <utility>
 
-#include "ui/views/view_tools.h"
+#include "ui/views/slice_plane.h"
+#include "ui/views/view_strip.h"
 #include "ui/views/view_widget.h"
 
 namespace trephine {
@@ -37,24 +37,18 @@ QCursor ringCursor(int radius, double ratio) {
 
 }  // namespace
 
-void ViewWidget::setTool(SliceTool tool) {
-  tool_ = tool;
-  if (!isBrush(tool)) endStroke();
-  showCursor();
-}
-
 bool ViewWidget::hasTool() const {
-  const bool places = tool_ == SliceTool::entry || tool_ == SliceTool::outline;
-  return (isForStructures(tool_) || places) && !training_ && !moving_light_;
+  return toolbox_.inHand().worksIn3D() && !training_ && !moving_light_;
 }
 
 // A brush is a ring as wide as it paints on what is under the pointer.
 void ViewWidget::showCursor() {
   if (!moving_light_ && !hasTool()) return setCursor(Qt::ArrowCursor);
-  const std::optional<Picked> picked = hasTool() && isBrush(tool_) ? pickAt(last_) : std::nullopt;
+  const double ring_mm = hasTool() ? toolbox_.inHand().ring_mm() : 0.0;
+  const std::optional<Picked> picked = ring_mm > 0.0 ? pickAt(last_) : std::nullopt;
   if (!picked) return setCursor(Qt::CrossCursor);
   const double mm = renderer_.mmPerPixelAt(picked->at_mm) * devicePixelRatioF();
-  const int radius = int(std::lround(brush_mm_ / mm));
+  const int radius = int(std::lround(ring_mm / mm));
   if (radius > kMostRing) return setCursor(Qt::CrossCursor);
   const bool ring_already = cursor().shape() == Qt::BitmapCursor && radius == ring_;
   if (!ring_already) setCursor(ringCursor(std::max(2, radius), devicePixelRatioF()));
@@ -82,72 +76,46 @@ double ViewWidget::mmPerUnitAt(const QPointF& place) const {
          devicePixelRatioF();
 }
 
-// The disc of a brush lies across the axis of the grid along which one looks most.
-int ViewWidget::axisSeenAlong() const {
-  int most = 0;
-  const Mat3& grid = shown_.direction;
-  const auto along = [&](int a) { return std::abs(glm::dot(grid[a], renderer_.viewForward())); };
-  for (int axis = 1; axis < 3; ++axis) {
-    if (along(axis) > along(most)) most = axis;
-  }
-  return most;
+std::optional<ToolEvent> ViewWidget::eventAt(const QPointF& place, const QPointF& moved) const {
+  const std::optional<Picked> picked = pickAt(place);
+  if (!picked) return {};
+  ToolEvent event;
+  event.at_mm = picked->at_mm;
+  event.inside_mm = picked->inside_mm;
+  event.across = axisAlong(shown_, renderer_.viewForward());
+  event.moved_mm = std::hypot(moved.x(), moved.y()) * devicePixelRatioF() *
+                   renderer_.mmPerPixelAt(picked->at_mm);
+  event.in_widget = place;
+  return event;
 }
 
 // A stroke goes over what was seen when it began: else a brush would climb towards the eye on what
 // it has painted, and an eraser would drill.
-void ViewWidget::useTool(const QPointF& place) {
-  const std::optional<Picked> picked = pickAt(place);
-  if (!picked) return emit nothingThere();
-  if (tool_ == SliceTool::entry) return emit entryChosen(picked->at_mm, picked->at_mm);
-  if (!isBrush(tool_)) {
-    return emit structureClicked(tool_,
-                                 tool_ == SliceTool::grow ? picked->inside_mm : picked->at_mm);
+void ViewWidget::useTool() {
+  const std::optional<ToolEvent> at = eventAt(last_);
+  if (!at) return emit nothingThere();
+  used_ = &toolbox_.inHand();
+  if (used_->ring_mm() > 0.0) {
+    try {
+      if (mirror_->labels()) stroke_labels_ = std::make_shared<LabelMap>(*mirror_->labels());
+    } catch (const std::bad_alloc&) {
+      stroke_labels_.reset();  // those that change, then
+    }
   }
-  try {
-    if (mirror_->labels()) stroke_labels_ = std::make_shared<LabelMap>(*mirror_->labels());
-  } catch (const std::bad_alloc&) {
-    stroke_labels_.reset();  // those that change, then
-  }
-  stroke_at_mm_ = picked->at_mm;
-  emit strokeBegan(picked->at_mm, axisSeenAlong());
+  used_->press(last_use_ = *at);
 }
 
-// What is beside an edge may lie far behind it: there another stroke begins, or a bar would run
-// through the air.
-void ViewWidget::moveStroke(const QPointF& from, const QPointF& to) {
-  const std::optional<Picked> picked = pickAt(to);
-  if (!picked) return;
-  const QPointF moved = to - from;
-  const double moved_mm = std::hypot(moved.x(), moved.y()) * devicePixelRatioF() *
-                          renderer_.mmPerPixelAt(picked->at_mm);
-  if (glm::distance(picked->at_mm, *stroke_at_mm_) > 3.0 * moved_mm + brush_mm_) {
-    if (tool_ == SliceTool::wall) return;  // its end grows the preview anew
-    emit strokeEnded();
-    emit strokeBegan(picked->at_mm, axisSeenAlong());
-  } else {
-    emit strokeMoved(picked->at_mm);
-  }
-  stroke_at_mm_ = picked->at_mm;
-}
-
-void ViewWidget::endStroke() {
-  if (!stroke_at_mm_) return;
-  stroke_at_mm_.reset();
+void ViewWidget::endUse() {
   stroke_labels_.reset();
-  emit strokeEnded();
+  if (ViewTool* tool = std::exchange(used_, nullptr)) tool->release(last_use_);
 }
 
 bool ViewWidget::toolKey(int key) {
   if (training_ || !renderer_.hasVolume()) return false;
-  const bool of_tool = key == Qt::Key_Escape || key == Qt::Key_Return || key == Qt::Key_Enter ||
+  if (hasTool() && toolbox_.useKey(key, nullptr)) return true;
+  const bool of_tool = key == Qt::Key_Return || key == Qt::Key_Enter ||
                        key == Qt::Key_BracketLeft || key == Qt::Key_BracketRight;
-  if (tool_ == SliceTool::entry && (key == Qt::Key_Delete || key == Qt::Key_Backspace)) {
-    emit entryLeft();
-    return true;
-  }
-  if (key != Qt::Key_V && !(of_tool && hasTool())) return false;
-  emit structureKey(key);
-  return true;
+  return (key == Qt::Key_V || (of_tool && hasTool())) && toolbox_.other_keys(key);
 }
 
 }  // namespace trephine
