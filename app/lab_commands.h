@@ -1,6 +1,7 @@
 // One function a command of trephine-lab: does the work, prints the answer, returns the exit code.
 #pragma once
 
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>

@@ -12,6 +12,7 @@
 #include "base/system.h"
 #include "base/time_left.h"
 #include "base/utf8.h"
+#include "exercise/exercise_fields.h"
 
 namespace {
 

@@ -91,7 +91,8 @@ Picture drawnSlice(const GoldenLine& line, const GoldenCase& shown, Volume volum
   colours.setOverlay(change == Change::colours ? Overlay::none : line.overlay, 0.5);
   const auto mirror = std::make_shared<VolumeMirror>();
   mirror->show(std::move(volume), shown.of.labels);
-  SliceView view(*line.slice, mirror, colours);
+  Toolbox toolbox;
+  SliceView view(*line.slice, mirror, colours, toolbox);
   if (change == Change::driver) view.setFont(QFont("DejaVu Serif"));
   view.resize(kWidth, kHeight);
   view.takeChanges();

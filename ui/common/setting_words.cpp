@@ -1,7 +1,6 @@
 #include "ui/common/setting_words.h"
 
 #include <QCoreApplication>
-#include <QStringList>
 #include <QVBoxLayout>
 #include <algorithm>
 #include <string_view>
@@ -19,6 +18,7 @@ QString shortMeaningOf(const FieldRow& row) {
 }
 
 QString meaningOf(const FieldRow& row) {
+  if (!*row.meaning) return {};
   QString meaning = QCoreApplication::translate("Setting", row.meaning);
   meaning.remove('`');
   meaning[0] = meaning[0].toUpper();
