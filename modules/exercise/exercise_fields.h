@@ -79,13 +79,13 @@ inline constexpr FieldOf<ExerciseView> kViewFields[] = {
 
 // Of a language.
 inline constexpr FieldOf<CardText> kCardFields[] = {
-    {{"goal", {1, double(kCardGoal)}, Given::always, "at most 300 characters", "",
+    {{"goal", {1, 0}, Given::always, "at most 300 characters", "",
       "What is to be reached."},
      &CardText::goal},
     {{"steps", {1, double(kCardSteps)}, Given::always,
       "1 to 12 texts of at most 200 characters", "", "One a line, in their order."},
      &CardText::steps},
-    {{"hands", {1, double(kCardHands)}, Given::always,
+    {{"hands", {1, 0}, Given::always,
       "which tool in which hand and how to move it, at most 300 characters", "",
       "Which tool in which hand, and how to move it."},
      &CardText::hands},

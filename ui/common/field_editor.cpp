@@ -75,6 +75,7 @@ struct FieldEditor::Numbers : Part {
       beside->addLayout(add(three ? name + parts[part] : name, three, part), 1);
     }
     column.addLayout(beside);
+    of.setFocusProxy(boxes.front());
   }
   QLayout* add(const QString& called, bool three, int part) {
     const FieldRow& row = of.field_.row;
@@ -151,6 +152,10 @@ struct FieldEditor::Line : Part {
     if (typed == std::get<std::string>(of.value_) || (typed.empty() && needed)) {
       return show(of.value_);
     }
+    // Its own undo ends here: Ctrl+Z takes back edits from now on.
+    const int at = edit->cursorPosition();
+    edit->setText(edit->text());
+    edit->setCursorPosition(at);
     of.want(typed);
   }
   void takeTyped() override {

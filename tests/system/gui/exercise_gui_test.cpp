@@ -483,13 +483,13 @@ class ExerciseGuiTest : public test::WindowTest {
     enter("landmark:fromX", "0.6");
     QCOMPARE(exercise().landmarks[0].from.x, 0.6);
     untilPlaced();
-    choose("landmarkFound", QString("bulk"));
+    choose("landmarkFound", QString("At the most of its tissue"));
     QCOMPARE(exercise().landmarks[0].bulk_radius_mm, 20.0);
     untilPlaced();
     enter("landmark:bulk_radius_mm", "12");
     QCOMPARE(exercise().landmarks[0].bulk_radius_mm, 12.0);
     untilPlaced();
-    choose("landmarkFound", QString("ray"));
+    choose("landmarkFound", QString("By a ray"));
     QCOMPARE(exercise().landmarks[0].bulk_radius_mm, 0.0);
     QCOMPARE(exercise().landmarks[0].from.x, 0.6);
     untilPlaced();

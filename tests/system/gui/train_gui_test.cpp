@@ -587,6 +587,7 @@ class TrainGuiTest : public test::TrainTest {
     QTRY_VERIFY(window_->findChild<QDialog*>("settingsDialog"));
     auto* hand = find<QComboBox>("hands/main");
     hand->setCurrentIndex(hand->findData("left"));
+    emit hand->activated(hand->currentIndex());
     find<QDoubleSpinBox>("mouse/push_step_N")->setValue(0.5);
     for (const QLabel* label : find<QDialog>("settingsDialog")->findChildren<QLabel*>()) {
       QVERIFY2(!label->text().contains('&') || label->buddy(), qPrintable(label->text()));
