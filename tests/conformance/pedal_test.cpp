@@ -268,16 +268,18 @@ TEST_P(CapOf, SixAxesMoveAndTurnTheToolAndItStopsWhenTheyAreReleased) {
       const Quat before = turned();
       CapAxes held{};
       held[axis] = std::int16_t(200 * sign);
+      const auto began = steady_clock::now();
       cap.hold(held);
       pass_s(0.15);
       cap.release();
+      const double held_s = std::chrono::duration<double>(steady_clock::now() - began).count();
       pass_s(0.15);
       const Vec3 moved = at() - from;
       // In the device's frame, so that what it was turned before comes first.
       const Quat change = turned() * glm::conjugate(before);
       const Vec3 turn = 2.0 * Vec3(change.x, change.y, change.z) * (change.w < 0.0 ? -1.0 : 1.0);
       const Vec3& along = way[axis % 3];
-      const double wanted = sign * 0.15 * share * (axis < 3 ? kSpeed_m_s : kTurn_rad_s);
+      const double wanted = sign * held_s * share * (axis < 3 ? kSpeed_m_s : kTurn_rad_s);
       const Vec3 has = axis < 3 ? moved : turn, none = axis < 3 ? turn : moved;
       EXPECT_NEAR(glm::dot(has, along) / wanted, 1.0, 0.3) << axis << ", " << sign;
       EXPECT_LT(glm::length(has - glm::dot(has, along) * along), 2 * kStep_m) << axis;
