@@ -31,7 +31,11 @@ void FormGroup::addRow(const QString& label, QWidget* field, const QString& help
 
 void FormGroup::edit(const std::string& what, const ExerciseEdit& edit) {
   const Status done = wanted_ ? wanted_(what, edit) : Status();
-  done ? problem_->hide() : sayNotApplied(*problem_, done.error());
+  done ? problem_->hide() : refuse(done.error());
+}
+
+void FormGroup::refuse(const Error& why) {
+  sayNotApplied(*problem_, why);
 }
 
 void FormGroup::refuse(const QString& why) {

@@ -37,6 +37,7 @@ class FormGroup : public QWidget {
   // What is refused is said; the exercise stays as it is.
   void edit(const std::string& what, const ExerciseEdit& edit);
   void refuse(const QString& why);
+  void refuse(const Error& why);  // "Not applied.", why, and what to do
   void forgetRefusal() { problem_->hide(); }
 
  private:

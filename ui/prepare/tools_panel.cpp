@@ -176,10 +176,7 @@ void ToolsPanel::editTool(const std::string& what, const std::function<void(Exer
   ExerciseTool edited = *tool();
   edit(edited);
   const Result<Tool> made = makeTool(edited.tool.made_from);
-  if (!made) {
-    return of_tools_->refuse(
-        tr("Not applied. %1. %2.").arg(toQt(made.error().what), toQt(made.error().next)));
-  }
+  if (!made) return of_tools_->refuse(made.error());
   edited.tool = *made;
   of_tools_->edit("tool:" + edited.id + ":" + what, [&](Exercise& exercise) {
     exercise.tools[std::size_t(tools_->currentRow())] = edited;
