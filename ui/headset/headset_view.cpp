@@ -17,10 +17,6 @@ constexpr int kWordsEvery_ms = 1000;
 constexpr double kStuck_s = 0.5;
 constexpr double kMarksAhead_m = 0.45, kMarksApart_m = 0.08;
 
-double scaleOf() {
-  return preferences().headset_scale;
-}
-
 // Looks back at the eyes, upright.
 Quat facing(const Vec3& from_eyes) {
   const Vec3 ahead = glm::normalize(from_eyes);
@@ -112,8 +108,8 @@ void HeadsetView::place() {
   const ViewCamera& camera = app_.view().camera();
   const Preferences wanted = preferences();
   head_m_ = headOf(state.eyes_m).position;
-  place_ = before(state.eyes_m, {camera.focus(), camera.forward(), camera.up()}, wanted.headset_ahead_m, -wanted.headset_below_m,
-                  scaleOf());
+  place_ = before(state.eyes_m, {camera.focus(), camera.forward(), camera.up()},
+                  wanted.headset_ahead_m, -wanted.headset_below_m, wanted.headset_scale);
   ahead_ = glm::normalize(place_.toRoom_m(camera.focus()) - head_m_);
   placed_ = true;
   by_arms_ = false;
