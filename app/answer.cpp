@@ -11,7 +11,9 @@
 #include <cstring>
 #include <new>
 
+#include "app/codes.h"
 #include "app/signals.h"
+#include "base/codes.h"
 #include "base/system.h"
 #include "base/utf8.h"
 
@@ -72,7 +74,10 @@ void reportToTerminal(double fraction, const std::string& step) {
 }
 
 Json errorJson(const Error& error) {
-  return {{"code", error.code}, {"what", error.what}, {"where", error.where}, {"next", error.next}};
+  return {{"code", error.code.str()},
+          {"what", error.what},
+          {"where", error.where},
+          {"next", error.next}};
 }
 
 void printAnswer(const std::string& name, const Json& answer) { print(name, answer, 2); }
@@ -113,11 +118,15 @@ int guarded(const std::string& name, bool json, const std::function<int()>& work
     }
     return signalReceived() != 0 ? 128 + signalReceived() : code;
   } catch (const std::bad_alloc&) {
-    return printError(name, {"OUT_OF_MEMORY", "There is not enough memory", "",
-                             "Close other programs or choose a smaller case"}, json);
+    return printError(name,
+                      {code::kOutOfMemory, "There is not enough memory", "",
+                       "Close other programs or choose a smaller case"},
+                      json);
   } catch (const std::exception& error) {
-    return printError(name, {"INTERNAL", std::string("The program had to stop: ") + error.what(), "",
-                             "Please report this"}, json);
+    return printError(name,
+                      {code::kInternal, std::string("The program had to stop: ") + error.what(), "",
+                       "Please report this"},
+                      json);
   }
 }
 

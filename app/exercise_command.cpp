@@ -2,6 +2,7 @@
 #include <cstdio>
 
 #include "app/answer.h"
+#include "app/codes.h"
 #include "app/lab_commands.h"
 #include "base/system.h"
 #include "base/utf8.h"
@@ -17,7 +18,7 @@ Result<fs::path> storageOf(const std::string& given, const Policy& policy) {
   if (!policy.storage.empty()) return policy.storage;
   if (policy.problem) return *policy.problem;  // which says where it is, perhaps
   if (const auto own = dataFolder()) return *own;
-  return Error{"NO_STORAGE", "It is not known where cases and exercises are kept", "--storage",
+  return Error{code::kNoStorage, "It is not known where cases and exercises are kept", "--storage",
                "Give a folder"};
 }
 

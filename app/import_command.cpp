@@ -4,11 +4,14 @@
 #include "app/answer.h"
 #include "app/lab_commands.h"
 #include "app/out_folder.h"
+#include "base/codes.h"
 #include "base/file.h"
 #include "base/log.h"
+#include "imaging/codes.h"
 #include "imaging/importer.h"
 #include "imaging/report/provenance.h"
 #include "imaging/report/report_page.h"
+#include "volume/codes.h"
 #include "volume/volume_files.h"
 
 namespace trephine {
@@ -77,21 +80,21 @@ Result<ImportRequest> importRequest(const ImportArguments& arguments) {
   for (const std::string& choice : arguments.choices) {
     const std::size_t equals = choice.find('=');
     if (equals == std::string::npos) {
-      return Error{"BAD_ARGUMENT", "A choice is written CODE=OPTION, not '" + choice + "'",
+      return Error{code::kBadArgument, "A choice is written CODE=OPTION, not '" + choice + "'",
                    "--choice", "The report lists codes and options"};
     }
-    const auto [known, added] =
-        request.answers.try_emplace(choice.substr(0, equals), choice.substr(equals + 1));
+    const auto [known, added] = request.answers.try_emplace(Code::named(choice.substr(0, equals)),
+                                                            choice.substr(equals + 1));
     if (!added && known->second != choice.substr(equals + 1)) {
-      return Error{"BAD_ARGUMENT", known->first + " is answered twice, and not alike", "--choice",
-                   "Answer each question once"};
+      return Error{code::kBadArgument, known->first.str() + " is answered twice, and not alike",
+                   "--choice", "Answer each question once"};
     }
   }
-  if (arguments.phase) request.answers["PHASES"] = std::to_string(*arguments.phase);
+  if (arguments.phase) request.answers[code::kPhases] = std::to_string(*arguments.phase);
   if (!arguments.crop.empty()) {
     request.crop = parseBox(arguments.crop);
     if (!request.crop) {
-      return Error{"BAD_ARGUMENT", "'" + arguments.crop + "' is no box of voxels", "--crop",
+      return Error{code::kBadArgument, "'" + arguments.crop + "' is no box of voxels", "--crop",
                    "Write I0:I1,J0:J1,K0:K1"};
     }
   }
@@ -102,7 +105,7 @@ Result<ImportRequest> importRequest(const ImportArguments& arguments) {
 
 // A face that nobody was asked about must not leave the computer unnoticed.
 void warnOfFace(const Provenance& provenance) {
-  if (std::ranges::find(provenance.unanswered, "FACE") == provenance.unanswered.end()) return;
+  if (std::ranges::find(provenance.unanswered, code::kFace) == provenance.unanswered.end()) return;
   spdlog::warn(
       "The patient's face can be reconstructed from the volume that was written: before it "
       "leaves this computer, write it again with --choice FACE=deface");
@@ -114,7 +117,7 @@ Status checkTargets(const ImportArguments& arguments) {
     if (Status can = checkVolumeFileName(arguments.write); !can) return can;
   }
   if (!arguments.report.empty() && !std::string_view(arguments.report).ends_with(".html")) {
-    return Error{"UNKNOWN_FORMAT", "A report is written as .html", arguments.report,
+    return Error{code::kUnknownFormat, "A report is written as .html", arguments.report,
                  "Give the file this ending; the window also saves PDF"};
   }
   for (const std::string& target : {arguments.write, arguments.report}) {
@@ -127,7 +130,7 @@ Status checkTargets(const ImportArguments& arguments) {
 Status checkSourcesAreSpared(const CtFolder& folder, const ImportArguments& arguments) {
   for (const std::string& target : {arguments.write, arguments.report}) {
     if (target.empty() || !folder.cameUpon(target)) continue;
-    return Error{"CANNOT_WRITE", "This file lies in the folder that is read, and would be lost",
+    return Error{code::kCannotWrite, "This file lies in the folder that is read, and would be lost",
                  target, "Choose another name, or remove the file first"};
   }
   return {};
@@ -167,16 +170,16 @@ int importCommand(const ImportArguments& arguments, bool json, const Progress& p
                                              : std::optional<std::string>(arguments.series);
   if (!uid) {
     if (Status saved = saveReport(); !saved) return fail(saved.error(), &folder->report());
-    const Error none{"ALL_REFUSED", "No series in the folder can be used", arguments.path,
+    const Error none{code::kAllRefused, "No series in the folder can be used", arguments.path,
                      "The findings say why for each"};
     return fail(folder->report().error.value_or(none), &folder->report());
   }
   Result<Volume> volume = folder->read(*uid, *request, progress);
   if (Status saved = saveReport(); !saved) return fail(saved.error(), &folder->report());
   if (!volume) return fail(volume.error(), &folder->report());
-  const std::vector<std::string> unused = folder->report().provenance->unused_answers;
-  for (const std::string& code : unused) {
-    spdlog::warn("The series did not ask {}: that answer changed nothing", code);
+  const std::vector<Code> unused = folder->report().provenance->unused_answers;
+  for (const Code& code : unused) {
+    spdlog::warn("The series did not ask {}: that answer changed nothing", code.str());
   }
   if (!arguments.write.empty()) {
     Status written = writeVolume(slabsOf(*volume), arguments.write, progress);

@@ -3,10 +3,14 @@
 #include <cstdio>
 
 #include "app/answer.h"
+#include "base/codes.h"
 #include "base/file.h"
 #include "base/log.h"
 #include "base/system.h"
 #include "base/utf8.h"
+#include "case/case.h"
+#include "case/codes.h"
+#include "exercise/names.h"
 #include "imaging/dicom/ct_writer.h"
 #include "lab/devices/device_measurement.h"
 #include "lab/exercise/explain.h"
@@ -24,8 +28,7 @@
 #include "lab/touch/rest_measurement.h"
 #include "lab/trades/trade_charts.h"
 #include "lab/trades/trades_measurement.h"
-#include "exercise/names.h"
-#include "case/case.h"
+#include "plot/codes.h"
 #include "training/recording_list.h"
 #include "training/replay.h"
 #include "volume/phantom_file.h"
@@ -48,7 +51,7 @@ void printMeasured(const char* name, const Measurement& measured, bool json) {
 Status checkCase(const std::string& source) {
   std::error_code ec;
   if (source.empty() || phantomNamed(source) || std::filesystem::exists(source, ec)) return {};
-  return Error{"MISSING_FOLDER", "There is no such case", source,
+  return Error{code::kMissingFolder, "There is no such case", source,
                "Give a folder of CT, a volume file, phantom:cranium or phantom:abdomen"};
 }
 
@@ -56,7 +59,7 @@ Status checkCase(const std::string& source) {
 template <class Draw>
 Result<Json> drawnFiles(const char* what, Draw&& draw) {
   auto drawn = draw();
-  if (!drawn && drawn.error().code == "CANNOT_DRAW") {
+  if (!drawn && drawn.error().code == code::kCannotDraw) {
     spdlog::warn("No {}: {}", what, drawn.error().what);
     return Json(nullptr);
   }
@@ -102,7 +105,7 @@ int replayCommand(const std::string& file, const std::string& case_source,
     if (!phantomNamed(source)) source.clear();
   }
   if (source.empty()) {
-    const Error error{"NO_CASE", "The recording was made on a case of its own", "--case",
+    const Error error{code::kNoCase, "The recording was made on a case of its own", "--case",
                       "Give the folder or the volume file that the session was run on"};
     return printError("replay", error, json);
   }
@@ -146,7 +149,7 @@ int recordingsCommand(const std::vector<std::string>& files, bool json,
   bool all = true;
   for (const std::string& file : files) {
     if (progress.cancelled()) {
-      return printError("recordings", {"CANCELLED", "Not all recordings were listed", "", ""},
+      return printError("recordings", {code::kCancelled, "Not all recordings were listed", "", ""},
                         json);
     }
     const ListedRecording row = listRecording(file);
@@ -227,7 +230,7 @@ Result<Json> measureStabilitySets(const StabilityArguments& arguments, std::stri
   Result<std::vector<StabilitySet>> sets = readStabilitySets(names);
   if (!sets) return sets.error();
   if (arguments.seconds && !(*arguments.seconds >= 1.0 && *arguments.seconds <= 600.0)) {
-    return Error{"BAD_ARGUMENT", "The time must lie between 1 and 600 s", "--seconds", ""};
+    return Error{code::kBadArgument, "The time must lie between 1 and 600 s", "--seconds", ""};
   }
   std::vector<StabilityCell> all = fullGrid(), some = representativeCells();
   if (!arguments.grid.empty()) {
@@ -334,7 +337,7 @@ int measureImportCommand(const ImportOptions& options, const std::string& out, b
   std::error_code error;
   const std::filesystem::path self = std::filesystem::read_symlink("/proc/self/exe", error);
   if (error) {
-    return printError(kName, {"CANNOT_RUN", "The program does not find itself", "", ""}, json);
+    return printError(kName, {code::kCannotRun, "The program does not find itself", "", ""}, json);
   }
   Result<ImportMeasurement> measured = measureImport(options, ownSubjects({self}), out, progress);
   if (!measured) {

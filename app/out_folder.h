@@ -4,6 +4,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/codes.h"
 #include "base/file.h"
 
 namespace trephine {
@@ -39,7 +40,7 @@ inline Status checkFolderOf(const std::filesystem::path& target) {
   const std::filesystem::path folder = target.parent_path();
   std::error_code ec;
   if (folder.empty() || std::filesystem::is_directory(folder, ec)) return {};
-  return Error{"CANNOT_WRITE", "There is no such folder", folder.string(),
+  return Error{code::kCannotWrite, "There is no such folder", folder.string(),
                "Make the folder first, or choose another"};
 }
 

@@ -8,6 +8,7 @@
 
 #include "app/answer.h"
 #include "app/lab_commands.h"
+#include "base/codes.h"
 #include "base/pin.h"
 #include "exercise/policy.h"
 
@@ -42,7 +43,7 @@ class QuietTerminal {
 Result<std::string> readLine(const Progress& progress) {
   std::string line;
   while (line.size() < kMostTyped) {
-    if (progress.cancelled()) return Error{"CANCELLED", "No PIN was made", "", ""};
+    if (progress.cancelled()) return Error{code::kCancelled, "No PIN was made", "", ""};
     pollfd in{STDIN_FILENO, POLLIN, 0};
     if (::poll(&in, 1, kPoll_ms) <= 0) continue;
     char c = 0;
@@ -73,7 +74,8 @@ Result<Pin> askForPin(const Progress& progress) {
   if (!first) return first.error();
   const Result<std::string> second = askOnTerminal("The same again: ", progress);
   if (!second) return second.error();
-  if (*first != *second) return Error{"BAD_PIN", "The two are not the same", "", "Type it again"};
+  if (*first != *second)
+    return Error{code::kBadPin, "The two are not the same", "", "Type it again"};
   return makePin(*first);
 }
 

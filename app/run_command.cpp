@@ -6,13 +6,16 @@
 #include "app/answer.h"
 #include "app/lab_commands.h"
 #include "app/out_folder.h"
+#include "base/codes.h"
 #include "base/file.h"
 #include "base/log.h"
 #include "desk/opening.h"
 #include "exercise/arms_file.h"
+#include "exercise/codes.h"
 #include "exercise/exercise_fields.h"
 #include "exercise/names.h"
 #include "lab/exercise/exercise_picture.h"
+#include "render/codes.h"
 #include "session/arm_devices.h"
 #include "session/session.h"
 #include "training/tick_table.h"
@@ -33,8 +36,9 @@ Status applySetting(const FieldOf<Exercise>& field, const std::string& text, con
   if (!value) return value.error();
   const auto lock = kindOf(kLockNames, shape.row.lock);
   if (lock && locks.contains(*lock) && *value != valueOf(field, exercise)) {
-    return Error{"LOCKED", std::string("The workstation or the exercise locks the ") + shape.row.lock,
-                 option, "Leave the option away"};
+    return Error{code::kLocked,
+                 std::string("The workstation or the exercise locks the ") + shape.row.lock, option,
+                 "Leave the option away"};
   }
   setValue(field, exercise, *value);
   return {};
@@ -78,7 +82,7 @@ Status checkRunTargets(const RunArguments& arguments, const fs::path& recording)
     if (Status free = checkNewFile(target, option); !free) return free;
     const fs::path file = whole(target);
     if (std::find(taken.begin(), taken.end(), file) != taken.end()) {
-      return Error{"CANNOT_WRITE", "The run itself writes another file of this name", target,
+      return Error{code::kCannotWrite, "The run itself writes another file of this name", target,
                    std::string("Give ") + option + " a name of its own"};
     }
     taken.push_back(file);
@@ -94,7 +98,7 @@ Status runRealTime(Session& session, double seconds, const Progress& progress) {
   }
   const bool cancelled = progress.cancelled() && !session.finished();
   if (Status stopped = session.stop(); !stopped) return stopped;
-  if (cancelled) return Error{"CANCELLED", "The run was cancelled", "", ""};
+  if (cancelled) return Error{code::kCancelled, "The run was cancelled", "", ""};
   return {};
 }
 
@@ -149,7 +153,8 @@ void saveWhatWasAsked(const RunArguments& arguments, const fs::path& recording, 
 
 // What a machine cannot draw is no fault of the run.
 bool isOfThisMachine(const Error& error) {
-  return error.code == "NO_DISPLAY" || error.code == "NO_OPENGL" || error.code == "OUT_OF_MEMORY";
+  return error.code == code::kNoDisplay || error.code == code::kNoOpengl ||
+         error.code == code::kOutOfMemory;
 }
 
 // Runs the exercise and leaves its files in `out`. The Error is of a run that took no step.
@@ -172,7 +177,7 @@ Result<RunOutcome> runExercise(const RunArguments& arguments, const Policy& poli
   const double seconds =
       arguments.seconds.value_or(options.script ? options.script->duration_s() : 10.0);
   if (!(seconds > 0.0 && seconds <= 86400.0)) {
-    return Error{"BAD_ARGUMENT", "The time must lie above 0 and at most a day",
+    return Error{code::kBadArgument, "The time must lie above 0 and at most a day",
                  arguments.seconds ? "--seconds" : script_file,
                  arguments.seconds ? "" : "The script has no length: give --seconds"};
   }
@@ -193,7 +198,8 @@ Result<RunOutcome> runExercise(const RunArguments& arguments, const Policy& poli
   Result<std::unique_ptr<Session>> session = Session::create(of, options);
   // Another run may have taken the name meanwhile.
   std::error_code ec;
-  while (!session && session.error().code == "CANNOT_WRITE" && fs::exists(options.recording, ec)) {
+  while (!session && session.error().code == code::kCannotWrite &&
+         fs::exists(options.recording, ec)) {
     options.recording = freshFile(out, "session", ".h5");
     if (Status can = checkRunTargets(arguments, options.recording); !can) return can.error();
     session = Session::create(of, options);
@@ -232,7 +238,7 @@ int runCommand(const RunArguments& arguments, const Policy& policy, bool json,
   if (!outcome) {
     Error error = outcome.error();
     const bool asked = !arguments.csv.empty() || !arguments.save_volume.empty();
-    if (error.code == "CANCELLED" && asked)
+    if (error.code == code::kCancelled && asked)
       error.what += "; the run had not begun, nothing was saved";
     return printError("run", error, json);
   }

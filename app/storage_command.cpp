@@ -8,6 +8,7 @@
 
 #include "app/answer.h"
 #include "app/lab_commands.h"
+#include "base/codes.h"
 #include "base/utf8.h"
 #include "library/case_library.h"
 #include "library/shared_storage.h"
@@ -38,16 +39,17 @@ int listStorageCommand(const std::string& storage, bool open, const Policy& poli
   const bool wanted = !storage.empty() || !policy.storage.empty();
   if (!ec && !there && wanted) {
     return printError("storage-list",
-                      {"MISSING_FOLDER", "This folder is not there", at->string(),
+                      {code::kMissingFolder, "This folder is not there", at->string(),
                        "Check its name, and whether its disk is connected"},
                       json);
   }
   std::filesystem::directory_iterator look(*at / "cases", ec);
   if (ec == std::errc::permission_denied) {
-    return printError("storage-list",
-                      {"CANNOT_READ", "This account may not look at the cases here", at->string(),
-                       "Ask an administrator for the group trephine, and log in again"},
-                      json);
+    return printError(
+        "storage-list",
+        {code::kCannotRead, "This account may not look at the cases here", at->string(),
+         "Ask an administrator for the group trephine, and log in again"},
+        json);
   }
   CaseLibrary library(*at);
   library.bringUpToDate(progress);
@@ -62,7 +64,7 @@ int listStorageCommand(const std::string& storage, bool open, const Policy& poli
       problem = problemOf(library.load(all[i].id, part), all[i].id);
     }
     if (progress.cancelled()) {
-      return printError("storage-list", {"CANCELLED", "The cases were not all opened", "", ""},
+      return printError("storage-list", {code::kCancelled, "The cases were not all opened", "", ""},
                         json);
     }
     bad += problem ? 1 : 0;

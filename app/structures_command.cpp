@@ -11,9 +11,11 @@
 #include "app/answer.h"
 #include "app/lab_commands.h"
 #include "app/out_folder.h"
+#include "base/codes.h"
 #include "base/log.h"
 #include "base/utf8.h"
 #include "case/case.h"
+#include "imaging/codes.h"
 #include "imaging/dicom/seg_writer.h"
 #include "imaging/report/answers.h"
 #include "imaging/source_uids.h"
@@ -22,6 +24,7 @@
 #include "structures/compare.h"
 #include "structures/grow.h"
 #include "structures/surface.h"
+#include "volume/codes.h"
 #include "volume/segmentation.h"
 #include "volume/volume_files.h"
 
@@ -45,7 +48,8 @@ Result<std::vector<double>> numbersOf(const std::string& text, std::size_t count
     const bool last = n + 1 == count;
     if (failed != std::errc() || !std::isfinite(value) || (last ? next != end : next == end) ||
         (!last && *next != ',')) {
-      return Error{"BAD_ARGUMENT", "It is written " + form + ", not '" + text + "'", option, ""};
+      return Error{code::kBadArgument, "It is written " + form + ", not '" + text + "'", option,
+                   ""};
     }
     numbers.push_back(value);
     at = last ? next : next + 1;
@@ -119,8 +123,8 @@ Result<GrowOptions> optionsOf(const GrowArguments& arguments, std::vector<double
 // The patient's own scan is never written over.
 Status checkStructureTarget(const std::string& target, const std::string& case_source) {
   if (!target.ends_with(".nrrd") && !checkVolumeFileName(target)) {
-    return Error{"UNKNOWN_FORMAT", "Label maps are written as .nrrd, .mha, .nii or .nii.gz", target,
-                 "Choose one of these endings"};
+    return Error{code::kUnknownFormat, "Label maps are written as .nrrd, .mha, .nii or .nii.gz",
+                 target, "Choose one of these endings"};
   }
   if (Status there = checkFolderOf(target); !there) return there;
   if (Status kept = keepsCase(structuresFile(target), case_source); !kept) return kept;
@@ -147,7 +151,7 @@ int growCommand(const GrowArguments& arguments, bool json, const Progress& progr
   // What is asked for wrongly is said before a CT is read.
   const std::string name = structureName(arguments.name);
   if (name.empty()) {
-    return failed({"BAD_ARGUMENT", "A structure needs a name that can be seen", "--name", ""});
+    return failed({code::kBadArgument, "A structure needs a name that can be seen", "--name", ""});
   }
   std::vector<double> box_mm;
   auto options = optionsOf(arguments, box_mm);
@@ -268,15 +272,16 @@ Result<GivenAnswers> answersOf(const std::vector<std::string>& choices) {
   for (const std::string& choice : choices) {
     const std::size_t equals = choice.find('=');
     if (equals == std::string::npos || equals == 0) {
-      return Error{"BAD_ARGUMENT", "It is written CODE=OPTION, not '" + choice + "'", "--choice",
-                   ""};
+      return Error{code::kBadArgument, "It is written CODE=OPTION, not '" + choice + "'",
+                   "--choice", ""};
     }
-    const std::string code = choice.substr(0, equals);
-    static const std::set<std::string> kCodes{"OVERLAP",     "HU_NOT_TISSUE", "MIRRORED",
-                                              "OTHER_FRAME", "NO_AFFINE",     "FORMS_DIFFER"};
+    const Code code = Code::named(choice.substr(0, equals));
+    static const std::set<Code> kCodes{code::kOverlap,    code::kHuNotTissue, code::kMirrored,
+                                       code::kOtherFrame, code::kNoAffine,    code::kFormsDiffer};
     const bool of_structures = kCodes.contains(code), of_ct = isChoice(code);
     if (!of_structures && !of_ct) {
-      return Error{"BAD_CHOICE", "There is no choice '" + code + "'", "--choice",
+      return Error{code::kBadChoice, "There is no choice '" + choice.substr(0, equals) + "'",
+                   "--choice",
                    "Choose OVERLAP, HU_NOT_TISSUE, MIRRORED, OTHER_FRAME, NO_AFFINE, FORMS_DIFFER, "
                    "or one that 'import' asks of the CT"};
     }
@@ -289,7 +294,7 @@ Result<GivenAnswers> answersOf(const std::vector<std::string>& choices) {
 // Where the case's CT asks something: how it is answered here.
 Error withWay(Error error, const std::string& case_source) {
   if (!isChoice(error.code)) return error;
-  error.next = "Answer with --choice " + error.code + "=OPTION: 'trephine-lab import " +
+  error.next = "Answer with --choice " + error.code.str() + "=OPTION: 'trephine-lab import " +
                case_source + "' lists the options";
   return error;
 }
@@ -305,8 +310,9 @@ StructureRequest request(const std::optional<double>& threshold, const Answers& 
 // Also where the file turns out to have no shares: a slip of the pen is said.
 Status checkThreshold(const std::optional<double>& threshold) {
   if (!threshold || (*threshold >= 0.0 && *threshold <= 1.0)) return {};
-  return Error{"BAD_THRESHOLD", "The threshold of a fractional segmentation is a share of 0 to 1",
-               "--threshold", "Give one, such as 0.5"};
+  return Error{code::kBadThreshold,
+               "The threshold of a fractional segmentation is a share of 0 to 1", "--threshold",
+               "Give one, such as 0.5"};
 }
 
 void print(const StructureFit& fit) {
@@ -365,7 +371,7 @@ Result<std::shared_ptr<const LabelMap>> structuresOf(const StructureExportArgume
                                                      const Progress& progress) {
   if (arguments.structures.empty()) {
     if (of.structures) return of.structures;
-    return Error{"NO_STRUCTURE", "The case brings no structures of its own", "--structures",
+    return Error{code::kNoStructure, "The case brings no structures of its own", "--structures",
                  "Give a label map or a segmentation of it"};
   }
   auto fit = importStructures(arguments.structures, *of.volume,
@@ -383,7 +389,7 @@ Result<LabelMap> chosenOf(const LabelMap& map, const std::vector<std::string>& n
     if (!found) {
       std::string all;
       for (const Structure& s : map.structures) all += (all.empty() ? "" : ", ") + s.name;
-      return Error{"NO_STRUCTURE", "The case has no structure '" + name + "'", "--name",
+      return Error{code::kNoStructure, "The case has no structure '" + name + "'", "--name",
                    "Choose among " + all};
     }
     wanted[std::size_t(found->label)] = true;
@@ -430,11 +436,11 @@ int exportStructuresCommand(const StructureExportArguments& arguments, bool json
   if (Status share = checkThreshold(arguments.threshold); !share) return failed(share.error());
   const bool stl = arguments.write.ends_with(".stl");
   if (arguments.source_uids && arguments.dicom.empty()) {
-    return failed({"BAD_ARGUMENT", "The CT's own UIDs go into DICOM alone", "--source-uids",
+    return failed({code::kBadArgument, "The CT's own UIDs go into DICOM alone", "--source-uids",
                    "Give --dicom FOLDER as well"});
   }
   if (arguments.write.empty() == arguments.dicom.empty()) {
-    return failed({"BAD_ARGUMENT", "Where to is not said, or twice", "--write, --dicom",
+    return failed({code::kBadArgument, "Where to is not said, or twice", "--write, --dicom",
                    "Give --write FILE or --dicom FOLDER"});
   }
   if (Status target = !arguments.dicom.empty() ? keepsCase(arguments.dicom, arguments.case_source)

@@ -6,15 +6,18 @@
 #include <cstdlib>
 
 #include "app/answer.h"
+#include "app/codes.h"
 #include "app/out_folder.h"
 #include "app/signals.h"
 #include "base/crash_report.h"
 #include "base/file.h"
 #include "base/log.h"
 #include "base/system.h"
+#include "render/codes.h"
 #include "ui/common/colours.h"
 #include "ui/common/error_dialog.h"
 #include "ui/common/preferences.h"
+#include "ui/common/translations.h"
 #include "ui/common/words.h"
 #include "ui/frame/exercise.h"
 #include "ui/frame/main_window.h"
@@ -31,7 +34,7 @@ Progress progress;  // cancelled by a signal
 
 void reportCrashes(const std::filesystem::path& folder) {
   const Status begun = reportCrashesTo(folder);
-  if (!begun) spdlog::warn("A crash would leave no report: {}", begun.error().code);
+  if (!begun) spdlog::warn("A crash would leave no report: {}", begun.error().code.str());
 }
 
 int playExercise(const ExerciseOptions& options, bool json) {
@@ -65,7 +68,7 @@ int run(int argc, char** argv) {
     cli.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return cli.exit(error);
-    return printError("exercise", {"BAD_USE", error.what(), "", "See trephine --help"},
+    return printError("exercise", {code::kBadUse, error.what(), "", "See trephine --help"},
                       wantsJson(argc, argv));
   }
 
@@ -75,7 +78,7 @@ int run(int argc, char** argv) {
   if (crashes) reportCrashes(*crashes);
   prepareMemory();
   const Status display = prepareDisplay();
-  const bool can_say = exercise.empty() && !display && display.error().code != "NO_DISPLAY";
+  const bool can_say = exercise.empty() && !display && display.error().code != code::kNoDisplay;
   if (!display) printError("exercise", display.error(), json);
   if (!display && !can_say) return 1;
   std::unique_ptr<QApplication> application;
@@ -86,6 +89,7 @@ int run(int argc, char** argv) {
   }
   QApplication::setApplicationName("trephine");
   QApplication::setApplicationDisplayName("Trephine");
+  installTranslations(*application, resourceFolder() / "translations", QLocale());
   const Preferences wanted = preferences();
   colours::applyTheme(*application, wanted.theme, wanted.text_percent);
   if (!exercise.empty()) {

@@ -6,6 +6,7 @@
 #include "app/answer.h"
 #include "app/lab_commands.h"
 #include "app/signals.h"
+#include "base/codes.h"
 #include "base/crash_report.h"
 #include "base/log.h"
 #include "base/purpose.h"
@@ -339,7 +340,7 @@ int run(int argc, char** argv) {
       sayError("%s\nRun with --help for more information.\n", what.c_str());
       return 1;
     }
-    return printError("usage", {"BAD_ARGUMENT", what, "the command line", "See --help"}, true);
+    return printError("usage", {code::kBadArgument, what, "the command line", "See --help"}, true);
   }
   setUpLog(json);
   if (const auto crashes = stateFolder()) (void)reportCrashesTo(*crashes);

@@ -16,6 +16,7 @@
 #include <ctime>
 #include <optional>
 
+#include "base/codes.h"
 #include "base/descriptor.h"
 #include "base/json.h"
 
@@ -42,7 +43,7 @@ Descriptor aboveStandard(int fd) {
 }
 
 Error cannotRun(const ChildCommand& command, int error) {
-  return {"CANNOT_RUN", std::string("A program could not be run: ") + std::strerror(error),
+  return {code::kCannotRun, std::string("A program could not be run: ") + std::strerror(error),
           std::filesystem::path(command.words.front()).filename().string(), ""};
 }
 
@@ -153,7 +154,7 @@ Result<ChildRun> runChild(const ChildCommand& command, const Progress& progress)
   rusage usage{};
   while (::wait4(child, &status, 0, &usage) < 0 && errno == EINTR) {
   }
-  if (progress.cancelled()) return Error{"CANCELLED", "It was cancelled", "", ""};
+  if (progress.cancelled()) return Error{code::kCancelled, "It was cancelled", "", ""};
   if (report.error != 0) return cannotRun(command, report.error);
   if (process.get() < 0) return cannotRun(command, ENOSYS);
   run.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
@@ -167,7 +168,8 @@ std::optional<Error> errorSaid(const std::filesystem::path& output) {
   if (!said || !said->contains("error")) return {};
   try {
     const Json& error = said->at("error");
-    return Error{error.at("code"), error.at("what"), error.at("where"), error.at("next")};
+    return Error{Code::named(error.at("code").get<std::string>()), error.at("what"),
+                 error.at("where"), error.at("next")};
   } catch (const Json::exception&) {
     return {};
   }

@@ -5,6 +5,8 @@
 #include <cstdint>
 #include <system_error>
 
+#include "base/codes.h"
+
 namespace trephine {
 
 namespace fs = std::filesystem;
@@ -18,7 +20,7 @@ Status enoughRoom(const fs::path& folder, double bytes, const std::string& what)
   const auto mb = [](double n) {
     return std::to_string(std::int64_t(std::min(std::ceil(n / 1e6), 9e18))) + " MB";
   };
-  return Error{"CANNOT_WRITE",
+  return Error{code::kCannotWrite,
                "The disk has no room for " + what + ": it needs " + mb(bytes) + ", and " +
                    mb(double(room.available)) + " are free",
                folder.string(), "Free some space, or choose another storage folder"};

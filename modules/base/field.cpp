@@ -4,6 +4,8 @@
 #include <charconv>
 #include <cmath>
 
+#include "base/codes.h"
+
 namespace trephine {
 
 namespace {
@@ -153,7 +155,7 @@ void writeField(Json& json, const FieldShape& field, const FieldValue& value) {
 
 Status checkNumber(const FieldRow& row, double value, const std::string& of) {
   if (row.range.holds(value)) return {};
-  return Error{"IMPOSSIBLE_NUMBER",
+  return Error{code::kImpossibleNumber,
                "The value " + plainNumber(value) + " must lie " + row.range.words(),
                of + ": " + row.key, "Correct that value"};
 }
@@ -173,7 +175,7 @@ Status checkField(const FieldShape& field, const FieldValue& value, const std::s
 Result<FieldValue> parseField(const FieldShape& field, const std::string& text,
                               const std::string& where) {
   const auto bad = [&](const std::string& what, const std::string& next) {
-    return Error{"BAD_ARGUMENT", what, where, next};
+    return Error{code::kBadArgument, what, where, next};
   };
   switch (field.kind) {
     case FieldKind::number:

@@ -9,6 +9,7 @@
 #include <cstring>
 #include <fstream>
 
+#include "base/codes.h"
 #include "base/descriptor.h"
 #include "base/shared_folder.h"
 #include "base/stretched_hash.h"
@@ -65,7 +66,7 @@ Status replaceFile(const fs::path& target, const std::function<Status(const fs::
 }
 
 Error writeError(const fs::path& target, int error) {
-  return Error{"CANNOT_WRITE",
+  return Error{code::kCannotWrite,
                std::string("The file could not be written: ") +
                    (error ? std::strerror(error) : "unknown reason"),
                target.string(), afterFailedWrite(error) + "; nothing that was there is lost"};
@@ -85,7 +86,7 @@ Status checkNewFile(const fs::path& file, const std::string& option) {
   std::error_code ec;
   const fs::file_status there = fs::symlink_status(file, ec);
   if (fs::exists(there)) {
-    return Error{"CANNOT_WRITE",
+    return Error{code::kCannotWrite,
                  fs::is_directory(there)
                      ? "This is a folder, not a new file"
                      : "There is something of this name already, which would be lost",
@@ -93,7 +94,7 @@ Status checkNewFile(const fs::path& file, const std::string& option) {
   }
   const fs::path folder = file.has_parent_path() ? file.parent_path() : ".";
   if (!fs::is_directory(folder, ec)) {
-    return Error{"MISSING_FOLDER", "There is no folder for this file", file.string(),
+    return Error{code::kMissingFolder, "There is no folder for this file", file.string(),
                  "Make it, or give " + option + " another place"};
   }
   const fs::path temporary = temporaryFor(file);
@@ -106,22 +107,23 @@ Status checkNewFile(const fs::path& file, const std::string& option) {
 
 Result<std::string> readWholeFile(const fs::path& file, std::size_t most_bytes) {
   const char* const check = "Check the name and that you may read it";
-  const auto failed = [&](const char* code, int error) {
+  const auto failed = [&](Code code, int error) {
     return Error{code, std::string("The file cannot be read: ") + std::strerror(error),
                  file.string(), check};
   };
   // Opening a pipe would wait for its writer without O_NONBLOCK, which a regular file ignores.
   const Descriptor opened(::open(file.c_str(), O_RDONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC));
   if (!opened.ok()) {
-    return failed(errno == ENOENT || errno == ENOTDIR ? "MISSING_FILE" : "CANNOT_READ", errno);
+    return failed(errno == ENOENT || errno == ENOTDIR ? code::kMissingFile : code::kCannotRead,
+                  errno);
   }
   struct stat of {};
-  if (::fstat(opened.get(), &of) != 0) return failed("CANNOT_READ", errno);
+  if (::fstat(opened.get(), &of) != 0) return failed(code::kCannotRead, errno);
   if (!S_ISREG(of.st_mode)) {
-    return Error{"NO_FILE", "This is no file but a folder, a pipe or a device", file.string(),
+    return Error{code::kNoFile, "This is no file but a folder, a pipe or a device", file.string(),
                  check};
   }
-  const Error too_large{"TOO_LARGE",
+  const Error too_large{code::kTooLarge,
                         "The file is larger than " + std::to_string(most_bytes >> 20) + " MB",
                         file.string(), "Choose another file"};
   if (std::uintmax_t(of.st_size) > most_bytes) return too_large;
@@ -130,7 +132,7 @@ Result<std::string> readWholeFile(const fs::path& file, std::size_t most_bytes) 
   while (got < text.size()) {
     const ssize_t part = ::read(opened.get(), text.data() + got, text.size() - got);
     if (part < 0 && errno == EINTR) continue;
-    if (part < 0) return failed("CANNOT_READ", errno);
+    if (part < 0) return failed(code::kCannotRead, errno);
     if (part == 0) break;  // it became shorter meanwhile
     got += std::size_t(part);
   }
@@ -165,7 +167,7 @@ Status makeFolder(const fs::path& folder) {
   fs::create_directories(folder, ec);
   const std::string reason = ec ? ec.message() : "a file is in its place";
   if (ec || !fs::is_directory(folder, ec)) {
-    return Error{"CANNOT_WRITE", "The folder could not be made: " + reason, folder.string(),
+    return Error{code::kCannotWrite, "The folder could not be made: " + reason, folder.string(),
                  "Choose another folder"};
   }
   return {};
@@ -177,7 +179,7 @@ Result<fs::path> temporaryFolder() {
   const fs::path folder = given ? named : "/tmp";
   std::error_code ec;
   if (fs::is_directory(folder, ec)) return folder;
-  return Error{"NO_TEMPORARY_FOLDER", "There is no folder for temporary files",
+  return Error{code::kNoTemporaryFolder, "There is no folder for temporary files",
                (given ? "TMPDIR=" : "") + folder.string(),
                "Set TMPDIR to a folder that you may write to"};
 }

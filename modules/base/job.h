@@ -12,6 +12,7 @@
 #include <type_traits>
 #include <utility>
 
+#include "base/codes.h"
 #include "base/progress.h"
 #include "base/result.h"
 
@@ -67,10 +68,10 @@ class Job {
     try {
       return work(progress);
     } catch (const std::bad_alloc&) {
-      return Error{"OUT_OF_MEMORY", "There is not enough memory for this", "",
+      return Error{code::kOutOfMemory, "There is not enough memory for this", "",
                    "Close other programs or choose a smaller series"};
     } catch (const std::exception& problem) {
-      return Error{"UNEXPECTED", problem.what(), "", "Try again, and report it if it stays"};
+      return Error{code::kUnexpected, problem.what(), "", "Try again, and report it if it stays"};
     }
   }
   void prepare();

@@ -4,6 +4,7 @@
 #include <limits>
 #include <set>
 
+#include "base/codes.h"
 #include "base/file.h"
 #include "base/utf8.h"
 
@@ -181,12 +182,12 @@ Result<Json> parseJson(std::string_view text, const std::string& file, const Pro
   std::string reason;
   try {
     if (Json::sax_parse(text, &maker)) return maker.take();
-    if (maker.wasCancelled()) return Error{"CANCELLED", "Reading was cancelled", file, ""};
+    if (maker.wasCancelled()) return Error{code::kCancelled, "Reading was cancelled", file, ""};
     reason = maker.reason();
   } catch (const std::exception& e) {  // no memory
     reason = e.what();
   }
-  return Error{"BAD_JSON", "The file is not valid JSON: " + shorten(std::move(reason), 200),
+  return Error{code::kBadJson, "The file is not valid JSON: " + shorten(std::move(reason), 200),
                file + (maker.field().empty() ? "" : ": " + maker.field()),
                "Correct it at that place"};
 }
@@ -196,8 +197,8 @@ Result<Json> readJsonFile(const std::filesystem::path& file, const Progress& pro
   Result<std::string> text = readWholeFile(file, most_bytes);
   if (text) return parseJson(*text, file.string(), progress);
   Error error = text.error();
-  const bool too_large = error.code == "TOO_LARGE";
-  error.code = too_large ? "BAD_JSON" : "MISSING_FILE";
+  const bool too_large = error.code == code::kTooLarge;
+  error.code = too_large ? code::kBadJson : code::kMissingFile;
   if (too_large) error.what += ", which none of our files of this kind is";
   return error;
 }
@@ -225,7 +226,7 @@ std::string JsonReader::fieldName(const char* key) const {
 void JsonReader::fail(const char* key, const std::string& what, const std::string& next) {
   if (state_->error) return;
   state_->error =
-      Error{"BAD_FIELD", what, state_->file + ": " + fieldName(key),
+      Error{code::kBadField, what, state_->file + ": " + fieldName(key),
             next.empty() ? "Correct it; the file's schema describes every field" : next};
 }
 

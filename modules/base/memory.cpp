@@ -10,6 +10,8 @@
 #include <map>
 #include <string>
 
+#include "base/codes.h"
+
 namespace trephine {
 
 namespace {
@@ -124,7 +126,7 @@ Status enoughMemory(double needed_mb, const std::string& what, const std::string
   if (needed_mb <= usable_mb) return {};
   const auto figure = [](double mb) { return std::to_string(std::llround(mb)) + " MB"; };
   return Error{
-      "OUT_OF_MEMORY",
+      code::kOutOfMemory,
       what + " needs " + figure(needed_mb) + " of memory, and " + figure(usable_mb) + " can be had",
       where, kLess};
 }
@@ -140,7 +142,7 @@ Status enoughToRead(double needed_mb, const std::string& what, const std::string
 }
 
 Error outOfMemory(const std::string& what, const std::string& where) {
-  return {"OUT_OF_MEMORY", "There is not enough memory " + what, where, kLess};
+  return {code::kOutOfMemory, "There is not enough memory " + what, where, kLess};
 }
 
 }  // namespace trephine

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdint>
 
+#include "base/codes.h"
 #include "base/hex.h"
 #include "base/stretched_hash.h"
 
@@ -43,8 +44,8 @@ std::string hashOf(std::string_view text, const std::string& salt_hex, int itera
 
 Result<Pin> makePin(std::string_view text) {
   if (!mayBePin(text)) {
-    return Error{"BAD_PIN", "A PIN has 4 to 12 digits or letters from A to Z, and nothing else", "",
-                 "Choose another"};
+    return Error{code::kBadPin, "A PIN has 4 to 12 digits or letters from A to Z, and nothing else",
+                 "", "Choose another"};
   }
   const Result<std::string> salt = randomHex(kSaltBytes);
   if (!salt) return salt.error();

@@ -7,12 +7,14 @@
 #include <utility>
 #include <variant>
 
+#include "base/code.h"
+
 namespace trephine {
 
-// One clear sentence in four parts. `code` is stable and upper case (MISSING_FOLDER); `what` says
-// what went wrong, `where` names file, field or part, `next` says what to do.
+// One clear sentence in four parts. `code` is for programs; `what` says what went wrong, `where`
+// names file, field or part, `next` says what to do.
 struct Error {
-  std::string code;
+  Code code;
   std::string what;
   std::string where;
   std::string next;
@@ -48,7 +50,8 @@ class [[nodiscard]] Result {
 // What a person should know of something that went on all the same. `code` as of an Error, `text` a
 // sentence.
 struct Warning {
-  std::string code, text;
+  Code code;
+  std::string text;
 };
 
 // Success, or an Error.

@@ -7,6 +7,7 @@
 
 #include <vector>
 
+#include "base/codes.h"
 #include "base/hex.h"
 
 namespace trephine {
@@ -39,7 +40,7 @@ bool sameSecret(std::string_view a, std::string_view b) {
 Result<std::string> randomHex(int bytes) {
   std::vector<std::uint8_t> random(std::size_t(bytes), 0);
   if (RAND_bytes(random.data(), bytes) != 1) {
-    return Error{"NO_RANDOM_NUMBERS", "The system gives no random numbers", "", "Try again"};
+    return Error{code::kNoRandomNumbers, "The system gives no random numbers", "", "Try again"};
   }
   return hexOf(random);
 }

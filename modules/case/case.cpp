@@ -6,9 +6,13 @@
 #include <utility>
 #include <vector>
 
+#include "base/codes.h"
 #include "base/memory.h"
+#include "case/codes.h"
+#include "imaging/codes.h"
 #include "imaging/importer.h"
 #include "imaging/report/answers.h"
+#include "volume/codes.h"
 #include "volume/phantom_file.h"
 #include "volume/volume_files.h"
 
@@ -25,7 +29,7 @@ Result<Case> importBest(const std::string& source, const Answers& answers,
   const std::optional<std::string> series = folder->bestSeries(answers);
   if (!series) {
     if (folder->report().error) return *folder->report().error;
-    return Error{"ALL_REFUSED", "No series in the folder can be used", source,
+    return Error{code::kAllRefused, "No series in the folder can be used", source,
                  "The import report says why for each"};
   }
   ImportRequest request;
@@ -57,7 +61,7 @@ Result<Case> read(const std::string& source, const Answers& answers, const Progr
     }
     return built_in;
   }
-  Result<Volume> volume = readVolume(source, progress, answerTo(answers, "FORMS_DIFFER"));
+  Result<Volume> volume = readVolume(source, progress, answerTo(answers, code::kFormsDiffer));
   if (!volume) return volume.error();
   return caseOf(std::make_shared<const Volume>(*std::move(volume)));
 }
@@ -77,7 +81,7 @@ const char* exerciseAnatomy(BodyRegion region) {
 
 Result<Case> readCase(const std::string& source, const Progress& progress, const Answers& answers) {
   if (source.empty()) {
-    return Error{"NO_CASE", "The scene names no case and none was given", "--case",
+    return Error{code::kNoCase, "The scene names no case and none was given", "--case",
                  "Give a folder of CT, or phantom:cranium or phantom:abdomen"};
   }
   try {
@@ -104,7 +108,7 @@ Status keepsCase(const std::filesystem::path& target, const std::string& source)
     if (!fs::exists(file, ec)) continue;
     const fs::path from = fs::canonical(file, ec);
     if (std::mismatch(from.begin(), from.end(), to.begin(), to.end()).first != from.end()) continue;
-    return Error{"CANNOT_WRITE", "This is of the case that is read, and would be lost",
+    return Error{code::kCannotWrite, "This is of the case that is read, and would be lost",
                  target.string(), "Choose another name or place"};
   }
   return {};

@@ -4,6 +4,9 @@
 #include <iterator>
 #include <utility>
 
+#include "base/codes.h"
+#include "case/codes.h"
+#include "exercise/codes.h"
 #include "exercise/exercise_structures.h"
 
 namespace trephine {
@@ -20,12 +23,12 @@ std::optional<Warning> anatomyWarning(const Exercise& exercise,
   if (exercise.anatomy != exerciseAnatomy(anatomy->region)) {
     const bool known = exercise.anatomy == "cranium" || exercise.anatomy == "abdomen";
     if (!known) return {};
-    return Warning{"OTHER_ANATOMY", "The case shows " +
-                                        std::string(shown == "head" ? "a " : "an ") + shown +
-                                        ", and the exercise is for the " + exercise.anatomy};
+    return Warning{code::kOtherAnatomy, "The case shows " +
+                                            std::string(shown == "head" ? "a " : "an ") + shown +
+                                            ", and the exercise is for the " + exercise.anatomy};
   }
   if (anatomy->region == BodyRegion::head && !anatomy->vault) {
-    return Warning{"NO_VAULT",
+    return Warning{code::kNoVault,
                    "The case shows a head whose vault is not whole in the scan: the exercise may "
                    "begin in another bone"};
   }
@@ -38,7 +41,7 @@ Result<std::vector<PlacedLandmark>> onBody(const Exercise& exercise, const Volum
   Exercise on_body = exercise;
   for (Landmark& landmark : on_body.landmarks) landmark.tissue.clear();
   auto placed = placeLandmarks(on_body, volume, nullptr, progress);
-  if (placed || placed.error().code == "CANCELLED") return placed;
+  if (placed || placed.error().code == code::kCancelled) return placed;
   // A scan may be too thin for the ball that a landmark looks for, or be of an empty shell: towards
   // its middle, then, up to the first wall.
   constexpr double kWall_mm = 2.0;
@@ -59,14 +62,14 @@ Result<std::vector<PlacedLandmark>> landmarksIn(const Exercise& exercise, Placem
   const Volume& volume = *of.patient.volume;
   auto placed = placeLandmarks(exercise, volume, of.labels.get(), progress);
   if (placed) return placed;
-  const std::string& code = placed.error().code;
-  if (code != "NO_SURFACE" && code != "TISSUE_NOT_FOUND") return placed;
+  const Code code = placed.error().code;
+  if (code != code::kNoSurface && code != code::kTissueNotFound) return placed;
   if (std::ranges::min(volume.geometry.size) < 2) return placed;  // one slice is no body
   auto surface = onBody(exercise, volume, progress);
-  if (!surface) return surface.error().code == "CANCELLED" ? surface : placed;
-  of.warnings.push_back({"NO_LANDMARK", "The place where the exercise begins is not in the case (" +
-                                            placed.error().what +
-                                            "): it begins at the body's surface"});
+  if (!surface) return surface.error().code == code::kCancelled ? surface : placed;
+  of.warnings.push_back(
+      {code::kNoLandmark, "The place where the exercise begins is not in the case (" +
+                              placed.error().what + "): it begins at the body's surface"});
   return surface;
 }
 
@@ -115,7 +118,7 @@ Result<Placement> place(const Exercise& exercise, Case patient, const Progress& 
   std::ranges::move(structures->warnings, std::back_inserter(placed.warnings));
   auto landmarks = landmarksIn(withTissuesOf(exercise, placed), placed, progress);
   if (!landmarks) {
-    if (landmarks.error().code == "CANCELLED") return landmarks.error();
+    if (landmarks.error().code == code::kCancelled) return landmarks.error();
     return failed(landmarks.error());
   }
   placed.landmarks = *std::move(landmarks);

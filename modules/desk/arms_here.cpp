@@ -4,6 +4,8 @@
 #include <chrono>
 #include <utility>
 
+#include "desk/codes.h"
+
 namespace trephine {
 
 Exercise withForceLimit(Exercise exercise, double most_N) {
@@ -17,7 +19,7 @@ Status waitForArms(std::unique_lock<std::timed_mutex>& lock, const Rig& rig,
   if (chosen.empty() && std::ranges::none_of(rig.arms, is_real)) return {};
   if (lock.try_lock_for(std::chrono::seconds(10))) return {};
   return Error{
-      "ARMS_BUSY", "Looking for arms has not come to an end: a device does not answer", "",
+      code::kArmsBusy, "Looking for arms has not come to an end: a device does not answer", "",
       "Unplug it and wait, or start Trephine again; mouse and keys move hands that have no "
       "arm under Devices"};
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "base/codes.h"
 #include "base/file.h"
 #include "base/local_time.h"
 #include "base/memory.h"
@@ -57,7 +58,7 @@ void Desk::go(Activity activity) {
 }
 
 void Desk::fail(const Error& error) {
-  if (error.code != "CANCELLED") events_.onFailure(error);
+  if (error.code != code::kCancelled) events_.onFailure(error);
 }
 
 Session* Desk::heldSession() const {

@@ -1,7 +1,10 @@
 // Edits of the exercise by a person, the way back, and what a trainee may not change.
 #include <algorithm>
 
+#include "base/codes.h"
+#include "case/codes.h"
 #include "desk/desk.h"
+#include "exercise/codes.h"
 
 namespace trephine {
 
@@ -45,8 +48,8 @@ void Desk::takeBack() {
 
 Status Desk::notLocked(Lock lock, const char* what) const {
   if (!isLocked(lock)) return {};
-  return Error{"LOCKED", std::string(what) + " locked on this workstation or by this exercise", "",
-               unlocking(policy_)};
+  return Error{code::kLocked, std::string(what) + " locked on this workstation or by this exercise",
+               "", unlocking(policy_)};
 }
 
 // --- Edits ---
@@ -64,7 +67,7 @@ Status Desk::mayEdit(const Exercise& wanted) const {
   }
   const auto id = &Tissue::id;
   if (heldSession() && !std::ranges::equal(wanted_tissues.tissues, tissues().tissues, {}, id, id)) {
-    return Error{"BUSY", "A running exercise keeps its list of tissues", "",
+    return Error{code::kBusy, "A running exercise keeps its list of tissues", "",
                  "Stop it before tissues are added or removed"};
   }
   if (wanted.controller != exercise_->controller) {
@@ -79,20 +82,20 @@ Status Desk::mayEdit(const Exercise& wanted) const {
   Exercise rest = live;
   rest.landmarks = exercise_->landmarks;
   if (anyLocked() && rest != *exercise_) {
-    return Error{"LOCKED", "Exercises are not changed while anything is locked", "",
+    return Error{code::kLocked, "Exercises are not changed while anything is locked", "",
                  unlocking(policy_)};
   }
   if (phase() != Phase::ready && phase() != Phase::empty) {
-    return Error{"BUSY", "This cannot be changed while an exercise runs", "", "Stop it first"};
+    return Error{code::kBusy, "This cannot be changed while an exercise runs", "", "Stop it first"};
   }
   if (isOpening() && !isPlacing()) {
-    return Error{"BUSY", "A case is being opened", "", "Try again in a moment"};
+    return Error{code::kBusy, "A case is being opened", "", "Try again in a moment"};
   }
   return checkEdited(wanted);
 }
 
 Status Desk::edit(const Exercise& wanted, const std::string& what) {
-  if (!exercise_) return Error{"NO_CASE", "There is no exercise yet", "", "Open a case first"};
+  if (!exercise_) return Error{code::kNoCase, "There is no exercise yet", "", "Open a case first"};
   if (Status may = mayEdit(wanted); !may) return may;
   history_.note(wanted, what);
   if (put(wanted)) say(DeskChange::exercise);
@@ -243,7 +246,7 @@ void Desk::applyController(ControllerKind kind) {
   history_.settle(*exercise_);
   if (!session()) noteController(kind);
   if (session() && !session()->setController(kind)) {
-    fail({"BUSY", "Too many changes are waiting", "the haptic loop", "Try again"});
+    fail({code::kBusy, "Too many changes are waiting", "the haptic loop", "Try again"});
   }
 }
 

@@ -1,6 +1,9 @@
 // Opening: an exercise, a case, its structures, and what of it is kept for the next.
 #include <algorithm>
 
+#include "base/codes.h"
+#include "case/codes.h"
+#include "desk/codes.h"
 #include "desk/desk.h"
 #include "tissue/tissue_edits.h"
 #include "volume/phantom.h"
@@ -25,11 +28,11 @@ OpenRequest ofStructures(OpenRequest request, const Case& of) {
 
 bool Desk::mayOpen() {
   if (phase() != Phase::empty && phase() != Phase::ready) {
-    fail({"BUSY", "An exercise is running", "", "Stop it, then open the other case"});
+    fail({code::kBusy, "An exercise is running", "", "Stop it, then open the other case"});
     return false;
   }
   if (isOpening()) {
-    fail({"BUSY", "Another case is being opened", "", "Wait for it or cancel it first"});
+    fail({code::kBusy, "Another case is being opened", "", "Wait for it or cancel it first"});
     return false;
   }
   return true;
@@ -160,7 +163,7 @@ void Desk::setStored(const std::string& id, const std::string& name) {
 void Desk::useLabels(const std::filesystem::path& file, const Answers& answers) {
   if (!mayOpen()) return;
   if (!placed_) {
-    fail({"NO_CASE", "There is no case that a label map could belong to", "",
+    fail({code::kNoCase, "There is no case that a label map could belong to", "",
           "Open the case first, then its label map"});
     return;
   }
@@ -174,7 +177,7 @@ void Desk::answer(const std::string& option) {
   // Of the case that it was asked about.
   if (!question_ || placed_->patient.volume != question_->request.of->volume) {
     question_.reset();
-    return fail({"NOT_ASKED", "What was asked about is not being opened any more", "",
+    return fail({code::kNotAsked, "What was asked about is not being opened any more", "",
                  "Open the structures again"});
   }
   if (!mayOpen()) return;

@@ -1,4 +1,5 @@
 // Saving, in the background: the tissues, the voxels, and what others write.
+#include "base/codes.h"
 #include "base/file.h"
 #include "base/purpose.h"
 #include "desk/desk.h"
@@ -10,7 +11,7 @@ namespace trephine {
 namespace {
 
 Error busySaving() {
-  return {"BUSY", "Another file is being saved", "", "Try again in a moment"};
+  return {code::kBusy, "Another file is being saved", "", "Try again in a moment"};
 }
 
 }  // namespace
@@ -43,7 +44,8 @@ void Desk::saveVolume(const std::filesystem::path& file, const std::string& said
                       std::function<void()> then) {
   if (isSaving()) return fail(busySaving());
   if (phase() == Phase::starting) {  // the view still shows the cuts before, which are gone
-    return fail({"BUSY", "An exercise is being started", "", "Save once it runs, or has ended"});
+    return fail(
+        {code::kBusy, "An exercise is being started", "", "Save once it runs, or has ended"});
   }
   if (heldSession()) return saveOnceStill({file, said, std::move(then), {}});
   save(

@@ -10,6 +10,7 @@
 
 #include "base/utf8.h"
 #include "device/arm_numbers.h"
+#include "device/codes.h"
 #include "device/library_file.h"
 
 namespace trephine {
@@ -26,7 +27,7 @@ bool isPluginName(const std::string& name) {
 }
 
 Error badPlugin(const std::string& what, const std::string& where) {
-  return {"BAD_PLUGIN", what, where, "Install the plugin that belongs to this Trephine"};
+  return {code::kBadPlugin, what, where, "Install the plugin that belongs to this Trephine"};
 }
 
 // Empty when the table is whole, else what is wrong with it.
@@ -97,7 +98,7 @@ LeftBehind& leftBehind() {
 Result<std::shared_ptr<const DevicePlugin>> DevicePlugin::load(
     const std::string& name, const std::filesystem::path& folder) {
   if (!isPluginName(name)) {
-    return Error{"NO_PLUGIN", "'" + name.substr(0, 60) + "' is not the name of a device plugin",
+    return Error{code::kNoPlugin, "'" + name.substr(0, 60) + "' is not the name of a device plugin",
                  "device name", "Use lower-case letters, digits, '_' and '-', such as 'simulated'"};
   }
   std::error_code ec;
@@ -105,7 +106,7 @@ Result<std::shared_ptr<const DevicePlugin>> DevicePlugin::load(
   const std::filesystem::path file =
       std::filesystem::absolute(folder / ("trephine_" + name + ".so"), ec);
   if (ec || !std::filesystem::exists(file, ec)) {
-    return Error{"NO_PLUGIN", "There is no device plugin '" + name + "'", file.string(),
+    return Error{code::kNoPlugin, "There is no device plugin '" + name + "'", file.string(),
                  "Check the device name, or install that plugin into this folder"};
   }
   if (Status whole = checkLibraryFile(file); !whole) return whole.error();
@@ -113,7 +114,7 @@ Result<std::shared_ptr<const DevicePlugin>> DevicePlugin::load(
   plugin->library_ = ::dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL);
   if (!plugin->library_) {
     const char* reason = ::dlerror();
-    return Error{"NO_PLUGIN",
+    return Error{code::kNoPlugin,
                  "The device plugin '" + name +
                      "' cannot be loaded: " + (reason ? reason : "the system gave no reason"),
                  file.string(), "Install it again, with the libraries that it needs"};
@@ -176,15 +177,15 @@ Result<std::unique_ptr<Device>> Device::open(std::shared_ptr<const DevicePlugin>
     std::lock_guard lock(leftBehind().mutex);
     for (std::uint32_t arm : arms) {
       if (!leftBehind().arms.contains({api.name, arm})) continue;
-      return Error{"DEVICE_STUCK", "This arm stopped answering before and was left behind", where,
-                   "Switch it off and on, then start Trephine again"};
+      return Error{code::kDeviceStuck, "This arm stopped answering before and was left behind",
+                   where, "Switch it off and on, then start Trephine again"};
     }
   }
   std::unique_ptr<Device> device(new Device);
   device->plugin_ = plugin;
   device->places_ = arms;
   const auto notThere = [&](TrephineDevice* handle) {
-    return Error{"NO_DEVICE", lastSentence(api, handle), where,
+    return Error{code::kNoDevice, lastSentence(api, handle), where,
                  "Connect the arm and switch it on, or choose another device"};
   };
   if (api.open(arms.data(), std::uint32_t(arms.size()), &device->handle_) != TREPHINE_OK ||
@@ -195,7 +196,7 @@ Result<std::unique_ptr<Device>> Device::open(std::shared_ptr<const DevicePlugin>
   const int configured = api.configure(device->handle_, config.c_str());
   if (configured == TREPHINE_ERROR_NO_DEVICE) return notThere(device->handle_);
   if (configured != TREPHINE_OK) {
-    return Error{"BAD_DEVICE_CONFIG", lastSentence(api, device->handle_),
+    return Error{code::kBadDeviceConfig, lastSentence(api, device->handle_),
                  "configuration of " + where, "Correct that file"};
   }
   for (std::uint32_t arm = 0; arm < arms.size(); ++arm) {
@@ -232,7 +233,7 @@ Status Device::start() {
   }
   started = started && api.start(handle_) == TREPHINE_OK;
   if (!started) {
-    return Error{"DEVICE_NOT_STARTED", lastSentence(api, handle_),
+    return Error{code::kDeviceNotStarted, lastSentence(api, handle_),
                  std::string("device '") + api.name + "'", "Check the arm and start again"};
   }
   refused_ = false;

@@ -2,11 +2,13 @@
 
 #include <dlfcn.h>
 
+#include "device/codes.h"
+
 namespace trephine {
 
 Result<DeviceBench*> loadDeviceBench(const std::filesystem::path& library) {
   const auto problem = [&](const std::string& what) {
-    return Error{"NO_BENCH", "The bench cannot be used: " + what, library.string(),
+    return Error{code::kNoBench, "The bench cannot be used: " + what, library.string(),
                  "Give a library that emulates devices for measurements"};
   };
   std::error_code ec;

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "base/system.h"
+#include "device/codes.h"
 #include "device/device.h"
 
 namespace trephine {
@@ -43,7 +44,7 @@ FoundArms findArms(const fs::path& plugin_folder) {
     const std::vector<TrephineArmInfo> infos = (*plugin)->enumerate();
     if (const std::string why = infos.empty() ? (*plugin)->whyNone() : ""; !why.empty()) {
       found.problems.push_back(
-          {"NO_DEVICE", why, (plugin_folder / ("trephine_" + name + ".so")).string(), ""});
+          {code::kNoDevice, why, (plugin_folder / ("trephine_" + name + ".so")).string(), ""});
     }
     for (const TrephineArmInfo& info : infos) {
       const FoundArm arm{name, info.bus_path, info.serial, info.model, place++};
@@ -54,7 +55,7 @@ FoundArms findArms(const fs::path& plugin_folder) {
         found.arms.push_back(arm);
         continue;
       }
-      found.problems.push_back({"TWO_PLUGINS",
+      found.problems.push_back({code::kTwoPlugins,
                                 "The plugins '" + other->plugin + "' and '" + name +
                                     "' both have the device at " + arm.bus_path,
                                 (plugin_folder / ("trephine_" + name + ".so")).string(),

@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "device/codes.h"
+
 namespace trephine {
 
 namespace {
@@ -49,7 +51,7 @@ Status checkLibraryFile(const std::filesystem::path& file) {
     std::ifstream in(file, std::ios::binary);
     if (isWhole(in, bytes)) return {};
   }
-  return Error{"NO_PLUGIN",
+  return Error{code::kNoPlugin,
                "The device plugin cannot be loaded: its file is no library, or is cut short",
                file.string(), "Install it again"};
 }

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <set>
 
+#include "base/codes.h"
 #include "base/file.h"
 #include "case/case.h"
 #include "exchange/exercise_folder.h"
@@ -205,7 +206,7 @@ Result<fs::path> saveExercise(const Exercise& exercise, const fs::path& folder,
   if (Status written = part->writeText(kSceneFile, json.dump(1) + '\n'); !written) {
     return written.error();
   }
-  if (progress.cancelled()) return Error{"CANCELLED", "It was cancelled", "", ""};
+  if (progress.cancelled()) return Error{code::kCancelled, "It was cancelled", "", ""};
   // Where there was nothing, what another program has put there meanwhile is not replaced.
   const Status done = fresh ? part->become() : part->becomeInstead(filesOf(folder));
   if (!done) return done.error();

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <set>
 
+#include "base/codes.h"
 #include "base/disk_room.h"
 #include "base/file.h"
 #include "base/json.h"
@@ -32,7 +33,7 @@ bool staysWithin(const fs::path& file) {
 }
 
 Error namesOutside(const std::string& file, const std::string& name) {
-  return {"BAD_FIELD", "It names '" + name + "', which is no part of the exercise", file,
+  return {code::kBadField, "It names '" + name + "', which is no part of the exercise", file,
           "Export the exercise anew"};
 }
 
@@ -63,7 +64,7 @@ Status namesPartsAlone(const fs::path& folder, const ExerciseCheck& check, Json&
   const Status all =
       eachNamedFile(exercise, [&](NamedFile kind, const std::string&, Json& name) -> Status {
         const std::string file = name.get<std::string>();
-        if (progress.cancelled()) return Error{"CANCELLED", "It was cancelled", "", ""};
+        if (progress.cancelled()) return Error{code::kCancelled, "It was cancelled", "", ""};
         if (Status is = isPart(check.exercise, file); !is) return is;
         const fs::path path = (fs::path(check.exercise).parent_path() / file).lexically_normal();
         if (kind == NamedFile::caseVolume || kind == NamedFile::labels) volumes.insert(path);
@@ -80,8 +81,9 @@ Status namesPartsAlone(const fs::path& folder, const ExerciseCheck& check, Json&
     const bool beside = std::ranges::any_of(
         volumes, [&](const fs::path& volume) { return liesBeside(folder, part, volume); });
     if (!beside) {
-      return Error{"BAD_FIELD", "Nothing in the exercise names its part '" + part.string() + "'",
-                   kListFile, "Export the exercise anew"};
+      return Error{code::kBadField,
+                   "Nothing in the exercise names its part '" + part.string() + "'", kListFile,
+                   "Export the exercise anew"};
     }
   }
   return {};
@@ -166,13 +168,13 @@ fs::path numbered(const fs::path& storage, const std::string& stem, int n) {
 Result<ExerciseCheck> listOf(const fs::path& folder) {
   std::error_code ec;
   if (fs::is_symlink(folder / kListFile, ec)) {
-    return Error{"MISSING_FILE", "The exercise's list is a link to another file",
+    return Error{code::kMissingFile, "The exercise's list is a link to another file",
                  (folder / kListFile).string(), "Give a folder that 'exercise export' wrote"};
   }
   Result<Json> json = readJsonFile(folder / kListFile);
   if (!json) {
     Error error = json.error();
-    if (error.code == "MISSING_FILE") error.next = "Give a folder that 'exercise export' wrote";
+    if (error.code == code::kMissingFile) error.next = "Give a folder that 'exercise export' wrote";
     return error;
   }
   ExerciseCheck check;
@@ -213,8 +215,8 @@ Status verify(const fs::path& folder, ExerciseCheck& check, const Progress& prog
     progress.at(double(done) / double(std::max<std::uint64_t>(1, bytes)), "Checking the exercise");
     const Result<ExercisePart> found = partOf(folder, part.file, progress, part.bytes);
     done += part.bytes;
-    if (!found && found.error().code == "CANCELLED") return found.error();
-    if (!found && found.error().code == "MISSING_FILE") {
+    if (!found && found.error().code == code::kCancelled) return found.error();
+    if (!found && found.error().code == code::kMissingFile) {
       check.missing.push_back(part.file);
     } else if (!found || found->sha256 != part.sha256 || found->bytes != part.bytes) {
       check.changed.push_back(part.file);
@@ -263,7 +265,7 @@ Result<ImportedExercise> importExercise(const fs::path& folder, const fs::path& 
   if (!part) return part.error();
   progress.at(0.3, "Copying the exercise");
   for (const ExercisePart& one : imported.check.parts) {
-    if (progress.cancelled()) return Error{"CANCELLED", "It was cancelled", "", ""};
+    if (progress.cancelled()) return Error{code::kCancelled, "It was cancelled", "", ""};
     if (Status copied = part->copy(folder / one.file, one.file); !copied) return copied.error();
   }
   if (Status copied = part->copy(folder / kListFile, kListFile); !copied) return copied.error();

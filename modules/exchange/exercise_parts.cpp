@@ -11,11 +11,14 @@
 #include <optional>
 #include <sstream>
 
+#include "base/codes.h"
 #include "base/file.h"
 #include "base/json.h"
 #include "base/sha256.h"
 #include "base/shared_folder.h"
 #include "base/sync_folder.h"
+#include "exchange/codes.h"
+#include "volume/codes.h"
 
 namespace trephine {
 
@@ -46,7 +49,7 @@ Status checkFreeFolder(const fs::path& folder) {
   const fs::file_status status = fs::symlink_status(folder, ec);
   if (!fs::exists(status)) return {};
   if (fs::is_directory(status) && fs::is_empty(folder, ec) && !ec) return {};
-  return Error{"CANNOT_WRITE", "Something is there already", folder.string(),
+  return Error{code::kCannotWrite, "Something is there already", folder.string(),
                "Give a folder that is not there yet, or an empty one"};
 }
 
@@ -64,27 +67,27 @@ Result<ExercisePart> partOf(const fs::path& folder, const std::string& file,
     linked = linked || fs::symlink_status(part_of, ec).type() == fs::file_type::symlink;
   }
   if (linked || fs::symlink_status(path, ec).type() != fs::file_type::regular) {
-    return Error{"MISSING_FILE", "It is not there, or is no file", file, ""};
+    return Error{code::kMissingFile, "It is not there, or is no file", file, ""};
   }
   // Of another size it is another file, whatever it holds.
   if (expected_bytes && fs::file_size(path, ec) != *expected_bytes) {
-    return Error{"OTHER_SIZE", "It has another size", file, ""};
+    return Error{code::kOtherSize, "It has another size", file, ""};
   }
   std::ifstream in(path, std::ios::binary);
   Sha256 sha256;
   ExercisePart part{file, "", 0};
   std::vector<char> bytes(1 << 20);
   while (in) {
-    if (progress.cancelled()) return Error{"CANCELLED", "It was cancelled", "", ""};
+    if (progress.cancelled()) return Error{code::kCancelled, "It was cancelled", "", ""};
     in.read(bytes.data(), std::streamsize(bytes.size()));
     sha256.add(bytes.data(), std::size_t(in.gcount()));
     part.bytes += std::uint64_t(in.gcount());
     if (expected_bytes && part.bytes > *expected_bytes) break;  // it grows meanwhile
   }
   if (expected_bytes && part.bytes != *expected_bytes) {
-    return Error{"OTHER_SIZE", "It has another size", file, ""};
+    return Error{code::kOtherSize, "It has another size", file, ""};
   }
-  if (!in.eof()) return Error{"UNREADABLE", "It cannot be read", file, ""};
+  if (!in.eof()) return Error{code::kUnreadable, "It cannot be read", file, ""};
   part.sha256 = sha256.hex();
   return part;
 }
@@ -122,7 +125,7 @@ Status PartFolder::writeText(const std::string& file, std::string_view text) {
 Status PartFolder::copy(const fs::path& from, const std::string& file) {
   std::error_code ec;
   if (!fs::is_regular_file(from, ec)) {
-    return Error{"MISSING_FILE", "A file that the exercise names is not there", from.string(),
+    return Error{code::kMissingFile, "A file that the exercise names is not there", from.string(),
                  "Check the name"};
   }
   return write(file, [&](const fs::path& path) {
@@ -173,7 +176,7 @@ Status PartFolder::copyMesh(const fs::path& from, const std::string& file) {
   if (!stl) return copy(from, file);  // which says what is wrong with it
   const std::optional<std::string> plain = withoutHeader(*std::move(stl));
   if (plain) return writeText(file, *plain);
-  return Error{"NOT_STL", "A mesh of the exercise is not an STL file, or a damaged one",
+  return Error{code::kNotStl, "A mesh of the exercise is not an STL file, or a damaged one",
                from.string(), "Choose another mesh, or none"};
 }
 

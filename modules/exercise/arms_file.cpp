@@ -5,6 +5,7 @@
 
 #include "base/json.h"
 #include "base/system.h"
+#include "exercise/codes.h"
 #include "exercise/exercise_fields.h"
 
 namespace trephine {
@@ -71,7 +72,7 @@ Result<Rig> rigWith(const Exercise& exercise, const std::vector<NamedDevice>& de
     if (arm == exercise.arms.end()) {
       std::string names;
       for (const ExerciseArm& one : exercise.arms) names += (names.empty() ? "" : ", ") + one.name;
-      return Error{"NO_SUCH_ARM", "The scene has no arm '" + of.arm + "'", where,
+      return Error{code::kNoSuchArm, "The scene has no arm '" + of.arm + "'", where,
                    "Its arms are: " + names};
     }
     ArmDevice& device = rig.arms[std::size_t(arm - exercise.arms.begin())].device;
@@ -95,13 +96,13 @@ Result<Rig> rigWith(const Exercise& exercise, const std::vector<NamedDevice>& de
     for (std::size_t j = i + 1; j < rig.arms.size(); ++j) {
       const ArmDevice& b = rig.arms[j].device;
       if (a.plugin != b.plugin || a.place != b.place) continue;
-      return Error{"BAD_SCENE",
+      return Error{code::kBadScene,
                    "The arms '" + exercise.arms[i].name + "' and '" + exercise.arms[j].name +
                        "' would have one device, '" + a.plugin + "' " + std::to_string(a.place),
                    where, "Give each arm a device of its own"};
     }
     if (!rig.pedal || a.plugin != rig.pedal->plugin || a.place != rig.pedal->place) continue;
-    return Error{"BAD_SCENE",
+    return Error{code::kBadScene,
                  "The arm '" + exercise.arms[i].name + "' and the pedal would have one device",
                  where, "Give each a device of its own"};
   }

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "exercise/codes.h"
+
 namespace trephine {
 
 const ExerciseTool* Exercise::findTool(const std::string& id) const {
@@ -47,7 +49,7 @@ Exercise onCase(Exercise exercise, const std::string& case_source) {
 Status checkLabels(const TissueSet& tissues, const LabelMap* labels) {
   for (const Tissue& tissue : tissues.tissues) {
     if (!tissue.label || !tissue.structure.empty() || labels) continue;
-    return Error{"NO_LABELS",
+    return Error{code::kNoLabels,
                  "The tissue '" + tissue.id + "' is restricted to label " +
                      std::to_string(*tissue.label) + ", and no label map was given",
                  "the label map", "Give the case's label map, or free the tissue from its label"};

@@ -1,9 +1,10 @@
 #include <algorithm>
 #include <set>
 
+#include "base/codes.h"
 #include "exercise/arms_file.h"
-#include "exercise/names.h"
 #include "exercise/exercise_fields.h"
+#include "exercise/names.h"
 #include "volume/phantom.h"
 
 namespace trephine {
@@ -254,7 +255,7 @@ std::string namedFile(const Json& json) {
 
 Result<RecordedExercise> parseRecordedExercise(const Json& json, const std::string& where) {
   if (const std::string key = json.is_object() ? namedFile(json) : ""; !key.empty()) {
-    return Error{"BAD_FIELD", "It names a file, which no scene of a recording does",
+    return Error{code::kBadField, "It names a file, which no scene of a recording does",
                  where + ": " + key, "Choose a recording that this program made"};
   }
   RecordedExercise recorded;

@@ -4,6 +4,9 @@
 #include <optional>
 #include <utility>
 
+#include "base/codes.h"
+#include "exercise/codes.h"
+
 namespace trephine {
 
 namespace {
@@ -40,15 +43,16 @@ Result<PlacedStructures> placeStructures(const Exercise& exercise,
   PlacedStructures placed{std::move(labels), {}, {}};
   if (const std::string* name = lacking(exercise, placed.labels.get())) {
     if (!exercise.tissues_elsewhere) {
-      return Error{"NO_STRUCTURE",
+      return Error{code::kNoStructure,
                    "The exercise needs the structure '" + *name + "', and the case has none",
                    "the case", "Make it in the slices, or give a label map that names it"};
     }
     placed.elsewhere = true;
     placed.warnings.push_back(
-        {"LACKS_STRUCTURE", "The case has no structure '" + *name +
-                                "': tissue is told by its HU alone, so that whatever has the same "
-                                "HU is taken for it"});
+        {code::kLacksStructure,
+         "The case has no structure '" + *name +
+             "': tissue is told by its HU alone, so that whatever has the same "
+             "HU is taken for it"});
   }
   placed.labels = withShells(placed.elsewhere ? *exercise.tissues_elsewhere : exercise.tissues,
                              std::move(placed.labels));

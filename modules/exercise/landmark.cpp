@@ -5,6 +5,9 @@
 #include <optional>
 #include <vector>
 
+#include "base/codes.h"
+#include "exercise/codes.h"
+
 namespace trephine {
 
 namespace {
@@ -170,7 +173,7 @@ std::string nameOf(const Landmark& landmark) {
 
 Result<Ray> rayOf(const Landmark& landmark, const Sought& sought) {
   const GridGeometry& g = sought.volume.geometry;
-  const Error none{"TISSUE_NOT_FOUND", "The case has no voxel of " + nameOf(landmark),
+  const Error none{code::kTissueNotFound, "The case has no voxel of " + nameOf(landmark),
                    "landmark '" + landmark.id + "'",
                    "Check the HU range and label, or choose a case of the scene's anatomy"};
   if (landmark.bulk_radius_mm > 0.0) {
@@ -252,26 +255,27 @@ Result<LandmarkFrame> findLandmark(const Landmark& landmark, const Volume& volum
     const Index3& size = volume.geometry.size;
     const Vec3 high = Vec3(size[0], size[1], size[2]) - 0.5;
     if (!glm::all(glm::greaterThanEqual(at, Vec3(-0.5))) || !glm::all(glm::lessThan(at, high))) {
-      return Error{"NO_PLACE", "The place lies outside of the scan", where,
+      return Error{code::kNoPlace, "The place lies outside of the scan", where,
                    "Give one inside, in the patient's frame (LPS, mm)"};
     }
     return LandmarkFrame{landmark.at_mm, frameAlong(landmark.outward)};
   }
   const Tissue* tissue = tissues.find(landmark.tissue);
   if (!tissue && !landmark.tissue.empty()) {
-    return Error{"NO_SUCH_TISSUE", "The tissue '" + landmark.tissue + "' is not in the tissue set",
-                 where, "Name one of its tissues"};
+    return Error{code::kNoSuchTissue,
+                 "The tissue '" + landmark.tissue + "' is not in the tissue set", where,
+                 "Name one of its tissues"};
   }
   const Sought sought{volume, labels, tissueTable(tissues),
                       tissue ? int(tissue - tissues.tissues.data()) : kBody, progress};
   const Result<Ray> ray = rayOf(landmark, sought);
-  const Error cancelled{"CANCELLED", "Finding the landmarks was cancelled", where, ""};
+  const Error cancelled{code::kCancelled, "Finding the landmarks was cancelled", where, ""};
   if (progress.cancelled()) return cancelled;
   if (!ray) return ray.error();
   const auto [from_mm, towards_mm, least_run_mm] = *ray;
   const double length_mm = glm::length(towards_mm - from_mm);
   if (!(length_mm > 0.0)) {
-    return Error{"NO_SURFACE", "The ray has no direction", where, "Give two different points"};
+    return Error{code::kNoSurface, "The ray has no direction", where, "Give two different points"};
   }
   const Vec3 along = (towards_mm - from_mm) / length_mm;
   constexpr double kStep_mm = 0.25;
@@ -288,7 +292,7 @@ Result<LandmarkFrame> findLandmark(const Landmark& landmark, const Volume& volum
       return LandmarkFrame{from_mm + (at_mm - run_mm + kStep_mm) * along, frameAlong(-along)};
     }
   }
-  return Error{"NO_SURFACE", "The ray does not meet " + nameOf(landmark), where,
+  return Error{code::kNoSurface, "The ray does not meet " + nameOf(landmark), where,
                "Choose a case of the scene's anatomy, or another ray"};
 }
 

@@ -11,6 +11,7 @@
 
 #include "base/descriptor.h"
 #include "base/system.h"
+#include "exercise/codes.h"
 #include "exercise/exercise_fields.h"
 
 namespace trephine {
@@ -31,13 +32,13 @@ Policy allLocked(const fs::path& file, Error why) {
 }
 
 Error unreadable(const fs::path& file, const std::string& why) {
-  return {"POLICY_UNREADABLE", "The workstation's settings cannot be read: " + why, file.string(),
-          "An administrator must correct the file or take it away"};
+  return {code::kPolicyUnreadable, "The workstation's settings cannot be read: " + why,
+          file.string(), "An administrator must correct the file or take it away"};
 }
 
 Error unsafe(const fs::path& path) {
-  return {"POLICY_UNSAFE", "Others than an administrator could change the workstation's settings",
-          path.string(),
+  return {code::kPolicyUnsafe,
+          "Others than an administrator could change the workstation's settings", path.string(),
           "An administrator must make it root's own, and take from group and others the right to "
           "write (chown root, chmod go-w)"};
 }
@@ -208,7 +209,7 @@ Locks locksOf(const Policy& policy, const Exercise& exercise) {
 Status checkExercise(const Policy& policy, const Exercise& exercise,
                      const fs::path& exercise_file) {
   const auto locked = [&](const std::string& what) {
-    return Error{"LOCKED", what, exercise_file.string(),
+    return Error{code::kLocked, what, exercise_file.string(),
                  policy.problem ? policy.problem->what + ": " + policy.problem->next
                  : policy.pin   ? "Choose an exercise of the workstation, or ask an educator to "
                                   "unlock it"

@@ -2,6 +2,9 @@
 
 #include <cmath>
 
+#include "base/codes.h"
+#include "haptics/codes.h"
+
 namespace trephine {
 
 namespace {
@@ -25,7 +28,7 @@ Status validate(const WorkspaceMap& map, const std::string& of) {
   if (Status s = checkFields<WorkspaceMap>(kWorkspaceMapFields, map, of); !s) return s;
   const double length = glm::length(map.rotation);
   if (std::abs(length - 1.0) <= 1e-6) return {};
-  return Error{"IMPOSSIBLE_NUMBER",
+  return Error{code::kImpossibleNumber,
                "The rotation has a length of " + plainNumber(length) + ", and a rotation has 1",
                of + ": rotation_wxyz", "Correct it"};
 }
@@ -33,7 +36,7 @@ Status validate(const WorkspaceMap& map, const std::string& of) {
 Status validate(const HapticParameters& parameters) {
   if (Status s = checkNumber(kPeriod, parameters.period_s, "the loop"); !s) return s;
   if (parameters.arms.size() > std::size_t(kMaxArms)) {
-    return Error{"TOO_MANY_ARMS",
+    return Error{code::kTooManyArms,
                  "There are " + std::to_string(parameters.arms.size()) + " arms, and at most " +
                      std::to_string(kMaxArms) + " are served",
                  "the arms", "Take the others out"};
@@ -49,7 +52,7 @@ Status validate(const HapticParameters& parameters) {
     if (Status s = validate(arm.map, of); !s) return s;
     if (Status s = checkNumber(kMaxForce, arm.max_force_N, of); !s) return s;
     if (arm.other_tools.size() >= kMostTools) {
-      return Error{"TOO_MANY_TOOLS",
+      return Error{code::kTooManyTools,
                    "An arm has " + std::to_string(1 + arm.other_tools.size()) +
                        " tools, and at most " + std::to_string(kMostTools) + " are kept ready",
                    of, "Take the others out"};

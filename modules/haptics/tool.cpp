@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "haptics/codes.h"
 #include "haptics/spiral.h"
 
 namespace trephine {
@@ -118,7 +119,7 @@ Tool makeBurr(double radius_m, int shell_points, int shaft_points, double length
 
 Result<Tool> makeTool(const ToolDescription& d) {
   const auto bad = [](const char* field, double value, const std::string& must) {
-    return Error{"BAD_TOOL", "The value " + plainNumber(value) + " must " + must, field, ""};
+    return Error{code::kBadTool, "The value " + plainNumber(value) + " must " + must, field, ""};
   };
   const bool is_burr = d.kind == ToolKind::burr;
   const struct {

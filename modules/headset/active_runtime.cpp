@@ -5,6 +5,8 @@
 #include <sstream>
 #include <vector>
 
+#include "headset/codes.h"
+
 namespace trephine {
 
 namespace {
@@ -33,10 +35,10 @@ std::string toldOf() {
 
 Error noActiveRuntime(const std::string& where) {
   if (const std::string broken = toldOf(); !broken.empty()) {
-    return {"NO_RUNTIME", "The active OpenXR runtime cannot be used", broken,
+    return {code::kNoRuntime, "The active OpenXR runtime cannot be used", broken,
             "Install the headset's software anew, or make another one the active runtime"};
   }
-  return {"NO_RUNTIME", "No OpenXR runtime is active on this computer", where,
+  return {code::kNoRuntime, "No OpenXR runtime is active on this computer", where,
           "Install the headset's software, such as Monado or SteamVR, and make it the active "
           "runtime"};
 }

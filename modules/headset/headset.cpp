@@ -9,6 +9,8 @@
 #include "base/rt/thread.h"
 #include "headset/openxr_session.h"
 // Xlib comes with it.
+#include "base/codes.h"
+#include "headset/codes.h"
 #include "headset/openxr_functions.h"
 
 namespace trephine {
@@ -33,7 +35,7 @@ struct Headset::Engine : HeadsetShared {
       how = runOpenXr(*this, *context->extraFunctions());
       context->doneCurrent();
     } else {
-      how.why = Error{"NO_OPENGL", "The headset's thread got no OpenGL", "",
+      how.why = Error{code::kNoOpengl, "The headset's thread got no OpenGL", "",
                       "Update the graphics driver"};
     }
     context->moveToThread(home);
@@ -49,8 +51,9 @@ Result<std::unique_ptr<Headset>> Headset::start(QOpenGLContext& share,
                                                 const HeadsetOptions& options,
                                                 std::function<void()> wake) {
   if (!share.nativeInterface<QNativeInterface::QGLXContext>()) {
-    return Error{"NO_GLX", "A headset needs the window to draw through GLX, and this one does not",
-                 "", "Start Trephine with QT_QPA_PLATFORM=xcb and QT_XCB_GL_INTEGRATION=xcb_glx"};
+    return Error{code::kNoGlx,
+                 "A headset needs the window to draw through GLX, and this one does not", "",
+                 "Start Trephine with QT_QPA_PLATFORM=xcb and QT_XCB_GL_INTEGRATION=xcb_glx"};
   }
   const Result<const OpenXr*> loader = OpenXr::load();
   if (!loader) return loader.error();
@@ -61,8 +64,8 @@ Result<std::unique_ptr<Headset>> Headset::start(QOpenGLContext& share,
   engine->context->setFormat(share.format());
   engine->context->setShareContext(&share);
   if (!engine->context->create() || !QOpenGLContext::areSharing(engine->context.get(), &share)) {
-    return Error{"NO_OPENGL", "The graphics driver shares no textures with a second context", "",
-                 "Update the graphics driver"};
+    return Error{code::kNoOpengl, "The graphics driver shares no textures with a second context",
+                 "", "Update the graphics driver"};
   }
   engine->surface = std::make_unique<QOffscreenSurface>();
   engine->surface->setFormat(engine->context->format());

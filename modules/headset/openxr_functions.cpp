@@ -4,6 +4,8 @@
 
 #include <mutex>
 
+#include "headset/codes.h"
+
 namespace trephine {
 
 namespace {
@@ -41,7 +43,7 @@ Result<const OpenXr*> OpenXr::load() {
   const std::lock_guard lock(one_at_a_time);
   if (!loaded.createInstance) loaded = open();
   if (loaded.createInstance) return &loaded;
-  return Error{"NO_LOADER", "No headset can be used: OpenXR's loader is not installed",
+  return Error{code::kNoLoader, "No headset can be used: OpenXR's loader is not installed",
                "libopenxr_loader.so.1", "Install the package libopenxr-loader1 and try again"};
 }
 

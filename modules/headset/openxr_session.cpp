@@ -16,6 +16,7 @@
 //
 #include <unistd.h>
 // Xlib comes with it.
+#include "headset/codes.h"
 #include "headset/openxr_layers.h"
 
 namespace trephine {
@@ -129,19 +130,21 @@ void OpenXrSession::check(XrResult result, const char* function) {
       end(noActiveRuntime(where), false);
     case XR_ERROR_FORM_FACTOR_UNAVAILABLE:
     case XR_ERROR_FORM_FACTOR_UNSUPPORTED:
-      end(Error{"NO_HEADSET", "No headset is found", where, "Plug it in, switch it on, try again"},
+      end(Error{code::kNoHeadset, "No headset is found", where,
+                "Plug it in, switch it on, try again"},
           true);
     case XR_ERROR_LIMIT_REACHED:
-      end(Error{"HEADSET_IN_USE", "Another program has the headset", where, "Close it, try again"},
+      end(Error{code::kHeadsetInUse, "Another program has the headset", where,
+                "Close it, try again"},
           true);
     case XR_ERROR_INSTANCE_LOST:
     case XR_ERROR_SESSION_LOST:
     case XR_SESSION_LOSS_PENDING:
-      end(Error{"HEADSET_LOST", "The headset went away", where,
+      end(Error{code::kHeadsetLost, "The headset went away", where,
                 "The exercise goes on in the window; put the headset on again when it is back"},
           true);
     default:
-      end(Error{"HEADSET_FAILED", "The headset's software reports an error", where,
+      end(Error{code::kHeadsetFailed, "The headset's software reports an error", where,
                 "Start that software anew and try again"},
           true);
   }
@@ -170,7 +173,7 @@ void OpenXrSession::createInstance() {
     return std::strcmp(each.extensionName, XR_KHR_OPENGL_ENABLE_EXTENSION_NAME) == 0;
   });
   if (!opengl) {
-    end(Error{"NO_RUNTIME", "The active OpenXR runtime takes no pictures of OpenGL",
+    end(Error{code::kNoRuntime, "The active OpenXR runtime takes no pictures of OpenGL",
               XR_KHR_OPENGL_ENABLE_EXTENSION_NAME,
               "Use another runtime, such as Monado or SteamVR"},
         false);
@@ -185,7 +188,7 @@ void OpenXrSession::createInstance() {
   if (!xr_.loadFor(instance_)) {
     // Then xrDestroyInstance may be missing too.
     if (!xr_.destroyInstance) instance_ = XR_NULL_HANDLE;
-    end(Error{"NO_RUNTIME", "The active OpenXR runtime lacks a function", "",
+    end(Error{code::kNoRuntime, "The active OpenXR runtime lacks a function", "",
               "Update the headset's software"},
         false);
   }
@@ -240,7 +243,7 @@ void OpenXrSession::createSession() {
         "xrGetOpenGLGraphicsRequirementsKHR");
   const XrGraphicsBindingOpenGLXlibKHR graphics = binding();
   if (!graphics.glxFBConfig) {
-    end(Error{"NO_GLX", "The graphics driver tells nothing of its windows", "glXChooseFBConfig",
+    end(Error{code::kNoGlx, "The graphics driver tells nothing of its windows", "glXChooseFBConfig",
               "Update the graphics driver"},
         false);
   }
@@ -269,7 +272,7 @@ void OpenXrSession::createSession() {
     if (std::ranges::find(formats, usable) != formats.end()) format_ = usable;
   }
   if (format_ == 0) {
-    end(Error{"HEADSET_FAILED", "The headset's software takes no 8-bit pictures", "",
+    end(Error{code::kHeadsetFailed, "The headset's software takes no 8-bit pictures", "",
               "Update the headset's software"},
         false);
   }
@@ -322,7 +325,7 @@ void OpenXrSession::changeState(XrSessionState state) {
         ended_ = true;
         break;
       }
-      end(Error{"HEADSET_ENDED", "The headset's software has ended the picture", "",
+      end(Error{code::kHeadsetEnded, "The headset's software has ended the picture", "",
                 "The exercise goes on in the window; put the headset on again when you like"},
           true);
     case XR_SESSION_STATE_LOSS_PENDING:

@@ -2,11 +2,13 @@
 
 #include <dlfcn.h>
 
+#include "headset/codes.h"
+
 namespace trephine {
 
 Result<TestRuntime*> loadTestRuntime(const std::filesystem::path& library) {
   const auto problem = [&](const std::string& what) {
-    return Error{"NO_RUNTIME", "The test runtime cannot be used: " + what, library.string(),
+    return Error{code::kNoRuntime, "The test runtime cannot be used: " + what, library.string(),
                  "Give a runtime of your own (XR_RUNTIME_JSON)"};
   };
   std::error_code ec;

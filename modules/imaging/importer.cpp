@@ -5,8 +5,10 @@
 #include <set>
 #include <utility>
 
+#include "base/codes.h"
 #include "base/memory.h"
 #include "base/system.h"
+#include "imaging/codes.h"
 #include "imaging/common/source_watch.h"
 #include "imaging/common/text.h"
 #include "imaging/common/workers.h"
@@ -21,6 +23,7 @@
 #include "imaging/series/series.h"
 #include "imaging/series/series_geometry.h"
 #include "imaging/steps/volume_steps.h"
+#include "volume/codes.h"
 
 namespace trephine {
 
@@ -36,7 +39,8 @@ double secondsSince(Clock::time_point start) {
 std::optional<Error> folderError(const ImportReport& report) {
   const auto is_ct = [](const SeriesReport& s) { return s.modality == "CT"; };
   if (report.files_seen == 0) {
-    return Error{"EMPTY_FOLDER", "The folder holds no files", report.path, "Choose another folder"};
+    return Error{code::kEmptyFolder, "The folder holds no files", report.path,
+                 "Choose another folder"};
   }
   if (std::ranges::none_of(report.series, is_ct)) {
     std::string what = report.files_seen == 1 ? "The only file is no CT series"
@@ -50,15 +54,15 @@ std::optional<Error> folderError(const ImportReport& report) {
     const auto isFile = [](const SeriesReport& s) { return s.source == "file"; };
     if (std::ranges::count_if(report.series, isFile) == 1) {
       const SeriesReport& one = *std::ranges::find_if(report.series, isFile);
-      const Finding& why = *std::ranges::find(one.findings, "refusal", &Finding::severity);
-      return Error{"NO_CT", "The only volume file cannot be used: " + why.text, report.path,
+      const Finding& why = *std::ranges::find(one.findings, Severity::refusal, &Finding::severity);
+      return Error{code::kNoCt, "The only volume file cannot be used: " + why.text, report.path,
                    why.action};
     }
     if (most != report.skipped.end()) {
       what += "; " + std::to_string(most->count) +
               (most->count == 1 ? " was skipped: " : " were skipped: ") + most->reason;
     }
-    return Error{"NO_CT", what, report.path,
+    return Error{code::kNoCt, what, report.path,
                  packed ? "Unpack it, and choose the folder that then holds the CT"
                         : "Choose the folder that holds the CT"};
   }
@@ -68,25 +72,25 @@ std::optional<Error> folderError(const ImportReport& report) {
     if (series.verdict != Verdict::refused) return std::nullopt;
     if (!largest || series.geometry.size[2] > largest->geometry.size[2]) largest = &series;
   }
-  const auto refusal = std::ranges::find(largest->findings, "refusal", &Finding::severity);
+  const auto refusal = std::ranges::find(largest->findings, Severity::refusal, &Finding::severity);
   const bool only = std::ranges::count_if(report.series, is_ct) == 1;
   return Error{
-      "ALL_REFUSED",
+      code::kAllRefused,
       (only ? "The CT series cannot be used: " : "No CT series can be used; of the largest: ") +
           refusal->text,
       report.path, refusal->action};
 }
 
 void addValueFindings(const HuCounts& counts, SeriesReport& report) {
-  const auto add = [&](const char* code, const char* severity, std::uint64_t voxels,
-                       const char* what, const char* action) {
+  const auto add = [&](Code code, Severity severity, std::uint64_t voxels, const char* what,
+                       const char* action) {
     if (voxels == 0) return;
     report.findings.push_back({code, severity, counted(voxels, "voxel") + what, {}, action});
   };
-  add("PADDING_TO_AIR", "notice", counts.padding, " of padding", "Padding became air");
-  add("HU_ROUNDED", "repair", counts.rounded, " had HU that are not whole numbers",
+  add(code::kPaddingToAir, Severity::notice, counts.padding, " of padding", "Padding became air");
+  add(code::kHuRounded, Severity::repair, counts.rounded, " had HU that are not whole numbers",
       "Rounded to the nearest");
-  add("HU_CLAMPED", "repair", counts.clamped, " had HU outside -32768..32767",
+  add(code::kHuClamped, Severity::repair, counts.clamped, " had HU outside -32768..32767",
       "Set to the nearest limit");
 }
 
@@ -98,15 +102,15 @@ void askAboutHighBits(const DicomHeader& slice, const Answers& answers, SeriesRe
                            " bits a pixel, and the pixels have more bits than that, which no "
                            "overlay explains";
   const std::string answer =
-      ask({"HIGH_BITS",
+      ask({code::kHighBits,
            "The pixels have more bits than the header says. Are these a part of the values?",
            {"refuse", "use", "mask"},
            {"Do not use the series", "They are: take all bits",
             "They are none: take " + bits + " bits, as the header says"}},
           answers, report.choices);
   report.findings.push_back(
-      {"HIGH_BITS",
-       answer == "refuse" ? "refusal" : "repair",
+      {code::kHighBits,
+       answer == "refuse" ? Severity::refusal : Severity::repair,
        text,
        {},
        answer == "use"    ? "All bits were taken, as was chosen"
@@ -115,12 +119,12 @@ void askAboutHighBits(const DicomHeader& slice, const Answers& answers, SeriesRe
 }
 
 Error refusalOf(const SeriesReport& series) {
-  const auto finding = std::ranges::find(series.findings, "refusal", &Finding::severity);
+  const auto finding = std::ranges::find(series.findings, Severity::refusal, &Finding::severity);
   return Error{finding->code, finding->text, series.uid, finding->action};
 }
 
 Error noSuchSeries(const std::string& uid, std::size_t listed) {
-  return Error{"NO_SUCH_SERIES", "There is no such series in the folder", cleanUtf8(uid),
+  return Error{code::kNoSuchSeries, "There is no such series in the folder", cleanUtf8(uid),
                listed == 0 ? "Choose another folder" : "Choose one that the report lists"};
 }
 
@@ -141,25 +145,25 @@ Provenance provenanceOf(const SeriesReport& series, const ImportRequest& request
     if (!provenance.answers.contains(code)) provenance.unused_answers.push_back(code);
   }
   std::ranges::copy_if(series.findings, std::back_inserter(provenance.changes),
-                       [](const Finding& f) { return f.severity == "repair"; });
+                       [](const Finding& f) { return f.severity == Severity::repair; });
   provenance.crop = request.crop;
   provenance.reduction = request.reduction;
   provenance.build = buildName();
   return provenance;
 }
 
-bool hasFinding(const SeriesReport& series, const char* code) {
+bool hasFinding(const SeriesReport& series, Code code) {
   return std::ranges::find(series.findings, code, &Finding::code) != series.findings.end();
 }
 
 bool looksLikeLabels(const SeriesReport& series) {
-  return hasFinding(series, "LABEL_MAP") || hasFinding(series, "NAMED_AS_LABELS");
+  return hasFinding(series, code::kLabelMap) || hasFinding(series, code::kNamedAsLabels);
 }
 
 // Beside a CT a label map is no wrong choice but a part of the case.
 void sayWhatLabelsAreFor(SeriesReport& series) {
   for (Finding& finding : series.findings) {
-    if (finding.code != "LABEL_MAP" && finding.code != "NAMED_AS_LABELS") continue;
+    if (finding.code != code::kLabelMap && finding.code != code::kNamedAsLabels) continue;
     finding.action = "Import the CT beside it: this file can be opened with it, as its label map";
   }
 }
@@ -168,7 +172,7 @@ void sayWhatLabelsAreFor(SeriesReport& series) {
 void keepFinding(Series& series, Finding finding) {
   auto& findings = series.report.findings;
   // Answers that cannot save the series are not asked for.
-  if (finding.severity == "refusal") series.report.choices.clear();
+  if (finding.severity == Severity::refusal) series.report.choices.clear();
   findings.insert(findings.begin() + std::ptrdiff_t(series.findings_kept++), std::move(finding));
   series.report.verdict = verdictOf(findings);
 }
@@ -180,8 +184,8 @@ void addStoppedScan(const ScannedFiles& files, Series& series) {
   const bool beside = std::ranges::any_of(series.slices, [&](const DicomHeader& slice) {
     return files.folders_left.contains(slice.file.parent_path());
   });
-  keepFinding(series, {"SCAN_STOPPED",
-                       beside ? "refusal" : "repair",
+  keepFinding(series, {code::kScanStopped,
+                       beside ? Severity::refusal : Severity::repair,
                        (left == 1 ? "1 file was" : std::to_string(left) + " files were") +
                            " not looked at, since the search was ended early: " +
                            (beside ? "the rest of this series is probably among them"
@@ -201,8 +205,8 @@ void addEmptyFiles(const ScannedFiles& files, Series& series) {
     if (beside != files.empty_files.end()) empty += beside->second;
   }
   if (empty == 0) return;
-  keepFinding(series, {"INCOMPLETE",
-                       "notice",
+  keepFinding(series, {code::kIncomplete,
+                       Severity::notice,
                        counted(std::uint64_t(empty), "file", "lies", "lie") +
                            " beside its slices that are empty or cut short: slices, perhaps, that "
                            "were not copied to their end",
@@ -230,20 +234,21 @@ void saySeveral(std::vector<Series>& all) {
     if (known == patients.end()) patients.push_back(&one);
     if (!one.acquired.empty()) days.insert(one.acquired);
   }
-  const auto say = [](Series& series, const char* code, const char* what, std::size_t number,
+  const auto say = [](Series& series, Code code, const char* what, std::size_t number,
                       std::size_t of) {
     keepFinding(series, {code,
-                         "notice",
+                         Severity::notice,
                          "The folder holds CT of " + std::to_string(of) + " " + what +
                              ": this one is of number " + std::to_string(number + 1),
                          {},
                          "Make sure that it is the one that is wanted"});
   };
   for (std::size_t n = 0; n < scans.size(); ++n) {
-    if (patients.size() > 1) say(*scans[n], "PATIENTS", "patients", patient_of[n], patients.size());
+    if (patients.size() > 1)
+      say(*scans[n], code::kPatients, "patients", patient_of[n], patients.size());
     const auto day = days.find(scans[n]->slices.front().acquired);
     if (patients.size() > 1 || days.size() < 2 || day == days.end()) continue;
-    say(*scans[n], "DAYS", "days", std::size_t(std::distance(days.begin(), day)), days.size());
+    say(*scans[n], code::kDays, "days", std::size_t(std::distance(days.begin(), day)), days.size());
   }
 }
 
@@ -255,8 +260,8 @@ void addNotWhole(const UnpackedArchives& unpacked, Series& series) {
     });
     if (!from_it) continue;
     return keepFinding(
-        series, {"ARCHIVE_NOT_WHOLE",
-                 "refusal",
+        series, {code::kArchiveNotWhole,
+                 Severity::refusal,
                  "It comes from " + archive.why + ": some of its slices may not be there",
                  {},
                  "Copy or download the archive again, or unpack it by hand and import the folder"});
@@ -265,8 +270,8 @@ void addNotWhole(const UnpackedArchives& unpacked, Series& series) {
 
 // Refused as a whole, rather than with a question about every slice that is not there any more.
 Error refuseVanished(SeriesReport& series) {
-  series.findings.push_back({"SOURCE_VANISHED",
-                             "refusal",
+  series.findings.push_back({code::kSourceVanished,
+                             Severity::refusal,
                              "The source vanished while it was read",
                              {},
                              "Plug it in or connect it again, then open the folder again"});
@@ -364,7 +369,7 @@ Status CtFolder::Contents::unpackInto(ScannedFiles& files, std::filesystem::path
   if (files.archives.size() > kMostArchives) return {};
   Result<UnpackedArchives> some = unpack(files.archives, progress);
   // Where nothing can be unpacked, they are what they were: packed.
-  if (!some) return some.error().code == "CANCELLED" ? Status(some.error()) : Status();
+  if (!some) return some.error().code == code::kCancelled ? Status(some.error()) : Status();
   Result<ScannedFiles> within = scanFiles(some->folder.path(), progress, guide);
   if (!within) return within.error();
   if (within->headers.empty() && within->volume_files.empty()) {
@@ -461,11 +466,11 @@ Result<CtFolder> CtFolder::scan(const std::filesystem::path& path, const Progres
     if (contents.unpacked) addNotWhole(*contents.unpacked, series);
     contents.sources.push_back({std::move(series), {}});
   }
-  if (progress.cancelled()) return Error{"CANCELLED", "The import was cancelled", "", ""};
+  if (progress.cancelled()) return Error{code::kCancelled, "The import was cancelled", "", ""};
   std::error_code error;
   const bool one_file = std::filesystem::is_regular_file(scanned, error);
   for (const std::filesystem::path& file : files->volume_files) {
-    if (progress.cancelled()) return Error{"CANCELLED", "The import was cancelled", "", ""};
+    if (progress.cancelled()) return Error{code::kCancelled, "The import was cancelled", "", ""};
     const auto name = one_file ? file.filename() : file.lexically_relative(scanned);
     Source source;
     source.series.report = assessFile(file, name.string());
@@ -486,7 +491,8 @@ std::optional<std::string> CtFolder::bestSeries(const Answers& answers) const {
   const SeriesReport* best = nullptr;
   // DICOM says that it is CT; a file that is named like a label map comes last.
   const auto rank = [](const SeriesReport& s) {
-    return std::tuple(s.source == "DICOM", !hasFinding(s, "NAMED_AS_LABELS"), s.geometry.size[2]);
+    return std::tuple(s.source == "DICOM", !hasFinding(s, code::kNamedAsLabels),
+                      s.geometry.size[2]);
   };
   for (const Source& source : contents_->sources) {
     const SeriesReport& listed =
@@ -574,7 +580,7 @@ Result<SlicePicture> CtFolder::slice(const std::string& uid, int index,
                                      const Progress& progress) const {
   Source* source = contents_->find(uid);
   if (!source) return noSuchSeries(uid, contents_->report.series.size());
-  const Error no_slice{"NO_SUCH_SLICE", "There is no such slice", std::to_string(index), ""};
+  const Error no_slice{code::kNoSuchSlice, "There is no such slice", std::to_string(index), ""};
   if (!source->file.empty()) return fileSlice(source->file, index, progress);
   const std::vector<DicomHeader>& slices = source->series.slices;
   if (index < 0 || std::size_t(index) >= slices.size()) return no_slice;
@@ -582,10 +588,10 @@ Result<SlicePicture> CtFolder::slice(const std::string& uid, int index,
   const StoredFormat& format = header.format;
   if (!header.has_pixels || !header.holdsGreyWords() || header.rescale_bad ||
       !findTransferSyntax(header.transfer_syntax)) {
-    return Error{"NO_PICTURE", "The slice holds no grey pixels that can be shown", "", ""};
+    return Error{code::kNoPicture, "The slice holds no grey pixels that can be shown", "", ""};
   }
   if (header.defect != Defect::none) {
-    return Error{"UNREADABLE", "The slice cannot be read: " + header.defect_text, "", ""};
+    return Error{code::kUnreadable, "The slice cannot be read: " + header.defect_text, "", ""};
   }
   SlicePicture picture;
   picture.columns = header.columns;
@@ -601,7 +607,7 @@ Result<SlicePicture> CtFolder::slice(const std::string& uid, int index,
   });
   if (!done) return done.error();
   if (!read) {
-    return Error{"UNREADABLE", "The slice cannot be read: " + read.error().what, "", ""};
+    return Error{code::kUnreadable, "The slice cannot be read: " + read.error().what, "", ""};
   }
   return picture;
 }
@@ -617,7 +623,7 @@ Result<Volume> CtFolder::read(const std::string& uid, const ImportRequest& reque
   const auto fail = [&](const Error& error) {
     assignVerdict(source->series);
     contents_->publish(*source);
-    if (error.code != "CANCELLED") report.error = error;
+    if (error.code != code::kCancelled) report.error = error;
     return error;
   };
 
@@ -640,19 +646,19 @@ Result<Volume> CtFolder::read(const std::string& uid, const ImportRequest& reque
       source->file.empty()
           ? contents_->readDicom(source->series, request, progress, reading)
           : readFileSeries(source->file, request.answers, progress, series, reading.look);
-  if (!volume && !source->file.empty() && volume.error().code != "CANCELLED" &&
+  if (!volume && !source->file.empty() && volume.error().code != code::kCancelled &&
       isGone(source->file, bytes)) {
     return fail(refuseVanished(series));
   }
-  if (!volume && volume.error().code == "LABEL_MAP" && contents_->hasCt()) {
+  if (!volume && volume.error().code == code::kLabelMap && contents_->hasCt()) {
     sayWhatLabelsAreFor(series);
     return fail(refusalOf(series));
   }
   if (!volume) {
     const Error& error = volume.error();
     const bool of_the_file = !source->file.empty() && series.verdict != Verdict::refused;
-    if (of_the_file && (error.code == "UNREADABLE" || error.code == "NOT_HU")) {
-      series.findings.push_back({error.code, "refusal", error.what, {}, error.next});
+    if (of_the_file && (error.code == code::kUnreadable || error.code == code::kNotHu)) {
+      series.findings.push_back({error.code, Severity::refusal, error.what, {}, error.next});
     }
     return fail(error);
   }

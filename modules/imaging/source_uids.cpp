@@ -4,7 +4,9 @@
 #include <cmath>
 #include <new>
 
+#include "base/codes.h"
 #include "base/memory.h"
+#include "imaging/codes.h"
 #include "imaging/common/source_ids.h"
 #include "imaging/series/scan.h"
 #include "imaging/series/series.h"
@@ -14,7 +16,7 @@ namespace trephine {
 namespace {
 
 Error badSource(const std::string& what, const std::string& next) {
-  return {"BAD_SOURCE", what, "", next};
+  return {code::kBadSource, what, "", next};
 }
 
 bool isOf(const DicomHeader& slice, const SourceIds& ids) {
@@ -62,7 +64,8 @@ Result<RawSourceUids> sourceUids(const std::filesystem::path& source, const Prov
       }
       if (used.size() > best.size()) best = std::move(used);
     }
-    if (progress.cancelled()) return Error{"CANCELLED", "Reading the CT was cancelled", "", ""};
+    if (progress.cancelled())
+      return Error{code::kCancelled, "Reading the CT was cancelled", "", ""};
     if (best.empty()) {
       return badSource("The CT of the case is not in this folder",
                        "Give the DICOM folder that the case was made from");

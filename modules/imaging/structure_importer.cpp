@@ -5,9 +5,12 @@
 #include <optional>
 #include <utility>
 
+#include "base/codes.h"
+#include "imaging/codes.h"
 #include "imaging/common/text.h"
 #include "imaging/dicom/seg_reader.h"
 #include "imaging/report/answers.h"
+#include "volume/codes.h"
 #include "volume/grid_place.h"
 #include "volume/segmentation.h"
 #include "volume/volume_files.h"
@@ -44,7 +47,7 @@ Status match(const DicomSegmentation& seg, const Volume& ct, const StructureRequ
   if (to.unreadable) {
     if (liesOn(seg.segmentation.geometry, ct.geometry)) return {};
     return Error{
-        "OTHER_FRAME",
+        code::kOtherFrame,
         "Whether the segmentation was made from this CT cannot be checked by this account, "
         "and it does not lie on it",
         "the segmentation", "Choose the one that was made from this CT"};
@@ -58,11 +61,11 @@ Status match(const DicomSegmentation& seg, const Volume& ct, const StructureRequ
   if (!liesOn(seg.segmentation.geometry, ct.geometry)) {
     const std::string whose =
         other_study ? "of another study, of this patient or another," : "of another scan";
-    return Error{other_study ? "OTHER_PATIENT" : "OTHER_FRAME",
+    return Error{other_study ? code::kOtherPatient : code::kOtherFrame,
                  "The segmentation is " + whose + " and does not lie on this CT",
                  "the segmentation", "Choose the one that was made from this CT"};
   }
-  Choice choice{"OTHER_FRAME",
+  Choice choice{code::kOtherFrame,
                 std::string("The segmentation is of another ") +
                     (other_study ? "study, perhaps of another patient," : "frame of reference") +
                     " though its voxels lie on those of this CT",
@@ -85,7 +88,7 @@ Status match(const DicomSegmentation& seg, const Volume& ct, const StructureRequ
 // choice is `open`.
 std::string formOf(const VolumeFileHeader& header, const Volume& ct, const Answers& answers,
                    std::optional<Finding>& said, std::optional<Choice>& open) {
-  constexpr const char* kCode = "FORMS_DIFFER";
+  constexpr Code kCode = code::kFormsDiffer;
   constexpr double kSame = 0.1;  // of a voxel
   if (const std::string given = answerTo(answers, kCode); !given.empty()) return given;
   if (header.forms.empty()) return "";
@@ -104,7 +107,7 @@ std::string formOf(const VolumeFileHeader& header, const Volume& ct, const Answe
     return "";
   }
   said = Finding{kCode,
-                 "notice",
+                 Severity::notice,
                  header.contradiction,
                  {},
                  "The " + nearest + " puts it on the CT's voxels, and was taken"};
@@ -116,25 +119,26 @@ int hideNames(Segmentation& segmentation, const StructureRequest& request) {
 }
 
 Error cancelled() {
-  return {"CANCELLED", "Reading the segmentation was cancelled", "", ""};
+  return {code::kCancelled, "Reading the segmentation was cancelled", "", ""};
 }
 
 // Of DICOM that holds something else.
 Error noSegmentation(const std::string& kind, const std::filesystem::path& file) {
   constexpr const char* kContours = "1.2.840.10008.5.1.4.1.1.481.3";
   if (kind == kContours) {
-    return {"CONTOURS", "The file holds contours (an RT Structure Set), which are not read yet",
-            file.string(), "Export the structures as a DICOM Segmentation or as a label map"};
+    return {code::kContours,
+            "The file holds contours (an RT Structure Set), which are not read yet", file.string(),
+            "Export the structures as a DICOM Segmentation or as a label map"};
   }
-  return {"NOT_SEGMENTATION", "The file is DICOM, but no segmentation", file.string(),
+  return {code::kNotSegmentation, "The file is DICOM, but no segmentation", file.string(),
           "Choose a file of modality SEG, or a label map"};
 }
 
 void sayHidden(StructureFit& fit, int hidden) {
   if (hidden == 0) return;
   fit.findings.push_back(
-      {"RENAMED_STRUCTURE",
-       "notice",
+      {code::kRenamedStructure,
+       Severity::notice,
        hidden == 1
            ? "The name of a structure told who the patient is"
            : "The names of " + std::to_string(hidden) + " structures told who the patient is",
@@ -242,8 +246,8 @@ Result<StructureFit> StructureFile::Read::fitDicom(const Volume& ct,
   if (dicom->fractional) {
     fit->fractional = true;
     fit->findings.push_back(
-        {"FRACTIONAL",
-         "notice",
+        {code::kFractional,
+         Severity::notice,
          "The file says how much of each voxel a structure has",
          {},
          "It has a voxel from a share of " + plainNumber(request.threshold) + " on"});
@@ -251,15 +255,16 @@ Result<StructureFit> StructureFile::Read::fitDicom(const Volume& ct,
   sayHidden(*fit, hidden);
   if (request.ct.unreadable) {
     fit->findings.push_back(
-        {"SOURCE_UNCHECKED",
-         "notice",
+        {code::kSourceUnchecked,
+         Severity::notice,
          "Whether the segmentation was made from this CT cannot be checked: what the case was made "
          "from is kept where this account may not read it",
          {},
          "Its place alone was compared"});
   }
   if (answered) {
-    fit->findings.push_back({answered->code, "notice", answered->question, {}, "It was kept"});
+    fit->findings.push_back(
+        {answered->code, Severity::notice, answered->question, {}, "It was kept"});
     fit->choices.push_back(*std::move(answered));
   }
   return fit;
@@ -277,8 +282,8 @@ const std::filesystem::path& StructureFile::path() const {
 
 namespace {
 
-constexpr const char* kThreshold = "THRESHOLD";
-constexpr const char* kOverlap = "OVERLAP";
+constexpr Code kThreshold = code::kThreshold;
+constexpr Code kOverlap = code::kOverlap;
 
 // The options that use the file. That a file which says nothing of its place is right as it stands
 // is for who made it: the command line's.

@@ -12,11 +12,13 @@
 #include <utility>
 #include <vector>
 
+#include "base/codes.h"
 #include "base/disk_room.h"
 #include "base/file.h"
 #include "base/json.h"
 #include "base/shared_folder.h"
 #include "base/stretched_hash.h"
+#include "library/codes.h"
 
 namespace trephine::case_folders {
 
@@ -84,7 +86,7 @@ Result<FileLock> FileLock::waitFor(const fs::path& file) {
     if (errno == EINTR) continue;
     if (errno != EWOULDBLOCK) return writeError(file, errno);
     if (std::chrono::steady_clock::now() > until) {
-      return Error{"BUSY", "Another program does not let go of the storage folder's lock",
+      return Error{code::kBusy, "Another program does not let go of the storage folder's lock",
                    file.string(), "End that program, then try again"};
     }
     std::this_thread::sleep_for(2ms);
@@ -113,7 +115,7 @@ Status Folders::make() const {
 
 Status Folders::mayChange() const {
   if (!isGroups(cases()) || ::access(cases().c_str(), W_OK) == 0) return {};
-  return Error{"CANNOT_WRITE", "This account may look at the cases here, and not change them",
+  return Error{code::kCannotWrite, "This account may look at the cases here, and not change them",
                storage_.string(),
                "Ask whoever keeps this workstation for the group of those who make cases, or "
                "choose a folder of your own under Settings"};
@@ -241,7 +243,7 @@ Status removeCase(const Folders& folders, const std::string& id) {
   std::error_code none;
   fs::rename(folder, *part, ec);
   if (ec && fs::symlink_status(folder, none).type() == fs::file_type::not_found) {
-    return Error{"NO_SUCH_CASE", "The case is not there any more", id, "Look at the list again"};
+    return Error{code::kNoSuchCase, "The case is not there any more", id, "Look at the list again"};
   }
   if (ec) {
     Error error = writeError(folder, ec.value());

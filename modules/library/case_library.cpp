@@ -9,13 +9,16 @@
 #include <tuple>
 #include <utility>
 
+#include "base/codes.h"
 #include "base/file.h"
 #include "base/local_time.h"
 #include "base/memory.h"
 #include "base/stretched_hash.h"
+#include "imaging/codes.h"
 #include "imaging/report/provenance.h"
 #include "imaging/report/report_page.h"
 #include "library/case_picture.h"
+#include "library/codes.h"
 #include "library/name_guard.h"
 #include "library/name_words.h"
 #include "volume/grid_place.h"
@@ -33,21 +36,21 @@ constexpr const char* kOldIds = "source_ids";  // in provenance.json, before the
 constexpr std::uint64_t kRoomForTheRest = 4 << 20;  // bytes: report, picture, JSON, folders
 
 Error noSuchCase(const std::string& id) {
-  return Error{"NO_SUCH_CASE", "The case is not there any more", id, "Look at the list again"};
+  return Error{code::kNoSuchCase, "The case is not there any more", id, "Look at the list again"};
 }
 
 Error wrongGrid() {
-  return Error{"WRONG_GRID", "The structures lie on another grid than the case", "",
+  return Error{code::kWrongGrid, "The structures lie on another grid than the case", "",
                "Fit them to the case first"};
 }
 
 Error partMissing(const std::string& id, const char* file, const char* what) {
-  return Error{"CASE_PART_MISSING", std::string("The case's ") + what + " is not there any more",
+  return Error{code::kCasePartMissing, std::string("The case's ") + what + " is not there any more",
                id + "/" + file, "Put the file back, or import the CT again"};
 }
 
 Error caseChanged(const std::string& id, const char* file, const char* what) {
-  return Error{"CASE_CHANGED", std::string("The case's ") + what + " is not as it was saved",
+  return Error{code::kCaseChanged, std::string("The case's ") + what + " is not as it was saved",
                id + "/" + file, "Put the file back as it was, or import the CT again"};
 }
 
@@ -59,7 +62,7 @@ bool alike(const std::vector<CaseStructure>& a, const std::vector<CaseStructure>
 }
 
 Error nameTaken() {
-  return Error{"NAME_TAKEN", "Another case has this name", "", "Choose another name"};
+  return Error{code::kNameTaken, "Another case has this name", "", "Choose another name"};
 }
 
 // A case's folder, and none that a name could lead to from there.
@@ -125,7 +128,7 @@ LabelMap withoutIdentity(LabelMap map, const SourceKeys& source, std::vector<War
       name = "label " + std::to_string(s.label) + " " + std::to_string(n);
     }
     s.name = name;
-    warnings.push_back({"RENAMED_STRUCTURE",
+    warnings.push_back({code::kRenamedStructure,
                         "The name of a structure told who the patient is: it is "
                         "now called '" +
                             name + "'"});
@@ -136,7 +139,7 @@ LabelMap withoutIdentity(LabelMap map, const SourceKeys& source, std::vector<War
 // What went wrong inside of a part does not name the part: that is gone, and what it took of the
 // disk is free again.
 Error ofStorage(Error error, const Folders& folders, std::uint64_t needed) {
-  if (error.code != "CANNOT_WRITE") return error;
+  if (error.code != code::kCannotWrite) return error;
   if (Status room = folders.roomFor(needed); !room) return room.error();
   error.where = folders.storage().string();
   return error;
@@ -168,7 +171,7 @@ std::string withoutKnownAs(std::string page) {
 }
 
 Error savingCancelled() {
-  return Error{"CANCELLED", "Saving was cancelled", "", ""};
+  return Error{code::kCancelled, "Saving was cancelled", "", ""};
 }
 
 }  // namespace
@@ -204,13 +207,13 @@ Result<CaseRecord> CaseLibrary::record(const std::string& id) const {
   const std::string where = id + "/" + kCaseFile;
   const fs::file_status file = fs::status(folder / kCaseFile, ec);
   if (file.type() == fs::file_type::none) {
-    return Error{"MISSING_FILE", "The case's folder cannot be read: " + ec.message(), id,
+    return Error{code::kMissingFile, "The case's folder cannot be read: " + ec.message(), id,
                  "Let its owner allow it, or delete the case"};
   }
   if (!fs::is_regular_file(file)) {  // a pipe would be waited for
     if (!fs::is_directory(folder, ec)) return noSuchCase(id);
-    return Error{"CASE_PART_MISSING", "The folder has no case.json, so it is no whole case", where,
-                 "Put the file back, or delete the case"};
+    return Error{code::kCasePartMissing, "The folder has no case.json, so it is no whole case",
+                 where, "Put the file back, or delete the case"};
   }
   Result<Json> json = readJsonFile(folder / kCaseFile, Progress(), kMostWrittenBytes);
   if (!json) {
@@ -249,7 +252,7 @@ std::vector<ListedCase> CaseLibrary::list() const {
       } else if (bytes < voxels) {
         listed.problem = caseChanged(id, kVolumeFile, "volume");
       }
-    } else if (read.error().code == "NO_SUCH_CASE") {
+    } else if (read.error().code == code::kNoSuchCase) {
       continue;  // deleted meanwhile
     } else {
       listed.problem = read.error();
@@ -396,7 +399,7 @@ Result<LoadedCase> CaseLibrary::load(const std::string& id, const Progress& prog
   // Whatever went wrong, with the folder gone that is why; `where` is the case's own.
   const auto failed = [&](Error error, const char* file) {
     if (!fs::is_directory(folder, ec)) return noSuchCase(id);
-    if (error.code != "CANCELLED") error.where = id + "/" + file;
+    if (error.code != code::kCancelled) error.where = id + "/" + file;
     return error;
   };
 
@@ -408,11 +411,12 @@ Result<LoadedCase> CaseLibrary::load(const std::string& id, const Progress& prog
       volumeSha256(*volume) != loaded.record.volume_sha256) {
     return caseChanged(id, kVolumeFile, "volume");
   }
-  if (progress.cancelled()) return Error{"CANCELLED", "Opening the case was cancelled", "", ""};
+  if (progress.cancelled())
+    return Error{code::kCancelled, "Opening the case was cancelled", "", ""};
   if (has(kStructuresFile)) {
     Result<LabelMap> map =
         structuresOn(volume->geometry, id, folder / kStructuresFile, Progress(progress, 0.8, 0.95));
-    if (!map && map.error().code == "CANCELLED") return map.error();
+    if (!map && map.error().code == code::kCancelled) return map.error();
     if (map) {
       loaded.structures = std::make_shared<const LabelMap>(*std::move(map));
     } else {
@@ -426,7 +430,7 @@ Result<LoadedCase> CaseLibrary::load(const std::string& id, const Progress& prog
       if (json) loaded.tissues = *std::move(json);
       if (!json) loaded.tissues_problem = failed(json.error(), file);
       if (json && isNone(loaded.tissues)) {
-        loaded.tissues_problem = Error{"MISSING_FILE", "The file holds no tissues",
+        loaded.tissues_problem = Error{code::kMissingFile, "The file holds no tissues",
                                        id + "/" + file, "Save the case's tissues again"};
       }
       continue;
@@ -486,7 +490,7 @@ Status CaseLibrary::takeIdsOut(const std::string& id) const {
   if (!seen) return seen.error();
   const Keeper keeper = keeperOf(*seen, folders_);
   if (keeper == Keeper::another) {
-    return Error{"CANNOT_READ", "Another account keeps which CT the case is of", id,
+    return Error{code::kCannotRead, "Another account keeps which CT the case is of", id,
                  "That account changes it when it lists its cases"};
   }
   Result<Part> part = Part::make(folders_, Part::Of::someFiles);
@@ -568,7 +572,7 @@ Result<CaseRecord> CaseLibrary::rename(const std::string& id, const std::string&
     const Result<NameGuard> guard = NameGuard::read(folders_.privateFile(was->names_key));
     if (!guard) {
       return Error{
-          "NAME_UNCHECKED",
+          code::kNameUnchecked,
           "Whether this name tells who the patient is cannot be checked: what the case may "
           "not be called is not on this computer",
           id, "Keep the name, or import the CT again"};

@@ -4,6 +4,7 @@
 #include <optional>
 #include <vector>
 
+#include "base/codes.h"
 #include "base/stretched_hash.h"
 #include "volume/two_threads.h"
 
@@ -16,7 +17,7 @@ constexpr std::size_t kMostHashes = 4096;
 constexpr Range kIterations{1, 1e7}, kWords{1, 16}, kLengths{1, 64};
 
 Error checkCancelled() {
-  return Error{"CANCELLED", "Checking the name was cancelled", "", ""};
+  return Error{code::kCancelled, "Checking the name was cancelled", "", ""};
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <array>
 
 #include "base/utf8.h"
+#include "library/codes.h"
 #include "volume/label_map.h"
 
 namespace trephine {
@@ -229,7 +230,7 @@ std::vector<std::string> wordsOf(std::string_view text) {
 
 Result<std::string> caseNameFrom(std::string_view text) {
   const auto bad = [](const std::string& what) {
-    return Error{"BAD_NAME", what, "",
+    return Error{code::kBadName, what, "",
                  "Give it one line of at most " + std::to_string(kLongestCaseName) + " characters"};
   };
   if (!isUtf8(text)) return bad("The name is no valid text");
@@ -362,7 +363,7 @@ Error identityError(IdentityKind told) {
       what = "The name is that of a file that the CT came from";
       break;
   }
-  return Error{"NAME_IS_IDENTITY", what, "", "Choose one that tells nothing of the patient"};
+  return Error{code::kNameIsIdentity, what, "", "Choose one that tells nothing of the patient"};
 }
 
 const char* identityKindName(IdentityKind kind) {

@@ -17,6 +17,7 @@
 #include "base/shared_folder.h"
 #include "base/utf8.h"
 #include "library/case_folders.h"
+#include "library/codes.h"
 
 namespace trephine {
 
@@ -48,7 +49,7 @@ constexpr StoragePart kStorageParts[] = {{"cases", Holds::entries, 02775},
 Result<gid_t> groupOf(const std::string& name) {
   const group* found = ::getgrnam(name.c_str());
   if (found) return found->gr_gid;
-  return Error{"NO_GROUP", "There is no such group on this machine", name,
+  return Error{code::kNoGroup, "There is no such group on this machine", name,
                "Install Trephine's package, or make it: addgroup --system " + name};
 }
 
@@ -59,7 +60,7 @@ fs::path withoutDots(const fs::path& given) {
 }
 
 Error notAStorage(const std::string& what, const fs::path& where) {
-  return {"NOT_A_STORAGE", what, where.string(),
+  return {code::kNotAStorage, what, where.string(),
           "Name a folder of its own, such as /srv/trephine; it is made where it is missing"};
 }
 
@@ -157,7 +158,7 @@ Status checkWay(const fs::path& storage) {
     const bool there = ::stat(on.c_str(), &at) == 0;
     if (there && !S_ISDIR(at.st_mode)) return notAStorage("This is a file, not a folder", on);
     if (there && (at.st_mode & S_IXOTH) == 0) {
-      return Error{"CANNOT_REACH", "Other accounts may not pass this folder on the way",
+      return Error{code::kCannotReach, "Other accounts may not pass this folder on the way",
                    on.string(), "Let them pass it (chmod o+x), or name another"};
     }
     if (on == on.parent_path()) return {};
@@ -228,8 +229,8 @@ Status givePart(int storage, const StoragePart& part, gid_t group, const fs::pat
 
 Result<fs::path> shareStorage(const fs::path& given, const StorageGroups& groups) {
   if (::geteuid() != 0) {
-    return Error{"NOT_ROOT", "Only an administrator can give a folder to groups", given.string(),
-                 "Run it with sudo"};
+    return Error{code::kNotRoot, "Only an administrator can give a folder to groups",
+                 given.string(), "Run it with sudo"};
   }
   const fs::path storage = withoutDots(given);
   for (const auto check : {checkPlace, checkContents, checkWay}) {

@@ -1,5 +1,9 @@
 #include "library/stored_case.h"
 
+#include "base/codes.h"
+#include "imaging/codes.h"
+#include "library/codes.h"
+
 namespace trephine {
 
 Result<StoredCase> storedCase(CaseLibrary& library, const std::string& id,
@@ -13,7 +17,7 @@ Result<StoredCase> storedCase(CaseLibrary& library, const std::string& id,
   StoredCase stored{withStructures(std::move(of), loaded->structures), {}, {}, {}};
   if (const std::optional<Error>& why = loaded->structures_problem) {
     stored.no_structures = Error{
-        "NO_STRUCTURES",
+        code::kNoStructures,
         "The file with the case's structures cannot be used, so it has none (" + why->what + ")",
         why->where,
         "Put the file back and open the case again; or make them anew and save them in the case"};
@@ -21,7 +25,7 @@ Result<StoredCase> storedCase(CaseLibrary& library, const std::string& id,
   const std::string file = id + "/tissues.json";
   std::optional<Error> problem = loaded->tissues_problem;
   if (!problem && loaded->tissues.empty())
-    problem = Error{"MISSING_FILE", "There are none", file, ""};
+    problem = Error{code::kMissingFile, "There are none", file, ""};
   if (!problem) {
     Result<TissueSet> set = parseTissueSet(loaded->tissues, file);
     set ? void(stored.tissues = *std::move(set)) : void(problem = set.error());
@@ -29,7 +33,7 @@ Result<StoredCase> storedCase(CaseLibrary& library, const std::string& id,
   // No reason not to open the case.
   if (problem) {
     stored.no_tissues = Error{
-        "NO_TISSUES",
+        code::kNoTissues,
         "The file with the case's own tissues cannot be used, so it has those of the exercise (" +
             problem->what + ")",
         problem->where,

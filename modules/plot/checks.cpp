@@ -4,6 +4,8 @@
 #include <cmath>
 #include <functional>
 
+#include "base/codes.h"
+
 namespace trephine::plot {
 
 namespace {
@@ -29,7 +31,7 @@ bool ascending(const std::vector<double>& values) {
 
 Status checked(const Plot& plot) {
   const auto bad = [](const std::string& what) {
-    return Error{"BAD_ARGUMENT", what, "the plot", ""};
+    return Error{code::kBadArgument, what, "the plot", ""};
   };
   if (std::min(plot.width_px, plot.height_px) < 200 ||
       std::max(plot.width_px, plot.height_px) > 8192) {

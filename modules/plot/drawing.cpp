@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "base/codes.h"
 #include "base/file.h"
 #include "base/purpose.h"
 #include "plot/canvas.h"
@@ -100,7 +101,7 @@ class Sheet {
   }
 
   static Error tooSmall(const char* how, double least_px) {
-    return {"BAD_ARGUMENT",
+    return {code::kBadArgument,
             "The picture has no room for its texts and axes: it must be " +
                 number(std::ceil(least_px)) + " pixels " + how,
             "the plot", ""};
@@ -422,7 +423,7 @@ Result<Drawing> draw(const Plot& plot, Theme theme) {
   if (Status ready = readyFonts(); !ready) return ready.error();
   QImage image(plot.width_px, plot.height_px, QImage::Format_RGB32);
   if (image.isNull()) {
-    return Error{"OUT_OF_MEMORY", "There is no memory for a picture", "the plot",
+    return Error{code::kOutOfMemory, "There is no memory for a picture", "the plot",
                  "Close other programs"};
   }
   return Sheet(plot, image, theme).drawn(image);
@@ -434,7 +435,7 @@ Status writePng(const Plot& plot, Theme theme, const std::filesystem::path& file
   drawing->image.setText("Description", kPurpose);
   return replaceFile(file, [&](const std::filesystem::path& target) -> Status {
     if (drawing->image.save(QString::fromStdString(target.string()), "PNG")) return {};
-    return Error{"WRITE_FAILED", "The picture could not be written", file.string(),
+    return Error{code::kWriteFailed, "The picture could not be written", file.string(),
                  "Check the folder's rights and the space left on the disk"};
   });
 }

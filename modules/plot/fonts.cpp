@@ -8,6 +8,8 @@
 #include <mutex>
 #include <string>
 
+#include "plot/codes.h"
+
 namespace trephine::plot {
 
 namespace {
@@ -16,7 +18,8 @@ namespace {
 Status makeApplication() {
   QPluginLoader platform("platforms/libqoffscreen");
   if (!platform.load()) {
-    return Error{"CANNOT_DRAW", "Qt's offscreen platform, which pictures are drawn on, is missing",
+    return Error{code::kCannotDraw,
+                 "Qt's offscreen platform, which pictures are drawn on, is missing",
                  "platforms/libqoffscreen", "Install the package libqt6gui6 again"};
   }
   static char name[] = "trephine", option[] = "-platform", value[] = "offscreen";
@@ -43,11 +46,11 @@ Status readyFonts() {
     if (Status made = makeApplication(); !made) return made;
   }
   if (!qobject_cast<QGuiApplication*>(QCoreApplication::instance())) {
-    return Error{"CANNOT_DRAW", "This program draws no pictures", "its application object", ""};
+    return Error{code::kCannotDraw, "This program draws no pictures", "its application object", ""};
   }
   // Without any, Qt lists families all the same and draws boxes of a family without a name.
   if (QFontInfo(QFont()).family().isEmpty()) {
-    return Error{"CANNOT_DRAW", "There is no font to write with", "fontconfig",
+    return Error{code::kCannotDraw, "There is no font to write with", "fontconfig",
                  "Install the package fonts-dejavu-core"};
   }
   ready = true;

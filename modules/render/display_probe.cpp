@@ -23,6 +23,8 @@
 #include <cstring>
 #include <thread>
 
+#include "base/codes.h"
+#include "render/codes.h"
 #include "render/display_probe.h"
 
 VTK_MODULE_INIT(vtkRenderingOpenGL2);
@@ -100,7 +102,8 @@ Result<Answer> askChild() {
   const bool piped = ::pipe2(ends, O_CLOEXEC) == 0;
   const pid_t child = piped ? ::fork() : -1;
   if (child < 0) {
-    const Error refused{"NO_OPENGL", std::string("OpenGL cannot be tried: ") + std::strerror(errno),
+    const Error refused{code::kNoOpengl,
+                        std::string("OpenGL cannot be tried: ") + std::strerror(errno),
                         "graphics driver", "Close other programs and start again"};
     for (const int descriptor : ends) ::close(descriptor);
     return refused;
@@ -135,12 +138,12 @@ int openGlVersion() {
 }
 
 Error openGlTooOld(const std::string& driver) {
-  return {"NO_OPENGL", "OpenGL 3.2 is needed, the driver offers " + driver, "graphics driver",
+  return {code::kNoOpengl, "OpenGL 3.2 is needed, the driver offers " + driver, "graphics driver",
           "Update the driver, or start with LIBGL_ALWAYS_SOFTWARE=1"};
 }
 
 Status probeDisplay() {
-  const Error no_display{"NO_DISPLAY", "There is no display to draw on", "DISPLAY",
+  const Error no_display{code::kNoDisplay, "There is no display to draw on", "DISPLAY",
                          "Start inside a desktop session, or under xvfb-run"};
   const char* name = std::getenv("DISPLAY");
   if (!name || !*name) return no_display;
@@ -150,7 +153,7 @@ Status probeDisplay() {
   if (!answer) return answer.error();
   if (!answer->display) return no_display;
   if (!answer->done || !*answer->driver) {
-    return Error{"NO_OPENGL", "The display offers no OpenGL that works", "graphics driver",
+    return Error{code::kNoOpengl, "The display offers no OpenGL that works", "graphics driver",
                  "Install the graphics driver, or libgl1-mesa-dri for drawing in software"};
   }
   if (answer->version < kOpenGlNeeded) return openGlTooOld(answer->driver);

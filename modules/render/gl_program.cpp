@@ -7,6 +7,7 @@
 //
 #include <utility>
 
+#include "base/codes.h"
 #include "render/gl_program.h"
 
 namespace trephine {
@@ -32,7 +33,7 @@ Result<unsigned int> linkProgram(const char* vertex, const char* fragment,
   char why[512] = {};
   glGetProgramInfoLog(program, sizeof why, nullptr, why);
   glDeleteProgram(program);
-  return Error{"NO_OPENGL", "The graphics driver refuses a shader", why,
+  return Error{code::kNoOpengl, "The graphics driver refuses a shader", why,
                "Update the graphics driver"};
 }
 

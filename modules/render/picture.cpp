@@ -10,8 +10,10 @@
 #include <cmath>
 #include <limits>
 
+#include "base/codes.h"
 #include "base/file.h"
 #include "base/purpose.h"
+#include "render/codes.h"
 
 namespace trephine {
 
@@ -135,7 +137,7 @@ double psnr_dB(const Picture& a, const Picture& b) {
 
 Status writePng(const Picture& picture, const std::filesystem::path& file) {
   if (!complete(picture)) {
-    return Error{"BAD_PICTURE", "There is no picture to write", file.string(), ""};
+    return Error{code::kBadPicture, "There is no picture to write", file.string(), ""};
   }
   vtkNew<vtkImageData> image;
   image->SetDimensions(picture.width, picture.height, 1);
@@ -154,7 +156,7 @@ Status writePng(const Picture& picture, const std::filesystem::path& file) {
     writer->SetInputData(image);
     writer->Write();
     if (error.raised() || writer->GetErrorCode() != 0) {
-      return Error{"WRITE_FAILED", "The picture could not be written", file.string(),
+      return Error{code::kWriteFailed, "The picture could not be written", file.string(),
                    "Check the folder's rights and the space left on the disk"};
     }
     return {};

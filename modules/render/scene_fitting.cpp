@@ -10,6 +10,7 @@
 #include <algorithm>
 
 #include "base/log.h"
+#include "render/codes.h"
 #include "render/scene_parts.h"
 
 namespace trephine {
@@ -87,7 +88,7 @@ void SceneRenderer::Parts::fit() {
     }
   }
   refused = true;
-  refusal = Error{"VOLUME_REFUSED", "The graphics card cannot show this volume", "3-D view",
+  refusal = Error{code::kVolumeRefused, "The graphics card cannot show this volume", "3-D view",
                   "Close other programs, or import the case with a part or fewer voxels"};
   spdlog::warn("The graphics card refused a volume: {}", volume.complaint());
 }

@@ -19,6 +19,7 @@
 #include <limits>
 #include <utility>
 
+#include "base/codes.h"
 #include "base/log.h"
 #include "render/orientation_cue.h"
 #include "render/scene_parts.h"
@@ -154,7 +155,7 @@ bool SceneRenderer::View::work(double budget_ms) {
   scene_stale |= changed;
   const std::string& shader = of.composer.failure();
   if (of.refusal && (!pictures.allocated() || !shader.empty())) {
-    of.refusal = Error{"NO_OPENGL", "The graphics card refused to draw a picture", "3-D view",
+    of.refusal = Error{code::kNoOpengl, "The graphics card refused to draw a picture", "3-D view",
                        "Make the window smaller, or update the graphics driver"};
     spdlog::warn("No picture could be made: {}", shader.empty() ? "no memory" : shader);
   }

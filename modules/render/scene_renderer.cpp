@@ -17,6 +17,7 @@
 #include <cmath>
 #include <utility>
 
+#include "base/codes.h"
 #include "render/display_probe.h"
 #include "render/scene_parts.h"
 
@@ -48,7 +49,7 @@ Result<std::unique_ptr<SceneRenderer>> SceneRenderer::offscreen(int width, int h
   renderer->resize(width, height);
   vtkNew<vtkRenderWindow> window;
   p.window = vtkOpenGLRenderWindow::SafeDownCast(window);
-  const Error no_opengl{"NO_OPENGL", "OpenGL 3.2 could not be started", "hidden window",
+  const Error no_opengl{code::kNoOpengl, "OpenGL 3.2 could not be started", "hidden window",
                         "Update the graphics driver, or install libgl1-mesa-dri"};
   if (!p.window) return no_opengl;
   p.window->SetOffScreenRendering(1);

@@ -16,17 +16,20 @@
 #include <string>
 #include <vtksys/SystemTools.hxx>
 
+#include "base/codes.h"
+#include "render/codes.h"
+
 namespace trephine {
 
 namespace {
 
-Error meshError(const char* code, std::string what, const std::filesystem::path& file,
+Error meshError(Code code, std::string what, const std::filesystem::path& file,
                 std::string next = "Export it again as STL, in millimetres") {
   return Error{code, std::move(what), file.string(), std::move(next)};
 }
 
 Error notStl(const std::filesystem::path& file) {
-  return meshError("NOT_STL", "The mesh is not an STL file, or a damaged one", file);
+  return meshError(code::kNotStl, "The mesh is not an STL file, or a damaged one", file);
 }
 
 // What VTK's reader does not ask: of a binary file that was cut short it takes what is there, and
@@ -34,17 +37,17 @@ Error notStl(const std::filesystem::path& file) {
 Status checkFile(const std::filesystem::path& file) {
   std::error_code ec;
   if (!std::filesystem::is_regular_file(file, ec)) {
-    return meshError("MISSING_FILE", "There is no such mesh", file,
+    return meshError(code::kMissingFile, "There is no such mesh", file,
                      "Put it beside the tool's data file");
   }
   const std::uintmax_t size = std::filesystem::file_size(file, ec);
   std::ifstream stream(file, std::ios::binary);
   if (ec || !stream) {
-    return meshError("CANNOT_READ", "The mesh could not be read", file,
+    return meshError(code::kCannotRead, "The mesh could not be read", file,
                      "Check that you may read it");
   }
   if (size > kLargestToolMesh_bytes) {
-    return meshError("MESH_TOO_LARGE",
+    return meshError(code::kMeshTooLarge,
                      "The mesh has " + std::to_string(size >> 20) + " MiB, more than 64", file,
                      "Reduce its triangles");
   }
@@ -83,7 +86,7 @@ Result<ToolMesh> readToolMesh(const std::filesystem::path& file) {
   ToolMesh mesh;
   vtkPolyData* read = reader->GetOutput();
   for (vtkIdType first = 0; first + 2 < read->GetNumberOfPoints(); first += 3) {
-    const auto fault = [&](const char* code, const char* what) {
+    const auto fault = [&](Code code, const char* what) {
       return meshError(code, "A corner of triangle " + std::to_string(first / 3 + 1) + " " + what,
                        file);
     };
@@ -91,15 +94,15 @@ Result<ToolMesh> readToolMesh(const std::filesystem::path& file) {
     for (int i = 0; i < 3; ++i) {
       Vec3& p = corners[i];
       read->GetPoint(first + i, &p.x);
-      if (!isFinite(p)) return fault("MESH_NOT_FINITE", "is not finite");
+      if (!isFinite(p)) return fault(code::kMeshNotFinite, "is not finite");
       if (std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)}) > kFarthestToolMesh_mm) {
-        return fault("MESH_TOO_FAR", "lies more than 10 m off");
+        return fault(code::kMeshTooFar, "lies more than 10 m off");
       }
     }
     if (glm::cross(corners[1] - corners[0], corners[2] - corners[0]) == Vec3(0.0)) continue;
     mesh.corners.insert(mesh.corners.end(), corners, corners + 3);
   }
-  if (mesh.corners.empty()) return meshError("MESH_EMPTY", "The mesh has no triangles", file);
+  if (mesh.corners.empty()) return meshError(code::kMeshEmpty, "The mesh has no triangles", file);
   return mesh;
 }
 
@@ -114,7 +117,7 @@ Result<ToolMesh> inToolFrame(const ToolMesh& mesh, const Vec3& tip_mm, const Vec
                     std::abs(tip_mm.y) <= kFarthestToolMesh_mm &&
                     std::abs(tip_mm.z) <= kFarthestToolMesh_mm;
   if (!near || !isFinite(length) || length < 1e-6) {
-    return Error{"BAD_TOOL_FRAME",
+    return Error{code::kBadToolFrame,
                  near ? "The axis has no direction" : "The tip does not lie within 10 m",
                  near ? "axis" : "tip_mm", "Correct it in the tool's data file"};
   }

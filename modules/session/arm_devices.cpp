@@ -8,7 +8,9 @@
 #include "base/json.h"
 #include "base/range.h"
 #include "base/system.h"
+#include "device/codes.h"
 #include "exercise/arms_file.h"
+#include "exercise/codes.h"
 
 namespace trephine {
 
@@ -57,7 +59,7 @@ Result<std::unique_ptr<Device>> openDevice(const std::string& plugin_name,
   Result<std::unique_ptr<Device>> device = Device::open(*plugin, places, *text);
   if (device) return device;
   Error error = device.error();
-  if (error.code == "BAD_DEVICE_CONFIG" && !file.empty()) error.where = file;
+  if (error.code == code::kBadDeviceConfig && !file.empty()) error.where = file;
   return error;
 }
 
@@ -78,13 +80,13 @@ Status openDevices(Exercise& exercise, Rig& rig, std::vector<LoopDevice>& device
     for (std::size_t i = 0; i < arms.size(); ++i) {
       capabilities[arms[i]] = (*device)->capabilities(i);
       if (capabilities[arms[i]].input_dof == 0) {
-        return Error{"NO_DEVICE",
+        return Error{code::kNoDevice,
                      "The " + exercise.arms[arms[i]].name + " arm's device '" + name +
                          "' is a pedal: it has no place",
                      "", "Choose an arm for it"};
       }
       if (exercise.rate_hz > capabilities[arms[i]].rate_hz) {
-        return Error{"BAD_SCENE",
+        return Error{code::kBadScene,
                      "The scene asks for " + plainNumber(exercise.rate_hz) + " Hz, and the " +
                          exercise.arms[arms[i]].name + " arm's device '" + name +
                          "' keeps at most " + plainNumber(capabilities[arms[i]].rate_hz) + " Hz",
@@ -99,7 +101,7 @@ Status openDevices(Exercise& exercise, Rig& rig, std::vector<LoopDevice>& device
     Result<std::unique_ptr<Device>> pedal = openDevice(of.plugin, {of.place}, of.config);
     if (!pedal) return pedal.error();
     if ((*pedal)->capabilities(0).input_dof != 0) {
-      return Error{"NO_DEVICE", "The pedal's device '" + of.plugin + "' is an arm", "",
+      return Error{code::kNoDevice, "The pedal's device '" + of.plugin + "' is an arm", "",
                    "Choose a pedal for it"};
     }
     devices.push_back({*std::move(pedal), {}});
@@ -112,7 +114,7 @@ Status openDevices(Exercise& exercise, Rig& rig, std::vector<LoopDevice>& device
       const TrephineCapabilities& able = capabilities[of.arms[i]];
       const double delay_s = delayOf(of, able);
       if (delay_s * exercise.rate_hz > kMaxDelayTicks) {
-        return Error{"BAD_SCENE",
+        return Error{code::kBadScene,
                      "The " + arm.name + " arm's device '" + moved.device.plugin + "' answers " +
                          plainNumber(1e3 * delay_s) + " ms late, more than " +
                          std::to_string(kMaxDelayTicks) + " periods of the scene's " +
@@ -137,7 +139,7 @@ Result<ArmDevice> deviceOf(const FoundArm& wanted, const std::string& arm, const
   };
   const auto problem = std::ranges::find_if(here.problems, of_plugin);
   if (problem != here.problems.end()) return *problem;
-  return Error{"NO_DEVICE",
+  return Error{code::kNoDevice,
                "The device of the " + arm + " arm is not there: " +
                    (wanted.model.empty() ? wanted.plugin : wanted.model) + " at " + wanted.bus_path,
                "", "Plug it in, or choose another under Devices"};

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "exercise/codes.h"
 #include "exercise/names.h"
 
 namespace trephine {
@@ -190,7 +191,7 @@ Status checkLocks(const OperatorScript& script, const Locks& locks) {
     const bool controller = kind == CommandKind::controller && locks.contains(Lock::controller);
     const bool tissues = kind == CommandKind::tissues && locks.contains(Lock::tissues);
     if (!controller && !tissues) continue;
-    return Error{"LOCKED",
+    return Error{code::kLocked,
                  std::string("The script would change the ") +
                      (controller ? "controller" : "tissues") +
                      ", which the workstation or the exercise locks",

@@ -3,6 +3,7 @@
 #include <cstdio>
 
 #include "base/utf8.h"
+#include "session/codes.h"
 
 namespace trephine {
 
@@ -35,7 +36,7 @@ const FaultName& nameOf(std::uint32_t fault) {
 }  // namespace
 
 Error memoryNotLocked(const std::string& reason) {
-  return {"MEMORY_NOT_LOCKED",
+  return {code::kMemoryNotLocked,
           "The haptic thread's memory is not held in place (" + reason +
               "), so ticks may come late when the system is short of memory",
           "the limit on locked memory",
@@ -62,7 +63,7 @@ Json toJson(const RunReport& report) {
   }
   Json warnings = Json::array();
   for (const Warning& w : report.warnings) {
-    warnings.push_back({{"code", w.code}, {"text", w.text}});
+    warnings.push_back({{"code", w.code.str()}, {"text", w.text}});
   }
   const auto file = [](const std::string& name) { return name.empty() ? Json(nullptr) : Json(name); };
   return {{"controller", report.done.controllers.back()},

@@ -6,13 +6,16 @@
 #include <new>
 #include <system_error>
 
+#include "base/codes.h"
 #include "base/crash_report.h"
 #include "base/file.h"
 #include "base/log.h"
 #include "base/memory.h"
 #include "base/rt/thread.h"
 #include "base/system.h"
+#include "device/codes.h"
 #include "session/arm_devices.h"
+#include "session/codes.h"
 #include "session/session_engine.h"
 #include "volume/case_memory.h"
 
@@ -79,7 +82,7 @@ Status Session::set(const Placement& placed, const SessionOptions& options) {
   const Case& of = placed.patient;
   const Volume& volume = *of.volume;
   if (volume.geometry.voxelCount() > std::numeric_limits<std::uint32_t>::max()) {
-    return Error{"TOO_LARGE", "The case has more than 2^32 voxels", "the case",
+    return Error{code::kTooLarge, "The case has more than 2^32 voxels", "the case",
                  "Crop it or export it at a lower resolution"};
   }
   if (Status known = checkLabels(placed.exercise.tissues, placed.labels.get());
@@ -296,7 +299,7 @@ void Session::leaveBehind(std::size_t held, bool watchdog_ended) {
   const std::string plugin =
       pedal ? rig_.pedal->plugin : rig_.arms[stuck.arms.front()].device.plugin;
   left_behind_ = Error{
-      "DEVICE_STUCK",
+      code::kDeviceStuck,
       (pedal                   ? "The pedal stopped answering and was left behind"
        : stuck.arms.size() > 1 ? "The arms " + names + " stopped answering and were left behind"
                                : "The arm " + names + " stopped answering and was left behind"),
@@ -316,7 +319,7 @@ Status Session::freewheel(double seconds, const Progress& progress) {
   }
   const bool cancelled = !finished();
   Status ended = stop();
-  if (cancelled) return Error{"CANCELLED", "The run was cancelled", "", ""};
+  if (cancelled) return Error{code::kCancelled, "The run was cancelled", "", ""};
   return ended;
 }
 
@@ -393,7 +396,7 @@ Status Session::setTissues(const TissueSet& wanted) {
       tissues.tissues.begin(), tissues.tissues.end(), exercise_.tissues.tissues.begin(),
       exercise_.tissues.tissues.end(), [](const Tissue& a, const Tissue& b) { return a.id == b.id; });
   if (!same_ids) {
-    return Error{"OTHER_TISSUES", "A running exercise keeps its list of tissues", "tissues",
+    return Error{code::kOtherTissues, "A running exercise keeps its list of tissues", "tissues",
                  "Stop it before tissues are added or removed"};
   }
   // Colours, opacities and names are the window's alone: the tick hears of what it uses.
@@ -401,7 +404,7 @@ Status Session::setTissues(const TissueSet& wanted) {
   if (table != tissueTable(exercise_.tissues) &&
       !loop_->commands().push({CommandKind::tissues, 0, &engine_->tissues.emplace_back(table)})) {
     engine_->tissues.pop_back();
-    return Error{"BUSY", "Too many changes are waiting", "the haptic loop", "Try again"};
+    return Error{code::kBusy, "Too many changes are waiting", "the haptic loop", "Try again"};
   }
   exercise_.tissues = tissues;
   return {};

@@ -3,6 +3,7 @@
 #include <chrono>
 #include <new>
 
+#include "base/codes.h"
 #include "base/log.h"
 #include "base/memory.h"
 #include "base/rt/thread.h"
@@ -48,7 +49,7 @@ void Session::drain() {
       while (loop_->events().pop(event)) tellSinks([&](RecordSink& sink) { sink.event(event); });
       logWarnings();
     } catch (const std::exception&) {
-      const Error error{"OUT_OF_MEMORY", "The recorder ran out of memory", "the recording",
+      const Error error{code::kOutOfMemory, "The recorder ran out of memory", "the recording",
                         "Close other programs; what was recorded until now is kept"};
       if (recorder_) recorder_->abandon(error);
       noteFailure(error);

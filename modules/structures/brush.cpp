@@ -3,8 +3,10 @@
 #include <cmath>
 #include <optional>
 
+#include "base/codes.h"
 #include "structures/label_edits.h"
 #include "structures/shape_tools.h"
+#include "volume/codes.h"
 
 namespace trephine {
 
@@ -221,19 +223,19 @@ Result<LabelEdit> brushEdit(const LabelMap& map, int label, std::span<const Vec3
     return good.error();
   }
   if (brush.across < 0 || brush.across > 2) {
-    return Error{"BAD_ARGUMENT", "Slices lie across axis 0, 1 or 2", "across", ""};
+    return Error{code::kBadArgument, "Slices lie across axis 0, 1 or 2", "across", ""};
   }
   if (!std::all_of(path_mm.begin(), path_mm.end(), [](const Vec3& p) { return isFinite(p); })) {
-    return Error{"BAD_ARGUMENT", "A point of the stroke is no place", "path", ""};
+    return Error{code::kBadArgument, "A point of the stroke is no place", "path", ""};
   }
   if (brush.hu && !(brush.hu->low <= brush.hu->high)) {
-    return Error{"BAD_ARGUMENT", "The HU range ends below where it begins", "hu", ""};
+    return Error{code::kBadArgument, "The HU range ends below where it begins", "hu", ""};
   }
   if (brush.hu && !volume) {
-    return Error{"BAD_ARGUMENT", "A range of HU needs the CT", "hu", ""};
+    return Error{code::kBadArgument, "A range of HU needs the CT", "hu", ""};
   }
   if (brush.hu && volume->geometry.size != g.size) {
-    return Error{"OTHER_GRID", "The label map and the CT have other sizes", "",
+    return Error{code::kOtherGrid, "The label map and the CT have other sizes", "",
                  "Fit the label map to the CT"};
   }
   const std::uint8_t own = std::uint8_t(label);

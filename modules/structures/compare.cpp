@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "structures/work_grid.h"
+#include "volume/codes.h"
 #include "volume/grid_place.h"
 
 namespace trephine {
@@ -81,7 +82,7 @@ Result<Likeness> likeness(const LabelMap& a, std::uint8_t of_a, const LabelMap& 
       const Result<LabelMap> turned = fitTo(b, a.geometry);
       return turned ? likeness(a, of_a, *turned, of_b) : turned.error();
     }
-    return Error{"OTHER_GRID", "The two label maps are not of the same grid", "",
+    return Error{code::kOtherGrid, "The two label maps are not of the same grid", "",
                  "Compare label maps of one CT"};
   }
   std::size_t in_a = 0, in_b = 0, both = 0;

@@ -4,11 +4,14 @@
 #include <cmath>
 #include <limits>
 
+#include "base/codes.h"
 #include "base/formatted.h"
 #include "base/memory.h"
 #include "structures/block_border.h"
+#include "structures/codes.h"
 #include "structures/voxel_runs.h"
 #include "structures/work_grid.h"
+#include "volume/codes.h"
 #include "volume/two_threads.h"
 
 namespace trephine {
@@ -205,7 +208,7 @@ bool reachesBorder(const LabelMap& mask) {
 }
 
 Error nothingGrown(const HuSpan& hu, double open_mm) {
-  return {"NOTHING_GROWN",
+  return {code::kNothingGrown,
           formatted("There is no organ at this place: within 20 mm nothing of %.0f to %.0f HU",
                     hu.low, hu.high) +
               formatted(" is as wide as %.0f mm", 2.0 * open_mm),
@@ -262,7 +265,7 @@ bool isBeside(const BlockMask& found, const WorkGrid& grid, const Index3& at) {
 // Steps 1 to 3, in blocks; what they found of the range and what they did goes to `growth`.
 Result<BlockMask> growBlocks(const Volume& volume, const WorkGrid& grid, const Index3& voxel,
                              const GrowOptions& options, const Progress& progress, Growth& growth) {
-  const Error cancelled{"CANCELLED", "Growing was cancelled", "", ""};
+  const Error cancelled{code::kCancelled, "Growing was cancelled", "", ""};
   const auto on = [&](double fraction, const char* step) {
     progress.at(fraction, step);
     return !progress.cancelled();
@@ -357,7 +360,7 @@ Result<BlockMask> growBlocks(const Volume& volume, const WorkGrid& grid, const I
     const double far_HU = 2.0 * kLeastHalf_HU;  // beyond noise, and what a blurred edge makes
     if (seed_HU < growth.hu.low - far_HU || seed_HU > growth.hu.high + far_HU) {
       return Error{
-          "NOTHING_GROWN",
+          code::kNothingGrown,
           formatted("The seed is of %.0f HU, and what has room near it", seed_HU) +
               formatted(" of %.0f to %.0f HU: another thing", growth.hu.low, growth.hu.high),
           "seed", "Choose a place well inside, another range of HU or a smaller ball"};
@@ -372,10 +375,10 @@ Result<Growth> grow(const Volume& volume, const Vec3& seed_mm, const GrowOptions
                     const Progress& progress) {
   const GridGeometry& g = volume.geometry;
   if (!(options.open_mm >= 0.0 && options.open_mm <= 50.0)) {
-    return Error{"BAD_ARGUMENT", "The opening's radius is from 0 to 50 mm", "open", ""};
+    return Error{code::kBadArgument, "The opening's radius is from 0 to 50 mm", "open", ""};
   }
   if (options.hu && !(options.hu->low <= options.hu->high)) {
-    return Error{"BAD_ARGUMENT", "The HU range ends below where it begins", "hu", ""};
+    return Error{code::kBadArgument, "The HU range ends below where it begins", "hu", ""};
   }
   const Vec3 place = Vec3(g.patientToVoxel() * glm::dvec4(seed_mm, 1.0)) + 0.5;
   const VoxelBox whole{{0, 0, 0}, g.size};
@@ -385,7 +388,7 @@ Result<Growth> grow(const Volume& volume, const Vec3& seed_mm, const GrowOptions
     const double at = place[int(axis)];
     if (!(at >= inside.low[axis] && at < inside.high[axis])) {
       return Error{
-          "BAD_SEED",
+          code::kBadSeed,
           options.box ? "The seed lies outside of the box" : "The seed lies outside of the scan",
           "seed", "Give x, y and z in the patient's frame (LPS, mm)"};
     }
@@ -393,7 +396,8 @@ Result<Growth> grow(const Volume& volume, const Vec3& seed_mm, const GrowOptions
   }
   if (options.others && (options.others->geometry.size != g.size ||
                          options.others->labels.size() != g.voxelCount())) {
-    return Error{"OTHER_GRID", "The other structures are of another grid than the scan", "", ""};
+    return Error{code::kOtherGrid, "The other structures are of another grid than the scan", "",
+                 ""};
   }
   const double needed_mb = 1.5 * double(g.voxelCount()) / (1 << 20) + 100.0;
   if (Status enough = enoughMemory(needed_mb, "Growing a structure", ""); !enough) {
@@ -418,7 +422,7 @@ Result<Growth> grow(const Volume& volume, const Vec3& seed_mm, const GrowOptions
   if (growth.voxels == 0) return nothingGrown(growth.hu, options.open_mm);
   growth.seed_off_mm = offFrom(growth.mask, seed_mm, voxel);
   if (std::isinf(growth.seed_off_mm)) {
-    return Error{"NOTHING_GROWN",
+    return Error{code::kNothingGrown,
                  "The place is of no organ as wide as " +
                      formatted("%.0f mm: what was found lies more than %.0f mm beside it",
                                2.0 * options.open_mm, kMostOff_mm),

@@ -12,7 +12,10 @@
 #include <cmath>
 #include <limits>
 
+#include "base/codes.h"
+#include "structures/codes.h"
 #include "structures/label_edits.h"
+#include "volume/codes.h"
 
 namespace trephine {
 
@@ -21,11 +24,11 @@ namespace {
 constexpr int kSlabSlices = 24;  // that are grown at a time, beside those that they look at
 
 Error cancelled() {
-  return {"CANCELLED", "The tool was cancelled", "", ""};
+  return {code::kCancelled, "The tool was cancelled", "", ""};
 }
 
 Error noStructure(int label) {
-  return {"NO_STRUCTURE", "No voxel has the label " + std::to_string(label), "label",
+  return {code::kNoStructure, "No voxel has the label " + std::to_string(label), "label",
           "Choose a structure that has voxels"};
 }
 
@@ -172,7 +175,7 @@ std::optional<Index3> voxelAt(const LabelMap& map, int label, const Vec3& at_mm)
 Result<LabelEdit> pieceEdit(const LabelMap& map, int label, const Vec3& at_mm, Touching touching,
                             bool keeps) {
   if (Status good = checkMap(map, label); !good) return good.error();
-  if (!isFinite(at_mm)) return Error{"BAD_ARGUMENT", "The click is no place", "at", ""};
+  if (!isFinite(at_mm)) return Error{code::kBadArgument, "The click is no place", "at", ""};
   const std::uint8_t own = std::uint8_t(label);
   try {
     const GridGeometry& g = map.geometry;
@@ -180,7 +183,7 @@ Result<LabelEdit> pieceEdit(const LabelMap& map, int label, const Vec3& at_mm, T
     if (!box) return noStructure(label);
     const std::optional<Index3> voxel = voxelAt(map, label, at_mm);
     if (!voxel) {
-      return Error{"NOTHING_THERE", "The structure has no voxel within 5 mm of the click", "at",
+      return Error{code::kNothingThere, "The structure has no voxel within 5 mm of the click", "at",
                    "Click on the structure"};
     }
     const Index3& low = box->low;
@@ -329,10 +332,11 @@ Result<LabelEdit> movedBy(const LabelMap& map, int label, double mm, const Label
 
 Status checkMap(const LabelMap& map, int label) {
   if (label < 1 || label > 255) {
-    return Error{"BAD_ARGUMENT", "A label is a number from 1 to 255", "label", ""};
+    return Error{code::kBadArgument, "A label is a number from 1 to 255", "label", ""};
   }
   if (map.labels.empty() || map.labels.size() != map.geometry.voxelCount()) {
-    return Error{"BAD_ARGUMENT", "The label map does not have the voxels of its grid", "map", ""};
+    return Error{code::kBadArgument, "The label map does not have the voxels of its grid", "map",
+                 ""};
   }
   return {};
 }
@@ -341,7 +345,7 @@ Status checkMm(double mm, double least, double most, const char* what) {
   if (mm >= least && mm <= most) return {};
   char range[60];
   std::snprintf(range, sizeof range, " is from %g to %g mm", least, most);
-  return Error{"BAD_ARGUMENT", std::string(what) + range, "mm", ""};
+  return Error{code::kBadArgument, std::string(what) + range, "mm", ""};
 }
 
 LabelEdit EditMaker::take() {
@@ -394,7 +398,7 @@ Result<LabelEdit> maskEdit(const LabelMap& map, std::span<const std::uint8_t> ma
                            const Labels& over) {
   if (Status good = checkMap(map, label); !good) return good.error();
   if (mask.size() != map.labels.size()) {
-    return Error{"OTHER_GRID", "The mask is not of the label map's grid", "mask", ""};
+    return Error{code::kOtherGrid, "The mask is not of the label map's grid", "mask", ""};
   }
   const GridGeometry& g = map.geometry;
   try {
@@ -409,7 +413,7 @@ Result<LabelEdit> holesEdit(const LabelMap& map, int label, std::optional<int> a
                             const Labels& over, const Progress& progress) {
   if (Status good = checkMap(map, label); !good) return good.error();
   if (across && (*across < 0 || *across > 2)) {
-    return Error{"BAD_ARGUMENT", "Slices lie across axis 0, 1 or 2", "across", ""};
+    return Error{code::kBadArgument, "Slices lie across axis 0, 1 or 2", "across", ""};
   }
   const GridGeometry& g = map.geometry;
   const std::uint8_t own = std::uint8_t(label);
@@ -509,7 +513,7 @@ Result<LabelEdit> shellEdit(const LabelMap& map, int label, double thickness_mm,
   if (Status good = checkMap(map, label); !good) return good.error();
   if (Status good = checkMap(map, into); !good) return good.error();
   if (into == label) {
-    return Error{"BAD_ARGUMENT", "The shell needs a label of its own", "into", ""};
+    return Error{code::kBadArgument, "The shell needs a label of its own", "into", ""};
   }
   if (Status good = checkMm(thickness_mm, 0.1, 50.0, "The thickness"); !good) return good.error();
   try {

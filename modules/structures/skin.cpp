@@ -4,8 +4,10 @@
 #include <cmath>
 #include <cstdlib>
 
+#include "base/codes.h"
 #include "base/formatted.h"
 #include "base/memory.h"
+#include "structures/codes.h"
 #include "structures/voxel_runs.h"
 #include "structures/work_grid.h"
 
@@ -16,7 +18,7 @@ namespace {
 constexpr double kAirBlock_mm = 2.0;
 
 Error noBody(const std::string& what) {
-  return {"NO_BODY", what, "", "Choose a CT that shows the body and the air at its sides"};
+  return {code::kNoBody, what, "", "Choose a CT that shows the body and the air at its sides"};
 }
 
 // The grid's axis that runs most along the patient.
@@ -210,7 +212,7 @@ class SkinMask {
 };
 
 Result<Skin> madeSkin(const Volume& volume, double thickness_mm, const Progress& progress) {
-  const Error cancelled{"CANCELLED", "Finding the skin was cancelled", "", ""};
+  const Error cancelled{code::kCancelled, "Finding the skin was cancelled", "", ""};
   const auto on = [&](double fraction, const char* step) {
     progress.at(fraction, step);
     return !progress.cancelled();
@@ -241,7 +243,7 @@ Result<Skin> madeSkin(const Volume& volume, double thickness_mm, const Progress&
 
 Result<Skin> skinOf(const Volume& volume, double thickness_mm, const Progress& progress) {
   if (!(thickness_mm >= 0.1 && thickness_mm <= 20.0)) {
-    return Error{"BAD_ARGUMENT", "The skin is from 0.1 to 20 mm thick", "thickness", ""};
+    return Error{code::kBadArgument, "The skin is from 0.1 to 20 mm thick", "thickness", ""};
   }
   const double needed_mb = 2.0 * double(volume.geometry.voxelCount()) / (1 << 20) + 50.0;
   if (Status enough = enoughMemory(needed_mb, "Finding the skin", ""); !enough) {

@@ -7,8 +7,10 @@
 #include <cstring>
 #include <numeric>
 
+#include "base/codes.h"
 #include "base/formatted.h"
 #include "base/memory.h"
+#include "structures/codes.h"
 #include "structures/voxel_runs.h"
 
 namespace trephine {
@@ -302,7 +304,7 @@ class SkullMask {
 };
 
 Result<Skull> make(const Volume& volume, const Progress& progress) {
-  const Error cancelled{"CANCELLED", "Finding the skull was cancelled", "", ""};
+  const Error cancelled{code::kCancelled, "Finding the skull was cancelled", "", ""};
   const auto on = [&](double fraction, const char* step) {
     progress.at(fraction, step);
     return !progress.cancelled();
@@ -315,7 +317,7 @@ Result<Skull> make(const Volume& volume, const Progress& progress) {
   SkullMask mask(volume);
   const std::size_t bone = mask.takeLargest();
   if (ml(bone) < kLeastBone_ml) {
-    return Error{"NO_BONE",
+    return Error{code::kNoBone,
                  formatted("The largest piece over %.0f HU has %.1f mL", kBone_HU, ml(bone)), "",
                  "Choose a CT of a head whose values are HU"};
   }

@@ -15,6 +15,7 @@
 #include <cerrno>
 #include <new>
 
+#include "base/codes.h"
 #include "base/file.h"
 #include "base/memory.h"
 #include "base/purpose.h"
@@ -72,11 +73,11 @@ vtkNew<vtkImageData> maskOf(const LabelMap& map, int label, const VoxelBox& box)
 
 Result<SurfaceWritten> writeSurface(const LabelMap& map, int label,
                                     const std::filesystem::path& file, const Progress& progress) {
-  const Error cancelled{"CANCELLED", "Making the surface was cancelled", "", ""};
+  const Error cancelled{code::kCancelled, "Making the surface was cancelled", "", ""};
   try {
     const VoxelBox box = boxOf(map, label);
     if (box.low[0] >= box.high[0]) {
-      return Error{"EMPTY_STRUCTURE", "The structure has no voxel", file.string(),
+      return Error{code::kEmptyStructure, "The structure has no voxel", file.string(),
                    "Choose another structure"};
     }
     progress.at(0.0, "Making the surface");

@@ -4,6 +4,8 @@
 #include <array>
 #include <optional>
 
+#include "tissue/codes.h"
+
 namespace trephine {
 
 namespace {
@@ -116,14 +118,14 @@ TissueSet withThreshold(const TissueSet& set, std::size_t tissue, RangeEnd end, 
 
 Result<TissueSet> withNewTissue(const TissueSet& set) {
   if (set.tissues.size() >= std::size_t(kMaxTissues)) {
-    return Error{"NO_ROOM", "A set has at most " + std::to_string(kMaxTissues) + " tissues", "",
+    return Error{code::kNoRoom, "A set has at most " + std::to_string(kMaxTissues) + " tissues", "",
                  "Remove one first"};
   }
   std::vector<HuRange> free = freeHu(set, kNoAirHu);
   const bool air = free.empty();
   if (air) free = freeHu(set, kCtHu);
   if (free.empty()) {
-    return Error{"NO_ROOM",
+    return Error{code::kNoRoom,
                  "Every HU from " + std::to_string(kCtHu.low) + " to " +
                      std::to_string(kCtHu.high) + " has a tissue",
                  "", "Narrow the range of one first, or restrict one to a structure"};
@@ -143,7 +145,7 @@ Result<TissueSet> withNewTissue(const TissueSet& set) {
 
 Result<TissueSet> withoutTissue(const TissueSet& set, std::size_t tissue) {
   if (set.tissues.size() < 2) {
-    return Error{"LAST_TISSUE", "A set has at least one tissue", "", "Add another one first"};
+    return Error{code::kLastTissue, "A set has at least one tissue", "", "Add another one first"};
   }
   TissueSet out = set;
   out.tissues.erase(out.tissues.begin() + std::ptrdiff_t(tissue));

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "base/utf8.h"
+#include "tissue/codes.h"
 
 namespace trephine {
 
@@ -11,7 +12,7 @@ namespace {
 
 Error bad(const std::string& file, const std::string& field, const std::string& what,
           const std::string& next = "Correct that value") {
-  return Error{"BAD_TISSUE", what, file + ": " + field, next};
+  return Error{code::kBadTissue, what, file + ": " + field, next};
 }
 
 std::string range(const Tissue& t) {

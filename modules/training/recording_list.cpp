@@ -10,12 +10,15 @@
 #include <utility>
 
 #include "base/child_process.h"
+#include "base/codes.h"
 #include "base/file.h"
 #include "base/shared_folder.h"
 #include "base/stretched_hash.h"
 #include "base/utf8.h"
+#include "training/codes.h"
 #include "training/paused_ticks.h"
 #include "training/session_reader.h"
+#include "volume/codes.h"
 
 namespace trephine {
 
@@ -47,7 +50,7 @@ ListedRecording headOf(const std::filesystem::path& file) {
   row.seconds = std::min(double(done) / rate_hz, kLongest_s);
   row.cut_short = !(*reader)->end();
   if (!row.cut_short && (*reader)->end()->dropped > 0) {
-    row.problem = Error{"NOT_REPLAYABLE", "A part of the recording is missing", file.string(),
+    row.problem = Error{code::kNotReplayable, "A part of the recording is missing", file.string(),
                         "It can be kept, but not replayed"};
   }
   return row;
@@ -66,8 +69,8 @@ ListedRecording rowFrom(const Json& json, const std::filesystem::path& file) {
   if (reader.has("problem")) {
     JsonReader problem = reader.object("problem");
     (void)problem.raw("where");
-    row.problem =
-        Error{problem.text("code"), problem.text("what"), file.string(), problem.text("next")};
+    row.problem = Error{Code::named(problem.text("code")), problem.text("what"), file.string(),
+                        problem.text("next")};
   }
   if (const Status read = reader.finish(); !read) row.problem = read.error();
   return row;
@@ -81,7 +84,7 @@ struct Pass {
 };
 
 Error cannotRun(const ReadApart& how) {
-  return {"CANNOT_RUN", "The recordings cannot be listed", how.program.filename().string(),
+  return {code::kCannotRun, "The recordings cannot be listed", how.program.filename().string(),
           "See that there is room for temporary files and memory, else install Trephine anew"};
 }
 
@@ -127,15 +130,15 @@ ListedRecording unread(const std::filesystem::path& file, Pass::End end) {
   row.written = std::filesystem::last_write_time(file, ec);
   switch (end) {
     case Pass::End::timed_out:
-      row.problem = Error{"TAKES_TOO_LONG", "The recording takes too long to read", file.string(),
-                          "Check its disk, then look again"};
+      row.problem = Error{code::kTakesTooLong, "The recording takes too long to read",
+                          file.string(), "Check its disk, then look again"};
       break;
     case Pass::End::crashed:
-      row.problem = Error{"BAD_RECORDING", "The recording is damaged", file.string(),
+      row.problem = Error{code::kBadRecording, "The recording is damaged", file.string(),
                           "It cannot be replayed"};
       break;
     case Pass::End::ended:
-      row.problem = Error{"UNREADABLE", "The recording could not be read", file.string(),
+      row.problem = Error{code::kUnreadable, "The recording could not be read", file.string(),
                           "See that there is memory and room for temporary files, then look again"};
       break;
   }
@@ -150,7 +153,7 @@ ListedRecording listRecording(const std::filesystem::path& file) {
   } catch (const Json::exception&) {  // a head that is no exercise
     ListedRecording row;
     row.file = file;
-    row.problem = Error{"BAD_RECORDING", "The recording's head is damaged", file.string(),
+    row.problem = Error{code::kBadRecording, "The recording's head is damaged", file.string(),
                         "It cannot be replayed"};
     return row;
   }
@@ -161,7 +164,7 @@ Json toJson(const ListedRecording& row) {
                {"case", row.case_source},   {"volume_sha256", row.volume_sha256},
                {"seconds", row.seconds},    {"cut_short", row.cut_short}};
   if (const auto& problem = row.problem) {
-    json["problem"] = {{"code", problem->code},
+    json["problem"] = {{"code", problem->code.str()},
                        {"what", cleanUtf8(problem->what)},
                        {"where", problem->where},
                        {"next", cleanUtf8(problem->next)}};

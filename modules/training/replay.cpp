@@ -3,11 +3,13 @@
 #include <algorithm>
 #include <cstring>
 
+#include "base/codes.h"
 #include "base/file.h"
 #include "base/memory.h"
-#include "haptics/haptic_core.h"
 #include "exercise/exercise.h"
 #include "exercise/exercise_structures.h"
+#include "haptics/haptic_core.h"
+#include "training/codes.h"
 #include "training/recording_layout.h"
 #include "volume/case_memory.h"
 #include "volume/journal_file.h"
@@ -121,7 +123,7 @@ Status serveJournal(HapticCore& core, JournalFile& journal_file, std::uint64_t t
   for (int tries = 0; (core.journalState() & recorded) != recorded; ++tries) {
     if (Status served = journal_file.service(core.journal()); !served) return served;
     if (tries == kTries) {
-      return Error{"NOT_REPLAYABLE",
+      return Error{code::kNotReplayable,
                    "The recording's tick " + std::to_string(tick) + " tells of a journal (" +
                        std::to_string(recorded) + ") that the replay cannot come to",
                    "ticks: journal",
@@ -140,7 +142,7 @@ struct RecordedLabels {
 Result<RecordedLabels> recordedLabels(const RecordingHeader& header, const TissueSet& tissues,
                                       const LabelMap* given) {
   const auto wrong = [](const char* what, const char* next) {
-    return Error{"WRONG_LABELS", what, "--labels", next};
+    return Error{code::kWrongLabels, what, "--labels", next};
   };
   const bool had = !header.labels_sha256.empty();
   if (had && !given) {
@@ -275,11 +277,11 @@ Result<std::unique_ptr<ReplayedSession>> ReplayedSession::open(const SessionRead
   const RecordingHeader& header = recording.header();
   if (volume.geometry.size != header.geometry.size ||
       (sha256.empty() ? volumeSha256(volume) : sha256) != header.volume_sha256) {
-    return Error{"WRONG_CASE", "The case is not the one that was recorded: its voxels differ",
+    return Error{code::kWrongCase, "The case is not the one that was recorded: its voxels differ",
                  "--case", "Give the folder that the session was run on"};
   }
   if (recording.end() && recording.end()->dropped > 0) {
-    return Error{"NOT_REPLAYABLE",
+    return Error{code::kNotReplayable,
                  "The recorder fell behind and dropped " +
                      std::to_string(recording.end()->dropped) + " entries",
                  "the recording", "Record again on a machine with less load"};
@@ -311,7 +313,7 @@ Status ReplayedSession::Run::tick(RecordSink* sink) {
   if (Status read = readBlock(); !read) return read;
   const TickRecord& recorded = block[std::size_t(ticks - block_first)];
   if (recorded.tick != ticks) {
-    return Error{"NOT_REPLAYABLE",
+    return Error{code::kNotReplayable,
                  "The recorder fell behind: tick " + std::to_string(ticks) + " is missing",
                  "the recording", "Record again on a machine with less load"};
   }
@@ -374,7 +376,7 @@ Result<ReplayResult> replay(const SessionReader& recording, const Volume& volume
     if (session.ticks() % kLook == 0) {
       progress.at(double(session.ticks()) / double(std::max<std::uint64_t>(1, recording.tickCount())),
                   "Replaying");
-      if (progress.cancelled()) return Error{"CANCELLED", "The replay was cancelled", "", ""};
+      if (progress.cancelled()) return Error{code::kCancelled, "The replay was cancelled", "", ""};
     }
     const Result<bool> stepped = session.step(&meter);
     if (!stepped) return stepped.error();

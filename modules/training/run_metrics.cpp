@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/codes.h"
 #include "exercise/exercise_fields.h"
 #include "exercise/names.h"
 #include "haptics/laws.h"
+#include "training/codes.h"
 
 namespace trephine {
 
@@ -24,7 +26,7 @@ bool operator==(const RunMetrics& a, const RunMetrics& b) {
 }
 
 Warning startsInTissue(const std::string& arm, bool barrier) {
-  return {"STARTS_IN_TISSUE",
+  return {code::kStartsInTissue,
           "The tool of the " + arm + " arm starts in tissue: " +
               (barrier ? "it has no force and cuts nothing until it has been moved out"
                        : "without the elastic law it feels and cuts it from the first moment")};
@@ -72,7 +74,7 @@ void RunMeter::event(const Event& event) {
       warn(startsInTissue(arm, barrier_));
       break;
     case EventKind::let_go:
-      warn({"LET_GO",
+      warn({code::kLetGo,
             "The tool of the " + arm + " arm was hooked behind solid tissue " +
                 plainNumber(std::round(double(event.tick) / metrics_.rate_hz * 10.0) / 10.0) +
                 " s after the start, while the arm was free: it was let go"});
@@ -118,7 +120,7 @@ Result<RunMetrics> metricsOf(const SessionReader& recording, const Progress& pro
   const std::uint64_t total = recording.tickCount();
   for (std::uint64_t first = 0; first < total; first += kBlock) {
     progress.at(double(first) / double(total), "Reading the recording");
-    if (progress.cancelled()) return Error{"CANCELLED", "Reading it was cancelled", "", ""};
+    if (progress.cancelled()) return Error{code::kCancelled, "Reading it was cancelled", "", ""};
     const auto block = recording.ticks(first, std::min(kBlock, total - first));
     if (!block) return block.error();
     for (const TickRecord& record : *block) meter.tick(record);

@@ -12,8 +12,10 @@
 #include <string_view>
 #include <utility>
 
+#include "base/codes.h"
 #include "base/memory.h"
 #include "base/utf8.h"
+#include "training/codes.h"
 #include "training/own_dataset.h"
 #include "training/recording_layout.h"
 
@@ -169,7 +171,7 @@ struct SessionReader::File {
   }
 
   Error bad(const std::string& what) const {
-    return Error{"BAD_RECORDING", what, path.string(),
+    return Error{code::kBadRecording, what, path.string(),
                  "Choose a file that this program recorded; a copy may be incomplete"};
   }
   ~File() {
@@ -206,15 +208,16 @@ Result<std::unique_ptr<SessionReader>> SessionReader::open(const std::filesystem
   quietHdf5();
   std::error_code ec;
   if (::access(path.c_str(), R_OK) != 0 && errno == EACCES) {
-    return Error{"CANNOT_READ", std::string("The recording may not be read: ") + std::strerror(errno),
+    return Error{code::kCannotRead,
+                 std::string("The recording may not be read: ") + std::strerror(errno),
                  path.string(), "Ask the person who keeps it, or an administrator"};
   }
   if (std::filesystem::exists(path, ec) && !std::filesystem::is_regular_file(path, ec)) {
-    return Error{"BAD_RECORDING", "This is no file but a folder, a pipe or a device", path.string(),
-                 "Give a recording's file"};
+    return Error{code::kBadRecording, "This is no file but a folder, a pipe or a device",
+                 path.string(), "Give a recording's file"};
   }
   if (!std::filesystem::is_regular_file(path, ec)) {
-    return Error{"MISSING_FILE", "There is no recording", path.string(), "Check the name"};
+    return Error{code::kMissingFile, "There is no recording", path.string(), "Check the name"};
   }
   std::unique_ptr<SessionReader> reader(new SessionReader);
   File& f = *reader->file_;
@@ -239,14 +242,14 @@ Result<std::unique_ptr<SessionReader>> SessionReader::open(const std::filesystem
   if (format != "trephine.session") return f.bad("The file is not a recording of Trephine");
   const int version = readVersion(f.file);
   if (version > kRecordingVersion) {
-    return Error{"NEWER_VERSION",
+    return Error{code::kNewerVersion,
                  "The recording has version " + std::to_string(version) +
                      " of trephine.session, and this program reads up to " +
                      std::to_string(kRecordingVersion),
                  path.string(), "Open it with a newer Trephine"};
   }
   if (version < kOldestRecording) {
-    return Error{"OLDER_VERSION",
+    return Error{code::kOlderVersion,
                  "The recording has version " + std::to_string(version) +
                      " of trephine.session, and this program reads from " +
                      std::to_string(kOldestRecording) + " on",

@@ -11,9 +11,11 @@
 #include <optional>
 #include <vector>
 
+#include "base/codes.h"
 #include "base/file.h"
 #include "base/purpose.h"
 #include "base/shared_folder.h"
+#include "training/codes.h"
 #include "training/recording_layout.h"
 
 namespace trephine {
@@ -152,14 +154,14 @@ struct SessionRecorder::File {
   bool isGone() {
     struct stat of {};
     if (failure || ::fstat(descriptor, &of) != 0 || of.st_nlink > 0) return false;
-    failure = Error{"RECORDING_GONE", "The recording was deleted while it was written",
+    failure = Error{code::kRecordingGone, "The recording was deleted while it was written",
                     path.filename().string(), "Start the exercise anew to have it recorded"};
     return true;
   }
 
   Status fail() {
     if (!failure) {
-      failure = Error{"CANNOT_WRITE",
+      failure = Error{code::kCannotWrite,
                       std::string("The recording can no longer be written: ") +
                           (errno ? std::strerror(errno) : "unknown reason"),
                       path.filename().string(),
@@ -202,7 +204,7 @@ Result<std::unique_ptr<SessionRecorder>> SessionRecorder::create(const std::file
   H5Pclose(access);
   if (f.file >= 0) keepOwn(path);
   const auto cannot = [&path] {
-    return Error{"CANNOT_WRITE",
+    return Error{code::kCannotWrite,
                  std::string("The recording cannot be started: ") +
                      (errno ? std::strerror(errno) : "unknown reason"),
                  path.string(), afterFailedWrite(errno)};

@@ -9,6 +9,7 @@
 #include <locale>
 #include <string_view>
 
+#include "base/codes.h"
 #include "base/file.h"
 
 namespace trephine {
@@ -45,7 +46,7 @@ Status writeTo(const SessionReader& recording, std::ofstream& out, const Progres
   const std::uint64_t count = recording.tickCount();
   std::array<Vec3, kMaxArms> before_m;
   for (std::uint64_t first = 0; first < count && out; first += kSlice) {
-    if (progress.cancelled()) return Error{"CANCELLED", "The table was cancelled", "", ""};
+    if (progress.cancelled()) return Error{code::kCancelled, "The table was cancelled", "", ""};
     progress.at(double(first) / double(count), "Writing the table");
     auto ticks = recording.ticks(first, std::min(kSlice, count - first));
     if (!ticks) return ticks.error();
@@ -82,7 +83,7 @@ Status writeTickTable(const SessionReader& recording, const std::filesystem::pat
     Status written = writeTo(recording, out, progress);
     if (out) out.close();
     if (!written || out) return written;
-    return Error{"CANNOT_WRITE",
+    return Error{code::kCannotWrite,
                  std::string("The table could not be written: ") +
                      (errno ? std::strerror(errno) : "unknown reason"),
                  file.string(), afterFailedWrite(errno)};

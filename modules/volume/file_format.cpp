@@ -13,7 +13,9 @@
 #include <limits>
 #include <system_error>
 
+#include "base/codes.h"
 #include "base/descriptor.h"
+#include "volume/codes.h"
 
 namespace trephine::file_format {
 
@@ -41,24 +43,24 @@ std::span<const std::byte> storedAs(VoxelType type, std::span<const std::int16_t
 }
 
 Error unreadable(const std::string& what, const fs::path& file) {
-  return Error{"UNREADABLE", what, file.string(), "Copy or export the file again"};
+  return Error{code::kUnreadable, what, file.string(), "Copy or export the file again"};
 }
 
 Error badGeometry(const std::string& what, const fs::path& file) {
-  return Error{"BAD_GEOMETRY", what, file.string(),
+  return Error{code::kBadGeometry, what, file.string(),
                "Export it again with its orientation, position and voxel size"};
 }
 
 Error notHu(const std::string& what, const fs::path& file) {
-  return Error{"NOT_HU", what, file.string(), "Export the CT as 16-bit whole numbers in HU"};
+  return Error{code::kNotHu, what, file.string(), "Export the CT as 16-bit whole numbers in HU"};
 }
 
 Error unknownFormat(const std::string& what, const fs::path& file, const std::string& next) {
-  return Error{"UNKNOWN_FORMAT", what, file.string(), next};
+  return Error{code::kUnknownFormat, what, file.string(), next};
 }
 
 Error cannotWrite(const fs::path& file) {
-  return Error{"CANNOT_WRITE", "The volume could not be written", file.string(),
+  return Error{code::kCannotWrite, "The volume could not be written", file.string(),
                "Check free space and that you may write there; nothing that was there is lost"};
 }
 
@@ -140,11 +142,11 @@ Result<fs::path> fileBeside(const fs::path& header, const std::string& name) {
   const fs::path folder = fs::canonical(fs::absolute(header, ec).parent_path(), ec);
   const fs::path found = fs::weakly_canonical(folder / name, ec);  // symbolic links followed
   if (ec || found.parent_path() != folder) {
-    return Error{"UNREADABLE", "The header leads to voxels outside of its own folder",
+    return Error{code::kUnreadable, "The header leads to voxels outside of its own folder",
                  header.string(), "Put both files into one folder and name the data file there"};
   }
   if (!fs::is_regular_file(found, ec)) {
-    return Error{"MISSING_FILE", "The file with the voxels is not beside the header",
+    return Error{code::kMissingFile, "The file with the voxels is not beside the header",
                  (header.parent_path() / name).string(),
                  "Keep the header and its data file together"};
   }

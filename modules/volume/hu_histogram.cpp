@@ -4,6 +4,7 @@
 #include <array>
 #include <mutex>
 
+#include "base/codes.h"
 #include "volume/two_threads.h"
 
 namespace trephine {
@@ -93,7 +94,7 @@ Result<HuHistogram> histogramOf(const Volume& volume, const LabelMap* labels,
     const std::lock_guard lock(adding);
     add(counted, all);
   });
-  if (progress.cancelled()) return Error{"CANCELLED", "Cancelled", "", ""};
+  if (progress.cancelled()) return Error{code::kCancelled, "Cancelled", "", ""};
   HuHistogram histogram = trimmed(all);
   histogram.voxels = voxels;
   histogram.voxel_mm3 = volume.geometry.voxelVolume_mm3();

@@ -9,6 +9,7 @@
 #include <string>
 #include <system_error>
 
+#include "base/codes.h"
 #include "base/file.h"
 
 namespace trephine {
@@ -50,7 +51,7 @@ int transferAll(Byte* address, std::size_t bytes, std::uint64_t offset, std::siz
 Result<std::unique_ptr<JournalFile>> JournalFile::create(const std::filesystem::path& folder) {
   const int descriptor = openUnnamed(folder);
   if (descriptor < 0) {
-    return Error{"CANNOT_WRITE",
+    return Error{code::kCannotWrite,
                  "The journal of what is removed cannot be kept on disk: " + reason(errno),
                  folder.string(), afterFailedWrite(errno)};
   }
@@ -84,7 +85,7 @@ Status JournalFile::save(CarveLog& log) {
     log.markSaved(first + done / sizeof(CarveEntry));
     if (done == bytes.size()) continue;
     write_failed_ = true;
-    return Error{"CANNOT_WRITE",
+    return Error{code::kCannotWrite,
                  "The journal of what is removed can no longer be written: " + reason(error),
                  folder_.string(),
                  afterFailedWrite(error) +
@@ -109,7 +110,7 @@ Status JournalFile::load(CarveLog& log) {
   }
   if (read_failed_) return {};
   read_failed_ = true;
-  return Error{"CANNOT_READ",
+  return Error{code::kCannotRead,
                "The journal of what is removed cannot be read back: " + reason(error),
                folder_.string(), "Check the disk; undo and rewind wait until it can be read"};
 }

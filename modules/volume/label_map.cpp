@@ -10,6 +10,7 @@
 #include "base/sha256.h"
 #include "base/utf8.h"
 #include "volume/case_memory.h"
+#include "volume/codes.h"
 #include "volume/segmentation.h"
 #include "volume/volume_files.h"
 #include "volume/voxel_slabs.h"
@@ -215,7 +216,7 @@ Result<LabelMap> fitTo(const LabelMap& map, const GridGeometry& ct) {
     }
   }
   if (!met) {
-    return Error{"LABELS_ELSEWHERE", "The label map and the case do not overlap in the patient",
+    return Error{code::kLabelsElsewhere, "The label map and the case do not overlap in the patient",
                  "the label map", "Choose the label map that was made from this CT"};
   }
   return fitted;

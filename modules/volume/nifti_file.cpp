@@ -12,6 +12,7 @@
 #include <map>
 #include <memory>
 
+#include "base/codes.h"
 #include "base/purpose.h"
 #include "volume/file_format.h"
 #include "volume/grid_place.h"
@@ -423,7 +424,7 @@ Status writeNifti(const VoxelSlabs& voxels, VoxelType type, const fs::path& temp
                   const fs::path& target, const Progress& progress) {
   for (const std::int32_t edge : voxels.geometry.size) {
     if (edge > kMostAlongEdge) {
-      return Error{"CANNOT_WRITE", "NIfTI holds at most 32767 voxels along an edge",
+      return Error{code::kCannotWrite, "NIfTI holds at most 32767 voxels along an edge",
                    target.string(), "Save it as .mha"};
     }
   }

@@ -7,6 +7,7 @@
 
 #include "base/memory.h"
 #include "volume/case_memory.h"
+#include "volume/codes.h"
 #include "volume/phantom_painter.h"
 #include "volume/phantom_shapes.h"
 #include "volume/two_threads.h"
@@ -74,7 +75,7 @@ Result<const BuiltIn*> findPhantom(const std::string& name) {
   for (const BuiltIn& phantom : kPhantoms) {
     if (name == phantom.name) return &phantom;
   }
-  return Error{"UNKNOWN_PHANTOM", "There is no built-in case named '" + name + "'", "phantom",
+  return Error{code::kUnknownPhantom, "There is no built-in case named '" + name + "'", "phantom",
                "Use cranium or abdomen"};
 }
 

@@ -9,10 +9,12 @@
 #include <new>
 #include <vector>
 
+#include "base/codes.h"
 #include "base/file.h"
 #include "base/memory.h"
 #include "base/system.h"
 #include "volume/case_memory.h"
+#include "volume/codes.h"
 #include "volume/two_threads.h"
 
 namespace trephine {
@@ -28,7 +30,7 @@ constexpr std::size_t kMostBytes = std::size_t{64} << 20;
 constexpr const char* kStep = "Opening the built-in case";
 
 Error damaged(const std::filesystem::path& file) {
-  return {"DAMAGED", "The file of the built-in case is damaged", file.string(),
+  return {code::kDamaged, "The file of the built-in case is damaged", file.string(),
           "Install Trephine again"};
 }
 
@@ -170,7 +172,7 @@ Result<Phantom> unpacked(const PhantomFrame& frame, const std::string& bytes,
     }
   });
   if (progress.cancelled()) {
-    return Error{"CANCELLED", "Opening the built-in case was cancelled", name, ""};
+    return Error{code::kCancelled, "Opening the built-in case was cancelled", name, ""};
   }
   if (starved) return outOfMemory("for the built-in case", name);
   const Part& labels = parts.back();
@@ -226,7 +228,7 @@ Result<Phantom> readPhantomFile(const std::string& name, const std::filesystem::
   try {
     const Result<std::string> bytes = readWholeFile(file, kMostBytes);
     if (!bytes) {
-      return Error{"CANNOT_READ", "The file of the built-in case cannot be read", file.string(),
+      return Error{code::kCannotRead, "The file of the built-in case cannot be read", file.string(),
                    "Install Trephine again"};
     }
     Result<Phantom> phantom = unpacked(*frame, *bytes, file, name, progress);

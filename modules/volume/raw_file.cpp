@@ -1,6 +1,8 @@
 // Raw voxels (NAME.raw) with a sidecar (NAME.json) that says what they are:
 // resources/schemas/raw.md.
+#include "base/codes.h"
 #include "base/json.h"
+#include "volume/codes.h"
 #include "volume/file_format.h"
 
 namespace trephine::file_format {
@@ -16,12 +18,12 @@ constexpr const char* kExample =
 Error noSidecar(const fs::path& raw) {
   for (const char* ending : {".mhd", ".nhdr"}) {
     if (const auto header = sibling(raw, ending)) {
-      return Error{"NO_SIDECAR", "This file holds voxels alone", raw.string(),
+      return Error{code::kNoSidecar, "This file holds voxels alone", raw.string(),
                    "Open " + header->filename().string() + ", which may say what they are"};
     }
   }
-  return Error{"NO_SIDECAR", "A .raw file holds voxels alone; a sidecar has to say what they are",
-               raw.string(),
+  return Error{code::kNoSidecar,
+               "A .raw file holds voxels alone; a sidecar has to say what they are", raw.string(),
                "Write " + fs::path(raw).replace_extension(".json").filename().string() +
                    " beside it, at least " + kExample};
 }
@@ -107,7 +109,7 @@ Result<VolumeFileHeader> readRawHeader(const fs::path& file) {
   const bool is_sidecar = endsWith(file, ".json");
   const auto raw = is_sidecar ? sibling(file, ".raw") : file;
   if (!raw) {
-    return Error{"MISSING_FILE", "There is no .raw file of this name beside the sidecar",
+    return Error{code::kMissingFile, "There is no .raw file of this name beside the sidecar",
                  file.string(), "Put both into one folder"};
   }
   const auto sidecar = is_sidecar ? file : sibling(file, ".json");

@@ -12,6 +12,8 @@
 #include <string>
 #include <vector>
 
+#include "base/codes.h"
+#include "volume/codes.h"
 #include "volume/two_threads.h"
 
 namespace trephine {
@@ -23,7 +25,7 @@ std::string text(const Index3& v) {
 }
 
 Error noMemory(const std::string& where) {
-  return {"OUT_OF_MEMORY", "There is not enough memory for the smaller volume", where,
+  return {code::kOutOfMemory, "There is not enough memory for the smaller volume", where,
           "Close other programs"};
 }
 
@@ -31,10 +33,11 @@ Status checkBox(const GridGeometry& geometry, const VoxelBox& box) {
   const std::string where = text(box.low) + " up to " + text(box.high);
   for (int axis = 0; axis < 3; ++axis) {
     if (box.low[axis] >= box.high[axis]) {
-      return Error{"BAD_CROP", "The box to keep has nothing in it", where, "Choose a larger box"};
+      return Error{code::kBadCrop, "The box to keep has nothing in it", where,
+                   "Choose a larger box"};
     }
     if (box.low[axis] < 0 || box.high[axis] > geometry.size[axis]) {
-      return Error{"BAD_CROP", "The box to keep reaches outside the volume", where,
+      return Error{code::kBadCrop, "The box to keep reaches outside the volume", where,
                    "The volume has " + text(geometry.size) + " voxels"};
     }
   }
@@ -181,7 +184,7 @@ Result<Volume> crop(Volume&& volume, const VoxelBox& box) {
 
 Result<Volume> reduced(const Volume& volume, int factor) {
   if (factor != 2 && factor != 4) {
-    return Error{"BAD_FACTOR",
+    return Error{code::kBadFactor,
                  "A volume can be reduced by 2 or 4, not by " + std::to_string(factor), "reduce",
                  ""};
   }

@@ -11,12 +11,14 @@
 #include <optional>
 #include <set>
 
+#include "base/codes.h"
 #include "base/file.h"
 #include "base/json.h"
 #include "base/memory.h"
 #include "base/purpose.h"
 #include "base/utf8.h"
 #include "volume/case_memory.h"
+#include "volume/codes.h"
 #include "volume/file_format.h"
 #include "volume/grid_place.h"
 #include "volume/gzip_writer.h"
@@ -33,14 +35,14 @@ using namespace file_format;
 using Segment = Segmentation::Segment;
 
 Error tooMany(std::size_t count, const fs::path& file) {
-  return Error{"TOO_MANY_STRUCTURES",
+  return Error{code::kTooManyStructures,
                "The file has " + std::to_string(count) + " structures, and a case holds " +
                    std::to_string(kMostStructures),
                file.string(), "Export those that the exercise needs"};
 }
 
 Error notLabels(const std::string& what, const fs::path& file) {
-  return Error{"NOT_LABELS", what, file.string(),
+  return Error{code::kNotLabels, what, file.string(),
                "Choose a label map: a whole number for each voxel, 0 for none"};
 }
 
@@ -72,8 +74,8 @@ struct Layers {
 Result<Layers> layersOf(const fs::path& file, const Progress& progress, const std::string& form) {
   auto header = readVolumeFileHeader(file);
   if (header) header = inForm(*std::move(header), form, file);
-  if (!header && header.error().code == "NOT_HU") return notLabels(header.error().what, file);
-  if (!header && header.error().code == "UNKNOWN_FORMAT") {
+  if (!header && header.error().code == code::kNotHu) return notLabels(header.error().what, file);
+  if (!header && header.error().code == code::kUnknownFormat) {
     Error error = header.error();
     error.next = "Choose a DICOM SEG, a .seg.nrrd, or a label map as .nrrd, .mha, .nii or .nii.gz";
     return error;
@@ -101,7 +103,7 @@ Result<Layers> layersOf(const fs::path& file, const Progress& progress, const st
   wide.layers = 1;
   auto read = readVoxels(std::move(wide), file, progress);
   if (!read) {
-    return read.error().code == "NOT_HU" ? notLabels(read.error().what, file) : read.error();
+    return read.error().code == code::kNotHu ? notLabels(read.error().what, file) : read.error();
   }
   // Labels that a slope has spread over 16 bits look like anything.
   if (read->bytes_exchanged && read->header.slope == 1.0) {
@@ -259,7 +261,7 @@ Status writeNrrd(const LabelMap& map, const fs::path& target, bool reversed,
     const std::size_t slice = all.size() / std::size_t(slices);
     for (int k = 0; good && k < slices; ++k) {
       progress.at(double(k) / slices, "Saving the structures");
-      if (progress.cancelled()) return Error{"CANCELLED", "Saving was cancelled", "", ""};
+      if (progress.cancelled()) return Error{code::kCancelled, "Saving was cancelled", "", ""};
       good = gzip.write(all.subspan(std::size_t(reversed ? slices - 1 - k : k) * slice, slice));
     }
     good = good && gzip.finish();
@@ -357,21 +359,21 @@ Result<Segmentation> readMasks(const fs::path& folder, const Progress& progress,
     Result<Segmentation> one = readFile(files[n], part, form);
     if (!one) {
       Error error = one.error();
-      if (error.code != "CANCELLED") error.next = kTakeOut;
+      if (error.code != code::kCancelled) error.next = kTakeOut;
       return error;
     }
     const std::string name = structureName(withoutEndings(files[n]).filename().string());
     if (one->layers.size() > 1 || one->segments.size() > 1) {
-      return Error{"NOT_LABELS",
-                   "Of a folder of masks each file holds one structure, and '" + name +
-                       "' holds several",
-                   files[n].string(), kTakeOut};
+      return Error{
+          code::kNotLabels,
+          "Of a folder of masks each file holds one structure, and '" + name + "' holds several",
+          files[n].string(), kTakeOut};
     }
     if (n == 0) all.geometry = one->geometry;
     constexpr double kSame = 0.01;  // of a voxel
     const Vec3& mm = all.geometry.spacing_mm;
     if (cornersApart_mm(one->geometry, all.geometry) > kSame * std::min({mm.x, mm.y, mm.z})) {
-      return Error{"OTHER_GRID", "The masks of the folder do not lie on one grid",
+      return Error{code::kOtherGrid, "The masks of the folder do not lie on one grid",
                    files[n].string(), "Export them from one CT, or open them one by one"};
     }
     for (std::uint8_t& voxel : one->layers.front()) voxel = voxel != 0;

@@ -10,6 +10,7 @@
 
 #include "base/json.h"
 #include "base/utf8.h"
+#include "volume/codes.h"
 #include "volume/file_format.h"
 
 namespace trephine::file_format {
@@ -99,7 +100,8 @@ Result<std::vector<NamedLabel>> namesBeside(const fs::path& file) {
     const auto labels = text ? labelsIn(*text) : std::nullopt;
     if (labels) return *labels;
     if (std::string(ending) == ".label" || (text && text->find("ITK-SnAP") != text->npos)) {
-      return Error{"BAD_NAMES", "The text beside the label map is no list of labels of ITK-SNAP",
+      return Error{code::kBadNames,
+                   "The text beside the label map is no list of labels of ITK-SNAP",
                    text_file.string(), "Export it again, or take it away"};
     }
   }

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 
+#include "base/codes.h"
 #include "base/sha256.h"
+#include "volume/codes.h"
 #include "volume/two_threads.h"
 
 namespace trephine {
@@ -60,9 +62,9 @@ Status checkSize(const Index3& size, const std::string& where, std::uint64_t max
   std::uint64_t count = 1;
   for (std::int32_t n : size) {
     if (n <= 0)
-      return Error{"BAD_SIZE", "A size of " + text + " voxels is not possible", where, ""};
+      return Error{code::kBadSize, "A size of " + text + " voxels is not possible", where, ""};
     if (std::uint64_t(n) > max_voxels / count) {
-      return Error{"TOO_LARGE", "A volume of " + text + " voxels is larger than can be loaded",
+      return Error{code::kTooLarge, "A volume of " + text + " voxels is larger than can be loaded",
                    where, "Crop it or export it at a lower resolution"};
     }
     count *= std::uint64_t(n);

@@ -4,8 +4,10 @@
 #include <new>
 #include <utility>
 
+#include "base/codes.h"
 #include "base/file.h"
 #include "base/memory.h"
+#include "volume/codes.h"
 #include "volume/file_format.h"
 #include "volume/voxel_reader.h"
 
@@ -31,7 +33,7 @@ ReadHeader readerOf(const fs::path& file) {
 }
 
 Error tooLarge(const fs::path& file) {
-  return Error{"TOO_LARGE", "There is not enough memory for this volume", file.string(),
+  return Error{code::kTooLarge, "There is not enough memory for this volume", file.string(),
                "Crop it or export it at a lower resolution"};
 }
 
@@ -65,7 +67,7 @@ Result<VolumeFileHeader> readVolumeFileHeader(const fs::path& file) {
   std::error_code ec;
   const fs::file_status status = fs::status(file, ec);
   if (!fs::exists(status)) {
-    return Error{"MISSING_FILE", "There is no such file", file.string(), "Check the path"};
+    return Error{code::kMissingFile, "There is no such file", file.string(), "Check the path"};
   }
   if (!fs::is_regular_file(status)) {
     return unreadable("This is a folder or a device, not a volume file", file);
@@ -88,7 +90,7 @@ Result<VolumeFileHeader> inForm(VolumeFileHeader header, const std::string& form
     header.reversed_slices = one.reversed_slices;
     return header;
   }
-  return Error{"FORMS_DIFFER", header.contradiction, file.string(),
+  return Error{code::kFormsDiffer, header.contradiction, file.string(),
                "Import it with the answer FORMS_DIFFER=" + header.forms.front().name +
                    (header.forms.size() > 1 ? " or " + header.forms.back().name : "") +
                    ", or export it again"};
@@ -138,7 +140,7 @@ Status writeVolume(const VoxelSlabs& voxels, const fs::path& file, const Progres
       const Status written = endsWith(file, ".mha")
                                  ? writeMetaImage(told, writing.type, temporary, file, progress)
                                  : writeNifti(told, writing.type, temporary, file, progress);
-      if (progress.cancelled()) return Error{"CANCELLED", "Saving was cancelled", "", ""};
+      if (progress.cancelled()) return Error{code::kCancelled, "Saving was cancelled", "", ""};
       return written;
     } catch (const std::bad_alloc&) {
       return outOfMemory("to save the volume", file.string());

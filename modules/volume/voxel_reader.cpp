@@ -8,6 +8,7 @@
 #include <fstream>
 #include <limits>
 
+#include "base/codes.h"
 #include "base/memory.h"
 #include "volume/case_memory.h"
 #include "volume/file_format.h"
@@ -17,7 +18,7 @@ namespace trephine::file_format {
 namespace {
 
 Error cancelled(const std::filesystem::path& file) {
-  return {"CANCELLED", "Reading the volume was cancelled", file.string(), ""};
+  return {code::kCancelled, "Reading the volume was cancelled", file.string(), ""};
 }
 
 constexpr double kWhole = 1e-4;  // from a whole number

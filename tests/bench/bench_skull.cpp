@@ -11,6 +11,7 @@
 
 #include "base/memory.h"
 #include "head_case.h"
+#include "imaging/codes.h"
 #include "imaging/importer.h"
 #include "structures/shape_tools.h"
 #include "structures/skin.h"
@@ -77,7 +78,7 @@ int main() {
   if (const char* data = std::getenv("TREPHINE_TEST_DATA")) {
     auto ct = CtFolder::scan(std::filesystem::path(data) / "head-ct-plastic-skull", Progress());
     ImportRequest request;
-    request.answers = {{"COUCH", "remove"}};
+    request.answers = {{code::kCouch, "remove"}};
     const auto volume = ct->read(*ct->bestSeries(), request, Progress());
     printCost("skull of plastic, 512x512x140", [&] { return skullOf(*volume)->ml; });
   }

@@ -36,7 +36,7 @@ TEST(OpenHapticsMissing, ItSaysWhatToInstallAndThatThereAreNoArms) {
   EXPECT_EQ(without->enumerate().size(), 0u);
   const auto device = Device::open(without, {0}, config(kBoth));
   ASSERT_FALSE(device);
-  EXPECT_EQ(device.error().code, "NO_DEVICE");
+  EXPECT_EQ(device.error().code.str(), "NO_DEVICE");
   EXPECT_NE(device.error().what.find("install OpenHaptics"), std::string::npos);
 }
 

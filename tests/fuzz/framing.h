@@ -8,7 +8,9 @@
 #include <string_view>
 #include <vector>
 
+#include "imaging/codes.h"
 #include "imaging/importer.h"
+#include "volume/codes.h"
 
 namespace trephine::fuzz {
 
@@ -39,41 +41,41 @@ constexpr const char* kFileNames[kNames] = {"IM",     "DICOMDIR", "v.nii", "v.ni
                                             "v.nhdr", "v.mha",    "v.mhd", "v.raw",    "v.json"};
 
 // To every question; the second where the input asks for it.
-inline const Answers kAnswers{{"MISSING_SLICES", "fill"},
-                              {"UNEVEN_SPACING", "resample"},
-                              {"PHASES", "1"},
-                              {"DUPLICATE_POSITIONS", "first"},
-                              {"LOSSY_SOURCE", "accept"},
-                              {"LOCATION_MISMATCH", "positions"},
-                              {"MIXED_SLICES", "accept"},
-                              {"DERIVED_IMAGES", "accept"},
-                              {"VALUE_MAP", "accept"},
-                              {"IMPLAUSIBLE_HU", "accept"},
-                              {"PARTS", "join"},
-                              {"SPARSE_SLICES", "accept"},
-                              {"COUCH", "remove"},
-                              {"FORMS_DIFFER", "sform"},
-                              {"HIGH_BITS", "use"},
-                              {"INCOMPLETE", "accept"},
-                              {"ONE_LOCATION", "locations"},
-                              {"SLOPES_DIFFER", "accept"},
-                              {"FACE", "deface"},
-                              {"FACE_TAKES_MORE", "accept"},
-                              {"FACE_REMAINS", "keep"}};
-inline const Answers kOther{{"MISSING_SLICES", "part"},
-                            {"UNEVEN_SPACING", "part"},
-                            {"PHASES", "2"},
-                            {"DUPLICATE_POSITIONS", "last"},
-                            {"LOSSY_SOURCE", "accept"},
-                            {"LOCATION_MISMATCH", "positions"},
-                            {"MIXED_SLICES", "accept"},
-                            {"DERIVED_IMAGES", "accept"},
-                            {"VALUE_MAP", "accept"},
-                            {"IMPLAUSIBLE_HU", "accept"},
-                            {"FORMS_DIFFER", "qform"},
-                            {"HIGH_BITS", "mask"},
-                            {"PARTS", "1"},
-                            {"SPARSE_SLICES", "accept"}};
+inline const Answers kAnswers{{code::kMissingSlices, "fill"},
+                              {code::kUnevenSpacing, "resample"},
+                              {code::kPhases, "1"},
+                              {code::kDuplicatePositions, "first"},
+                              {code::kLossySource, "accept"},
+                              {code::kLocationMismatch, "positions"},
+                              {code::kMixedSlices, "accept"},
+                              {code::kDerivedImages, "accept"},
+                              {code::kValueMap, "accept"},
+                              {code::kImplausibleHu, "accept"},
+                              {code::kParts, "join"},
+                              {code::kSparseSlices, "accept"},
+                              {code::kCouch, "remove"},
+                              {code::kFormsDiffer, "sform"},
+                              {code::kHighBits, "use"},
+                              {code::kIncomplete, "accept"},
+                              {code::kOneLocation, "locations"},
+                              {code::kSlopesDiffer, "accept"},
+                              {code::kFace, "deface"},
+                              {code::kFaceTakesMore, "accept"},
+                              {code::kFaceRemains, "keep"}};
+inline const Answers kOther{{code::kMissingSlices, "part"},
+                            {code::kUnevenSpacing, "part"},
+                            {code::kPhases, "2"},
+                            {code::kDuplicatePositions, "last"},
+                            {code::kLossySource, "accept"},
+                            {code::kLocationMismatch, "positions"},
+                            {code::kMixedSlices, "accept"},
+                            {code::kDerivedImages, "accept"},
+                            {code::kValueMap, "accept"},
+                            {code::kImplausibleHu, "accept"},
+                            {code::kFormsDiffer, "qform"},
+                            {code::kHighBits, "mask"},
+                            {code::kParts, "1"},
+                            {code::kSparseSlices, "accept"}};
 
 struct File {
   std::string name;

@@ -15,6 +15,7 @@
 #include "cases.h"
 #include "exchange/exercise_folder.h"
 #include "exercise_files.h"
+#include "imaging/codes.h"
 #include "imaging/report/provenance.h"
 #include "library/case_record.h"
 #include "session/session.h"
@@ -105,8 +106,8 @@ Status writeOfCases(const fs::path& folder) {
   if (Status s = writeTextFile(folder / "case", char(kCase) + toJson(record).dump()); !s) return s;
   Provenance of;
   of.source = "DICOM";
-  of.answers = {{"FACE", "deface"}};
-  of.changes = {{"GANTRY_TILT", "repair", "The stack leans", {"3"}, "Straightened"}};
+  of.answers = {{code::kFace, "deface"}};
+  of.changes = {{code::kGantryTilt, Severity::repair, "The stack leans", {"3"}, "Straightened"}};
   if (Result<Provenance> again = provenanceFrom(toJson(of), "p"); !again) return again.error();
   return writeTextFile(folder / "provenance", char(kProvenance) + toJson(of).dump());
 }

@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <glm/gtc/matrix_transform.hpp>
 
+#include "base/codes.h"
 #include "base/system.h"
 #include "golden_cases.h"
 #include "imaging/dicom/ct_writer.h"
@@ -78,7 +79,7 @@ Result<Volume> tilted(const std::string& phantom) {
     if (slice.loadFile(file.c_str()).bad() || slice.loadAllDataIntoMemory().bad() ||
         slice.getDataset()->putAndInsertString(DCM_ImagePositionPatient, position).bad() ||
         slice.saveFile(file.c_str()).bad()) {
-      return Error{"CANNOT_WRITE", "A slice could not be moved", file, ""};
+      return Error{code::kCannotWrite, "A slice could not be moved", file, ""};
     }
   }
   Result<Case> imported = readCase((folder / "ct").string());

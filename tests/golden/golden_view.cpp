@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "case/codes.h"
 #include "golden_cases.h"
 #include "render/scene_renderer.h"
 #include "ui/views/slice_view.h"
@@ -75,7 +76,7 @@ Result<Picture> drawnVolume(const GoldenLine& line, const GoldenCase& shown, Vol
   }
   if (change == Change::driver) renderer.setSampleDistance(0.9 * SceneRenderer::kSampleDistance);
   if (line.carved_mm[0] > 0.0) {
-    if (!landmark) return Error{"NO_LANDMARK", "There is no place for the hole", line.name, ""};
+    if (!landmark) return Error{code::kNoLandmark, "There is no place for the hole", line.name, ""};
     renderer.picture();
     carve(grid, *landmark, line.carved_mm[0], line.carved_mm[1]);
     renderer.pullChanges(grid);

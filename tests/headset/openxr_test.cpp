@@ -418,7 +418,7 @@ class Lacks : public ::testing::Test {
     EXPECT_TRUE(context.create());
     const auto started = Headset::start(context, {}, [] {});
     EXPECT_FALSE(started);
-    return started ? "" : started.error().code + ": " + started.error().sentence();
+    return started ? "" : started.error().code.str() + ": " + started.error().sentence();
   }
 };
 
@@ -446,14 +446,14 @@ TEST_F(OpenXr, WhatIsNotThereIsSaidInWords) {
   runtime().setPluggedIn(false);
   start();
   ASSERT_TRUE(until([this] { return over(); }));
-  EXPECT_EQ(over_->why.error().code, "NO_HEADSET");
+  EXPECT_EQ(over_->why.error().code.str(), "NO_HEADSET");
   EXPECT_TRUE(over_->again);
   finish();
   runtime().reset();
   ::setenv("XR_RUNTIME_JSON", "/nowhere/runtime.json", 1);
   start();
   ASSERT_TRUE(until([this] { return over(); }));
-  EXPECT_EQ(over_->why.error().code, "NO_RUNTIME") << over_->why.error().sentence();
+  EXPECT_EQ(over_->why.error().code.str(), "NO_RUNTIME") << over_->why.error().sentence();
   EXPECT_EQ(over_->why.error().where, "/nowhere/runtime.json") << "it was named, and is broken";
   finish();
   ::unsetenv("XR_RUNTIME_JSON");

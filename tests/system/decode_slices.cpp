@@ -39,7 +39,7 @@ void decode(const std::string& file, std::ofstream& out) {
         out.write(reinterpret_cast<const char*>(picture->hu.data()),
                   std::streamsize(picture->hu.size() * sizeof(std::int16_t)));
       } else {
-        line["error"] = picture.error().code + ": " + picture.error().what;
+        line["error"] = picture.error().code.str() + ": " + picture.error().what;
       }
       std::cout << line.dump() << "\n";
     }

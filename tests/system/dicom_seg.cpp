@@ -31,7 +31,7 @@ Json gridJson(const GridGeometry& g) {
 }
 
 Json errorJson(const Error& error) {
-  return {{"error", error.code}, {"sentence", error.sentence()}};
+  return {{"error", error.code.str()}, {"sentence", error.sentence()}};
 }
 
 bool save(const std::string& file, const std::vector<std::uint8_t>& bytes, bool append) {

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "base/json.h"
+#include "imaging/codes.h"
 #include "imaging/importer.h"
 #include "structures/skull.h"
 #include "volume/volume_files.h"
@@ -19,10 +20,10 @@ Status make(const std::filesystem::path& folder, const std::filesystem::path& ou
   auto ct = CtFolder::scan(folder, Progress());
   if (!ct) return ct.error();
   const std::optional<std::string> series = ct->bestSeries();
-  if (!series) return Error{"NO_CT", "There is no CT", folder.string(), ""};
+  if (!series) return Error{code::kNoCt, "There is no CT", folder.string(), ""};
   for (const std::string answer : {"keep", "remove"}) {
     ImportRequest request;
-    request.answers = {{"COUCH", answer}};
+    request.answers = {{code::kCouch, answer}};
     const Result<Volume> volume = ct->read(*series, request, Progress());
     if (!volume) return volume.error();
     const bool whole = answer == "keep";

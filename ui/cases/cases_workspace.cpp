@@ -5,8 +5,10 @@
 #include <QTextBrowser>
 #include <QVBoxLayout>
 
+#include "base/codes.h"
 #include "base/file.h"
 #include "exercise/exercise.h"
+#include "library/codes.h"
 #include "library/stored_case.h"
 #include "ui/cases/report_file.h"
 #include "ui/common/actions.h"
@@ -34,7 +36,7 @@ class PageAlone : public QTextBrowser {
 };
 
 Error stillChanging() {
-  return {"BUSY", "The change before is still being written", "", "Try again in a moment"};
+  return {code::kBusy, "The change before is still being written", "", "Try again in a moment"};
 }
 
 }  // namespace
@@ -125,7 +127,7 @@ void CasesWorkspace::connectParts() {
   });
   // Another program, or a person at the folders, has changed what is there.
   connect(&app_, &AppContext::failed, this, [this](const Error& error) {
-    if (error.code == "NO_SUCH_CASE") list();
+    if (error.code == code::kNoSuchCase) list();
   });
   connect(&workstation_, &Workstation::structuresChanged, this, &CasesWorkspace::showCase);
   connect(&workstation_, &Workstation::phaseChanged, this, &CasesWorkspace::showPhase);

@@ -73,7 +73,7 @@ void ChoicePanel::addChoice(const Choice& choice) {
     const std::string& option = choice.options[i];
     const QString words = toQt(i < choice.words.size() ? choice.words[i] : option);
     auto* button = new QRadioButton(card);
-    button->setObjectName(toQt("choice_" + choice.code + "_" + option));
+    button->setObjectName(toQt("choice_" + choice.code.str() + "_" + option));
     button->setAccessibleName(words);
     const auto known = answers_.find(choice.code);
     button->setChecked(known != answers_.end() && known->second == option);
@@ -88,7 +88,7 @@ void ChoicePanel::addChoice(const Choice& choice) {
     }
     if (i < choice.shown.size() && choice.shown[i] >= 0) {
       auto* picture = new OptionLabel({}, button);
-      picture->setObjectName(toQt("picture_" + choice.code + "_" + option));
+      picture->setObjectName(toQt("picture_" + choice.code.str() + "_" + option));
       picture->setFixedSize(kOptionPicture, kOptionPicture);
       picture->setAlignment(Qt::AlignCenter);
       grid->addWidget(picture, row, 2, 2, 1, Qt::AlignTop);

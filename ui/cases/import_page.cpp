@@ -5,6 +5,7 @@
 #include <QMimeData>
 #include <algorithm>
 
+#include "imaging/codes.h"
 #include "ui/cases/import_words.h"
 #include "ui/common/placing.h"
 #include "ui/common/words.h"
@@ -174,8 +175,8 @@ void ImportPage::showStep(Step step) {
   list_->setEnabled(choosing || step == Step::scanning);
   take_found_->setVisible(step == Step::scanning);
   scan_on_->setVisible(choosing && std::ranges::any_of(task_.report().series, [](const auto& one) {
-                         return std::ranges::find(one.findings, "SCAN_STOPPED", &Finding::code) !=
-                                one.findings.end();
+                         return std::ranges::find(one.findings, code::kScanStopped,
+                                                  &Finding::code) != one.findings.end();
                        }));
   for (QWidget* part : {static_cast<QWidget*>(open_folder_), static_cast<QWidget*>(open_file_),
                         static_cast<QWidget*>(series_page_)}) {
@@ -335,7 +336,7 @@ void ImportPage::ask(const SeriesReport& after, const std::vector<Choice>& quest
   loss_->setVisible(!loss_->text().isEmpty());
   loss_told_ = true;
   couch_->setVisible(task_.couch().found);
-  face_->setVisible(std::ranges::find(questions, "FACE", &Choice::code) != questions.end());
+  face_->setVisible(std::ranges::find(questions, code::kFace, &Choice::code) != questions.end());
   late_choices_->ask(questions, {});
   showStep(Step::asking);
   open_case_->setEnabled(late_choices_->allAnswered());

@@ -4,6 +4,7 @@
 #include <QStringList>
 #include <algorithm>
 
+#include "imaging/codes.h"
 #include "ui/common/colours.h"
 #include "ui/common/words.h"
 
@@ -29,28 +30,28 @@ QString sentence(QString text) {
   return text;
 }
 
-int countOf(const SeriesReport& series, const char* severity) {
+int countOf(const SeriesReport& series, Severity severity) {
   return int(std::ranges::count(series.findings, severity, &Finding::severity));
 }
 
 // The title of a group of findings, and what such findings mean for the volume.
 struct SeverityWords {
-  const char* severity;
+  Severity severity;
   const char* title;
   const char* meaning;
   const QColor& colour;
 };
 const SeverityWords kRefusedRepairs{
-    "repair", QT_TRANSLATE_NOOP("ImportWords", "What would be put right"),
+    Severity::repair, QT_TRANSLATE_NOOP("ImportWords", "What would be put right"),
     QT_TRANSLATE_NOOP("ImportWords", "Nothing was changed so far."), colours::kCaution};
 const SeverityWords kSeverities[] = {
-    {"refusal", QT_TRANSLATE_NOOP("ImportWords", "Why it cannot be used as it is"),
+    {Severity::refusal, QT_TRANSLATE_NOOP("ImportWords", "Why it cannot be used as it is"),
      QT_TRANSLATE_NOOP("ImportWords", "A volume made of it as it is could be wrong."),
      colours::kBad},
-    {"repair", QT_TRANSLATE_NOOP("ImportWords", "What is put right"),
+    {Severity::repair, QT_TRANSLATE_NOOP("ImportWords", "What is put right"),
      QT_TRANSLATE_NOOP("ImportWords", "Here the volume differs from the files, in this way only."),
      colours::kCaution},
-    {"notice", QT_TRANSLATE_NOOP("ImportWords", "Good to know"),
+    {Severity::notice, QT_TRANSLATE_NOOP("ImportWords", "Good to know"),
      QT_TRANSLATE_NOOP("ImportWords", "This takes nothing from the volume."), colours::kQuiet},
 };
 
@@ -88,8 +89,8 @@ QString factsHtml(const SeriesReport& series) {
   if (!series.body_part.empty()) add(tr("Body part"), toQt(series.body_part));
   if (series.phases > 1) add(tr("Phases"), QString::number(series.phases));
   if (series.tilt_deg != 0.0) {
-    const bool tilted = std::ranges::find(series.findings, "SHEARED_SIDEWAYS", &Finding::code) ==
-                        series.findings.end();
+    const bool tilted = std::ranges::find(series.findings, code::kShearedSideways,
+                                          &Finding::code) == series.findings.end();
     add(tilted ? tr("Gantry tilt") : tr("Sheared by"),
         tr("%1\u00b0").arg(series.tilt_deg, 0, 'f', 1));
   }
@@ -157,7 +158,7 @@ QString verdictSentence(const SeriesReport& series, const Answers& answers) {
     case SeriesState::pass:
       return tr("Ready to use. Nothing has to be changed.");
     case SeriesState::repaired: {
-      const int repairs = countOf(series, "repair");
+      const int repairs = countOf(series, Severity::repair);
       return repairs == 1 ? tr("Can be used. One thing is put right, as told below.")
                           : tr("Can be used. %1 things are put right, as told below.").arg(repairs);
     }
@@ -168,7 +169,7 @@ QString verdictSentence(const SeriesReport& series, const Answers& answers) {
     case SeriesState::refused:
       break;
   }
-  const int reasons = countOf(series, "refusal");
+  const int reasons = countOf(series, Severity::refusal);
   return reasons <= 1 ? tr("Cannot be used, for the reason told below.")
                       : tr("Cannot be used, for %1 reasons told below.").arg(reasons);
 }
@@ -242,8 +243,7 @@ QString reportHtml(const SeriesReport& series) {
   QString html = factsHtml(series);
   for (const SeverityWords& severity : kSeverities) {
     if (countOf(series, severity.severity) == 0) continue;
-    const bool undone =
-        series.verdict == Verdict::refused && severity.severity == std::string_view("repair");
+    const bool undone = series.verdict == Verdict::refused && severity.severity == Severity::repair;
     const SeverityWords& words = undone ? kRefusedRepairs : severity;
     html += QString(
                 "<p style='margin-top:12px; margin-bottom:0px; line-height:115%;'>"

@@ -4,6 +4,7 @@
 #include <QScreen>
 #include <mutex>
 
+#include "base/codes.h"
 #include "base/log.h"
 #include "base/system.h"
 #include "ui/common/colours.h"
@@ -69,7 +70,7 @@ void FitnessLine::look() {
         if (again_) return look();
         if (words) {
           say(*words);
-        } else if (words.error().code != "CANCELLED") {
+        } else if (words.error().code != code::kCancelled) {
           spdlog::warn("The check at the start: {}", words.error().what);
         }
         emit looked();

@@ -7,6 +7,7 @@
 #include <QVBoxLayout>
 
 #include "base/system.h"
+#include "device/codes.h"
 #include "exercise/arms_file.h"
 #include "ui/common/words.h"
 #include "ui/work/arms_of_place.h"
@@ -375,7 +376,7 @@ void DevicesDialog::showNow() {
   }
   const std::size_t i = std::size_t(row);
   if (const std::optional<Error>& problem = trial_->problem(i)) {
-    const bool calibration = problem->code == "DEVICE_NOT_STARTED" &&
+    const bool calibration = problem->code == code::kDeviceNotStarted &&
                              problem->what.find("calibrated") != std::string::npos;
     now_->setText(calibration ? tr("%1. Then look again.").arg(toQt(problem->what))
                               : toQt(problem->sentence()));

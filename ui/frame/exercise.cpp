@@ -5,8 +5,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/codes.h"
 #include "base/file.h"
+#include "device/codes.h"
 #include "exercise/arms_file.h"
+#include "ui/codes.h"
 #include "ui/common/stall_meter.h"
 #include "ui/frame/main_window.h"
 #include "ui/frame/start_up.h"
@@ -33,7 +36,7 @@ Result<ExerciseOutcome> runExercise(const ExerciseOptions& options, const Progre
   if (Status may = checkExercise(options.policy, *exercise, options.exercise); !may)
     return may.error();
   if (exercise->operator_file.empty()) {
-    return Error{"NO_OPERATOR", "The scene has no script to play", options.exercise.string(),
+    return Error{code::kNoOperator, "The scene has no script to play", options.exercise.string(),
                  "Name one under 'operator' in the scene"};
   }
   Result<OperatorScript> script = readOperatorScript(exercise->operator_file, *exercise);
@@ -63,7 +66,7 @@ Result<ExerciseOutcome> runExercise(const ExerciseOptions& options, const Progre
   enum class Step { opening, starting, running, ending } step = Step::opening;
 
   QObject::connect(&window, &MainWindow::failed, &loop, [&](const Error& error) {
-    if (error.code == "DEVICE_STUCK" && step == Step::ending) return;  // a fault in the report
+    if (error.code == code::kDeviceStuck && step == Step::ending) return;  // a fault in the report
     if (!failure) failure = error;
     loop.quit();
   });
@@ -109,11 +112,11 @@ Result<ExerciseOutcome> runExercise(const ExerciseOptions& options, const Progre
   window.open(options.exercise);
   if (!failure) loop.exec();
   if (timed) timed->setWatcher({});
-  const Error cancelled{"CANCELLED", "The exercise was cancelled", "", ""};
+  const Error cancelled{code::kCancelled, "The exercise was cancelled", "", ""};
   if (step != Step::ending && progress.cancelled()) return cancelled;
   if (step != Step::ending && failure) return *failure;
   if (step != Step::ending) {
-    return Error{"STOPPED", "The window was closed before the exercise ended", "",
+    return Error{code::kStopped, "The window was closed before the exercise ended", "",
                  "Start it again"};
   }
   if (failure) outcome.failure = failure;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/codes.h"
 #include "ui/common/actions.h"
 #include "ui/common/preferences.h"
 #include "ui/common/words.h"
@@ -86,7 +87,7 @@ void HeadsetView::start() {
     QMetaObject::invokeMethod(this, &HeadsetView::serve, Qt::QueuedConnection);
   };
   Result<std::unique_ptr<Headset>> started =
-      Error{"NO_OPENGL", "The 3-D view has not drawn anything yet", "",
+      Error{code::kNoOpengl, "The 3-D view has not drawn anything yet", "",
             "Open a case, and wait until it is shown"};
   if (view.context() && view.canDraw().ok()) {
     started = Headset::start(*view.context(), HeadsetOptions{}, wake);

@@ -6,6 +6,8 @@
 #include <QOpenGLFunctions>
 #include <QTimer>
 
+#include "base/codes.h"
+#include "ui/codes.h"
 #include "ui/common/actions.h"
 #include "ui/common/preferences.h"
 #include "ui/common/settings.h"
@@ -75,16 +77,16 @@ void StereoView::toggle(bool on) {
 
 Status StereoView::start() {
   if (!app_.view().context() || !app_.view().canDraw()) {
-    return Error{"NO_OPENGL", "The 3-D view has not drawn anything yet", "",
+    return Error{code::kNoOpengl, "The 3-D view has not drawn anything yet", "",
                  "Open a case, and wait until it is shown"};
   }
   screen_ = chosenScreen(window_);
   if (!screen_) {
     const QString name = read(settings::kStereoScreen);
     return name.isEmpty()
-               ? Error{"NO_SCREEN", "This computer has one screen only", "",
+               ? Error{code::kNoScreen, "This computer has one screen only", "",
                        "Connect another, or choose this one under View, Headset and screens"}
-               : Error{"NO_SCREEN", "The chosen screen is not connected",
+               : Error{code::kNoScreen, "The chosen screen is not connected",
                        "screen " + name.toStdString(),
                        "Connect it, or choose another under View, Headset and screens"};
   }

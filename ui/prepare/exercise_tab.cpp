@@ -10,6 +10,7 @@
 #include "library/case_folders.h"
 #include "library/name_words.h"
 #include "session/operator_script.h"
+#include "ui/codes.h"
 #include "ui/common/question.h"
 #include "ui/common/words.h"
 #include "volume/phantom.h"
@@ -29,7 +30,7 @@ Error notVerified(const ExerciseCheck& check) {
   std::string what = "The exercise is not as it was exported";
   if (!check.missing.empty()) what += "; missing: " + list(check.missing);
   if (!check.changed.empty()) what += "; changed: " + list(check.changed);
-  return {"NOT_VERIFIED", what, "the folder", "Export it anew, or copy the whole folder again"};
+  return {code::kNotVerified, what, "the folder", "Export it anew, or copy the whole folder again"};
 }
 
 }  // namespace
@@ -152,7 +153,7 @@ std::optional<Exercise> ExerciseTab::exerciseToSave() {
   exercise.tissues_elsewhere = made.tissues_elsewhere;
   if (of.built_in) return exercise;
   if (of.stored.empty()) {
-    app_.report({"CASE_NOT_SAVED", "The case of the exercise is not in the library", "",
+    app_.report({code::kCaseNotSaved, "The case of the exercise is not in the library", "",
                  "Save the case first (Cases), or import it again where it was deleted"});
     return {};
   }

@@ -8,6 +8,8 @@
 #include <array>
 #include <utility>
 
+#include "case/codes.h"
+#include "exercise/codes.h"
 #include "ui/common/question.h"
 #include "ui/common/words.h"
 #include "ui/structures/structure_report.h"
@@ -177,8 +179,8 @@ bool StructureTab::offerMissing() {
   if (!of || workstation_.session()) return false;
   bool lacks = false;
   for (const Warning& warning : of->warnings) {
-    if (warning.code == "OTHER_ANATOMY") return false;  // another exercise comes first
-    lacks = lacks || warning.code == "LACKS_STRUCTURE";
+    if (warning.code == code::kOtherAnatomy) return false;  // another exercise comes first
+    lacks = lacks || warning.code == code::kLacksStructure;
   }
   if (!lacks) return false;
   emit frontWanted();

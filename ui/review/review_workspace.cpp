@@ -2,8 +2,10 @@
 
 #include <algorithm>
 
+#include "base/codes.h"
 #include "library/stored_case.h"
 #include "training/replay.h"
+#include "ui/codes.h"
 #include "ui/common/words.h"
 #include "volume/phantom.h"
 
@@ -22,7 +24,7 @@ Result<Case> recordedCase(const ListedRecording& recording, CaseLibrary& library
     if (!stored) return stored.error();
     return std::move(stored->of);
   }
-  return Error{"MISSING_CASE", "The case that it was done on is not kept here", "",
+  return Error{code::kMissingCase, "The case that it was done on is not kept here", "",
                "Open that case, to replay it"};
 }
 
@@ -139,9 +141,9 @@ void ReviewWorkspace::replay(const ListedRecording& of) {
       },
       [this](Result<ReplayResult> result) {
         if (!result) {
-          if (result.error().code != "CANCELLED") app_.report(result.error());
-          return page_->showOutcome(result.error().code == "CANCELLED" ? tr("Cancelled.")
-                                                                       : QString());
+          if (result.error().code != code::kCancelled) app_.report(result.error());
+          return page_->showOutcome(result.error().code == code::kCancelled ? tr("Cancelled.")
+                                                                            : QString());
         }
         QStringList words;
         words << (result->identical

@@ -6,6 +6,7 @@
 #include <new>
 #include <utility>
 
+#include "base/codes.h"
 #include "base/memory.h"
 #include "structures/skin.h"
 #include "structures/skull.h"
@@ -200,7 +201,7 @@ void StructureEditor::inBackground(Work work, Take take) {
     if (map_ != own) return;
     if (made) return take(*std::move(made));
     const Error& error = made.error();
-    if (error.code == "CANCELLED") return emit said(tr("Cancelled: nothing was changed."));
+    if (error.code == code::kCancelled) return emit said(tr("Cancelled: nothing was changed."));
     // A place that was missed is clicked anew: no dialog for that.
     if (error.where == "seed" || error.where == "at") {
       return emit said(toQt(error.what) + QStringLiteral(". ") + toQt(error.next) + '.');

@@ -1,8 +1,10 @@
 // The structures as rows: names, colours, which is current, those that come and go.
 #include <algorithm>
 
+#include "library/codes.h"
 #include "ui/common/words.h"
 #include "ui/structures/structure_editor.h"
+#include "volume/codes.h"
 
 namespace trephine {
 
@@ -15,7 +17,7 @@ void StructureEditor::setCurrent(int label) {
 Status StructureEditor::rename(int label, const QString& name) {
   const std::string wanted = structureName(name.toStdString());
   if (wanted.empty()) {
-    return Error{"BAD_NAME", "A structure needs a name", "", "Type one"};
+    return Error{code::kBadName, "A structure needs a name", "", "Type one"};
   }
   if (!mayChange()) return {};
   for (Structure& s : map_->structures) {
@@ -23,7 +25,7 @@ Status StructureEditor::rename(int label, const QString& name) {
     if (ml_[std::size_t(s.label)] == 0.0) {  // deleted: it gives its name away
       s.name = spareName(s.name);
     } else {
-      return Error{"BAD_NAME", "Another structure is called '" + s.name + "'", "",
+      return Error{code::kBadName, "Another structure is called '" + s.name + "'", "",
                    "Choose another name"};
     }
   }
@@ -105,7 +107,7 @@ int StructureEditor::addStructure(const std::string& name, const std::string& li
   if (const Structure* there = map_->find(name)) return there->label;
   const int label = int(map_->structures.size()) < kMostStructures ? unusedLabel(*map_) : 0;
   if (label == 0) {
-    emit failed({"TOO_MANY_STRUCTURES",
+    emit failed({code::kTooManyStructures,
                  "The case has " + std::to_string(map_->structures.size()) +
                      " structures, no more "
                      "can be made",

@@ -4,8 +4,10 @@
 #include <QStandardItemModel>
 #include <algorithm>
 
-#include "ui/common/question.h"
+#include "case/codes.h"
+#include "exercise/codes.h"
 #include "ui/common/preferences.h"
+#include "ui/common/question.h"
 #include "ui/common/words.h"
 #include "ui/train/train_workspace.h"
 
@@ -169,7 +171,7 @@ void TrainWorkspace::sayWhatIsOpen() {
   }
   exercise_said_ = name;
   for (const Warning& warning : workstation_.placed()->warnings) {
-    if (warning.code != "OTHER_ANATOMY" && warning.code != "NO_VAULT") continue;
+    if (warning.code != code::kOtherAnatomy && warning.code != code::kNoVault) continue;
     words += (words.isEmpty() ? "" : " ") + toQt(warning.text) + '.';
   }
   if (!words.isEmpty()) app_.say(words);
@@ -184,9 +186,9 @@ void TrainWorkspace::unlessItDoesNotFit(AppContext::Next go_on) {
   std::string fits;
   for (const Warning& warning : of->warnings) {
     words << toQt(warning.text) + (warning.text.ends_with('.') ? "" : ".");
-    lacks = lacks || warning.code == "LACKS_STRUCTURE";
-    no_place = no_place || warning.code == "NO_LANDMARK";
-    if (warning.code == "OTHER_ANATOMY") fits = exerciseAnatomy(of->patient.anatomy->region);
+    lacks = lacks || warning.code == code::kLacksStructure;
+    no_place = no_place || warning.code == code::kNoLandmark;
+    if (warning.code == code::kOtherAnatomy) fits = exerciseAnatomy(of->patient.anatomy->region);
   }
   const QString next = !fits.empty() ? tr("Choose an exercise that fits, or go on as it is.")
                        : lacks    ? tr("Make the structure in the slices first, or go on as it is.")

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <utility>
 
+#include "imaging/codes.h"
 #include "ui/common/colours.h"
 #include "ui/common/event_loop.h"
 #include "ui/views/steps.h"
@@ -417,7 +418,7 @@ void ViewWidget::setOutline(const std::vector<Vec3>& points_mm, bool closed, dou
 
 Result<Picture> ViewWidget::picture() {
   if (!context() || !renderer_.hasVolume()) {
-    return Error{"NO_PICTURE", "There is nothing to take a picture of", "3-D view",
+    return Error{code::kNoPicture, "There is nothing to take a picture of", "3-D view",
                  "Open a case first"};
   }
   makeCurrent();
@@ -426,8 +427,8 @@ Result<Picture> ViewWidget::picture() {
   doneCurrent();
   update();  // the picture was drawn with VTK's state, the window's frame is still the old one
   if (picture.rgb.empty()) {
-    return Error{"NO_PICTURE", "The picture could not be read from the graphics card", "3-D view",
-                 "Try again, or with a smaller window"};
+    return Error{code::kNoPicture, "The picture could not be read from the graphics card",
+                 "3-D view", "Try again, or with a smaller window"};
   }
   return picture;
 }

@@ -18,6 +18,7 @@
 #include <functional>
 #include <optional>
 
+#include "base/codes.h"
 #include "base/result.h"
 #include "exercise/landmark.h"
 #include "render/clip_tools.h"
@@ -140,7 +141,7 @@ class ViewWidget : public QOpenGLWidget {
   TissueSet seen_;
   TissueLooks looks_;
   GridGeometry shown_;
-  Status drawing_{Error{"NO_OPENGL", "The view has no OpenGL to draw with", "3-D view",
+  Status drawing_{Error{code::kNoOpengl, "The view has no OpenGL to draw with", "3-D view",
                         "Install the graphics driver and start again"}};
   std::string gl_description_;
   QLabel* hint_;

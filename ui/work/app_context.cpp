@@ -11,6 +11,7 @@
 
 #include "base/log.h"
 #include "exchange/exercise_folder.h"
+#include "library/codes.h"
 #include "library/stored_case.h"
 #include "ui/common/actions.h"
 #include "ui/common/error_dialog.h"
@@ -79,9 +80,9 @@ void AppContext::openExercise(const std::filesystem::path& file, Place then) {
   setCaseSource(of.parent_path());
   workstation_.openExercise(file, [library = library_, id](const Progress& progress) {
     Result<StoredCase> stored = storedCase(*library, id, progress);
-    if (!stored && stored.error().code == "NO_SUCH_CASE") {
+    if (!stored && stored.error().code == code::kNoSuchCase) {
       return Result<StoredCase>(
-          Error{"NO_SUCH_CASE", "The case of this exercise is not on this workstation", "",
+          Error{code::kNoSuchCase, "The case of this exercise is not on this workstation", "",
                 "Import the exercise with its case, or choose another case for it"});
     }
     if (stored) {  // the exercise's own are felt
@@ -97,7 +98,7 @@ void AppContext::setTrying(bool trying) {
 }
 
 void AppContext::report(const Error& error) {
-  spdlog::warn("Said in the window: {}", error.code);  // no more: the rest may name files
+  spdlog::warn("Said in the window: {}", error.code.str());  // no more: the rest may name files
   showError(asking(), error);
   emit failed(error);
 }

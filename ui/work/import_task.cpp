@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "base/codes.h"
+#include "imaging/codes.h"
 #include "ui/common/words.h"
 #include "ui/views/slice_image.h"
 
@@ -17,7 +19,7 @@ struct ReadSeries {
   SourceIdentity identity;
 };
 
-bool asks(const ImportReport& report, const std::string& uid, const char* code) {
+bool asks(const ImportReport& report, const std::string& uid, Code code) {
   const auto series = std::ranges::find(report.series, uid, &SeriesReport::uid);
   return series != report.series.end() &&
          std::ranges::find(series->choices, code, &Choice::code) != series->choices.end();
@@ -53,7 +55,7 @@ void ImportTask::endWithout(const Outcome& outcome) {
   if (!next_) {
     working_ = false;
     emit stopped();
-    if (!outcome && outcome.error().code != "CANCELLED") emit failed(outcome.error());
+    if (!outcome && outcome.error().code != code::kCancelled) emit failed(outcome.error());
   }
   step();
 }
@@ -115,7 +117,8 @@ void ImportTask::read(const std::string& uid, const ImportRequest& request, doub
           ReadSeries read{
               std::make_shared<const Volume>(*std::move(volume)), {}, folder->sourceIdentity(uid)};
           read.identity.add(IdentityKind::folder, source.filename().string());
-          if (asks(folder->report(), uid, "COUCH") && !request.answers.contains("COUCH")) {
+          if (asks(folder->report(), uid, code::kCouch) &&
+              !request.answers.contains(code::kCouch)) {
             read.couch = findCouch(*read.volume);
           }
           return read;

@@ -11,9 +11,6 @@
 
 namespace trephine {
 
-// The code of the Error of such a source.
-inline constexpr const char* kSourceVanished = "SOURCE_VANISHED";
-
 // Whether a file of so many bytes is not there any more, or the device that it lies on fails. Looks
 // past what the system holds of it in memory. False for what merely may not be read.
 bool isGone(const std::filesystem::path& file, std::uint64_t bytes);

@@ -11,6 +11,8 @@
 #include <thread>
 #include <vector>
 
+#include "base/codes.h"
+
 namespace trephine {
 
 namespace {
@@ -89,9 +91,9 @@ Status forEachFile(std::size_t count, const Progress& progress, const ProgressPa
   }
   for (const pthread_t thread : threads) pthread_join(thread, nullptr);
 
-  if (progress.cancelled()) return Error{"CANCELLED", "The import was cancelled", "", ""};
+  if (progress.cancelled()) return Error{code::kCancelled, "The import was cancelled", "", ""};
   if (loop.failed.load() || (count > 0 && threads.empty())) {
-    return Error{"OUT_OF_MEMORY", "There is not enough memory to read the files", part.step,
+    return Error{code::kOutOfMemory, "There is not enough memory to read the files", part.step,
                  "Close other programs and try again"};
   }
   return {};

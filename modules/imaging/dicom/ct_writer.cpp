@@ -9,6 +9,7 @@
 #include <fstream>
 #include <set>
 
+#include "base/codes.h"
 #include "base/purpose.h"
 #include "imaging/common/text.h"
 #include "imaging/dicom/written_values.h"
@@ -102,7 +103,7 @@ OFCondition fillSlice(DcmDataset& data, const Writing& writing, int k, std::vect
 }
 
 Error cannotWrite(const std::string& what, const fs::path& where, const std::string& next) {
-  return Error{"CANNOT_WRITE", what, cleanUtf8(where.string()), next};
+  return Error{code::kCannotWrite, what, cleanUtf8(where.string()), next};
 }
 
 bool isOurs(const fs::path& file, const std::string& patient_name) {
@@ -202,7 +203,7 @@ Status writeCtSeries(const Volume& volume, const CtSeriesText& text, const fs::p
   std::vector<Uint16> words(std::size_t(volume.geometry.size[0]) * volume.geometry.size[1]);
   for (int k = 0; k < slices; ++k) {
     if (progress.cancelled()) {
-      return giveUp({"CANCELLED", "Writing the CT series was cancelled", "", ""});
+      return giveUp({code::kCancelled, "Writing the CT series was cancelled", "", ""});
     }
     progress.at(double(k) / slices, "Writing slices");
     DcmFileFormat file;

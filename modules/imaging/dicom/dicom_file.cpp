@@ -7,6 +7,7 @@
 #include <mutex>
 #include <shared_mutex>
 
+#include "imaging/codes.h"
 #include "imaging/dicom/codecs.h"
 #include "imaging/dicom/dicom_names.h"
 #include "imaging/dicom/dicom_pixels.h"
@@ -23,7 +24,7 @@ constexpr const char* kUnnamedSeries = "unnamed";
 constexpr int kMostFrames = 100000;
 
 Error skip(std::string reason) {
-  return Error{"SKIPPED", std::move(reason), "", ""};
+  return Error{code::kSkipped, std::move(reason), "", ""};
 }
 
 // What other programs keep volumes in, told by its ending.
@@ -460,7 +461,7 @@ Result<std::vector<DicomHeader>> readDicomHeaders(const std::filesystem::path& f
   if (file_bytes == 0) return skip("the file is empty");
   DicomStream stream(file, kSliceBounds, &progress);
   const std::string_view head = stream.beginning(1024);
-  if (head.empty()) return Error{kUnreadableFile, "the file may not be read", "", ""};
+  if (head.empty()) return Error{code::kUnreadableFile, "the file may not be read", "", ""};
   if (!looksLikeDicom(head)) {
     if (const char* other = otherFormat(file)) return skip(other);
     const auto packed = std::ranges::find_if(kPacked, [&](const Packed& kind) {

@@ -133,9 +133,6 @@ struct DicomHeader {
   }
 };
 
-// The code of the Error of a file that may not be read, or not any more.
-inline constexpr const char* kUnreadableFile = "UNREADABLE_FILE";
-
 // The end of the reason for skipping an archive or a compressed file.
 inline constexpr const char* kUnpackFirst = ": unpack it first";
 

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "base/codes.h"
+#include "imaging/codes.h"
 #include "imaging/common/text.h"
 
 namespace trephine {
@@ -21,7 +23,8 @@ constexpr double kEven = 0.01, kNearlyEven = 0.1;        // of a step
 constexpr double kMostSlices = 8192;
 
 Error framesDiffer(const std::string& what) {
-  return Error{"FRAMES_DIFFER", what, "", "Export it on the grid of the CT that it was made from"};
+  return Error{code::kFramesDiffer, what, "",
+               "Export it on the grid of the CT that it was made from"};
 }
 
 bool isSensible(double spacing_mm) {
@@ -208,7 +211,7 @@ Result<FrameStack> stackFrames(const std::vector<FramePlane>& frames, int column
         slice_of.push_back(int(std::min(total, kMostSlices)));
       }
       if (total >= kMostSlices) {
-        return Error{"TOO_LARGE", "The frames span more than 8192 slices", "", ""};
+        return Error{code::kTooLarge, "The frames span more than 8192 slices", "", ""};
       }
       last = slice_of.back();
       step = (unlike.back() - unlike.front()) / last;
@@ -218,7 +221,7 @@ Result<FrameStack> stackFrames(const std::vector<FramePlane>& frames, int column
       worst = std::max(worst, std::abs(unlike[n] - unlike.front() - slice_of[n] * step));
     }
     if (!steps || worst > kNearlyEven * step) {
-      return Error{"UNEVEN_SPACING", "The frames do not lie at even steps", "",
+      return Error{code::kUnevenSpacing, "The frames do not lie at even steps", "",
                    "Export it on the grid of the CT that it was made from"};
     }
     if (worst > std::max(kSamePlace_mm, kEven * step)) {
@@ -236,13 +239,13 @@ Result<FrameStack> stackFrames(const std::vector<FramePlane>& frames, int column
     return aside.error();
   }
   if (const Status size = checkSize(stack.geometry.size, ""); !size) {
-    return Error{"TOO_LARGE", size.error().what, "", ""};
+    return Error{code::kTooLarge, size.error().what, "", ""};
   }
   return stack;
 }
 
 Error noGeometry(const std::string& what) {
-  return Error{"NO_GEOMETRY", what, "",
+  return Error{code::kNoGeometry, what, "",
                "Export the segmentation anew from the program that made it"};
 }
 

@@ -5,11 +5,12 @@
 #include <utility>
 
 #include "base/result.h"
+#include "volume/codes.h"
 
 namespace trephine {
 
 inline Error unreadablePixels(std::string what) {
-  return Error{"UNREADABLE", std::move(what), "", ""};
+  return Error{code::kUnreadable, std::move(what), "", ""};
 }
 
 }  // namespace trephine

@@ -14,13 +14,16 @@
 #include <set>
 #include <shared_mutex>
 
+#include "base/codes.h"
 #include "base/memory.h"
+#include "imaging/codes.h"
 #include "imaging/common/cielab.h"
 #include "imaging/dicom/dicom_pixels.h"
 #include "imaging/dicom/dicom_stream.h"
 #include "imaging/dicom/dicom_values.h"
 #include "imaging/dicom/seg_reader.h"
 #include "imaging/dicom/transfer_syntax.h"
+#include "volume/codes.h"
 
 namespace trephine {
 
@@ -38,7 +41,7 @@ class FramesWithoutPixels : public DcmSegmentation {
 };
 
 Error wrongSize(const std::string& what) {
-  return Error{"SIZE_MISMATCH", what, "", "Copy or export the file anew"};
+  return Error{code::kSizeMismatch, what, "", "Copy or export the file anew"};
 }
 
 template <class Group>
@@ -76,7 +79,7 @@ Status readSegments(const DicomItem& data, DcmSegmentation& segmentation, SegHea
   const std::vector<DcmItem*> items = data.items(DCM_SegmentSequence);
   if (items.empty()) return unreadableSegmentation("The file names no segment");
   if (items.size() > std::size_t(kMostStructures)) {
-    return Error{"TOO_MANY_STRUCTURES",
+    return Error{code::kTooManyStructures,
                  "The file holds " + std::to_string(items.size()) + " segments, more than " +
                      std::to_string(kMostStructures),
                  "", "Export those that the exercise needs"};
@@ -152,7 +155,7 @@ Status checkPixels(bool cut, SegHeader& header) {
   const bool encapsulated =
       syntax && (syntax->codec == Codec::dcmtk || syntax->codec == Codec::jpeg2000);
   if (!syntax || (encapsulated && header.binary)) {
-    return Error{"UNSUPPORTED_TRANSFER_SYNTAX",
+    return Error{code::kUnsupportedTransferSyntax,
                  "The segmentation is stored as " + transferSyntaxName(pixels.transfer_syntax) +
                      " (" + pixels.transfer_syntax + "), which is not read",
                  "", "Export it without compression"};
@@ -161,17 +164,18 @@ Status checkPixels(bool cut, SegHeader& header) {
     header.notes.push_back("The segmentation was compressed with loss: borders may be off.");
   }
   if (pixels.frames > kMostFrames) {
-    return Error{"TOO_LARGE", "The file claims more than a million frames", "",
+    return Error{code::kTooLarge, "The file claims more than a million frames", "",
                  "Copy or export the file anew"};
   }
   if (pixels.frames == 0) {
-    return Error{"NO_FRAMES", "The file holds no frame", "", "Export a segmentation with voxels"};
+    return Error{code::kNoFrames, "The file holds no frame", "",
+                 "Export a segmentation with voxels"};
   }
   if (pixels.rows == 0 || pixels.columns == 0) {
     return wrongSize("The frames have no rows or no columns");
   }
   if (pixels.pixelCount() > kLargestSlice) {
-    return Error{"TOO_LARGE", "A frame has more than 8192 x 8192 pixels", "",
+    return Error{code::kTooLarge, "A frame has more than 8192 x 8192 pixels", "",
                  "Export it at a lower resolution"};
   }
   const int bits = header.binary ? 1 : header.label_map && pixels.bits_allocated == 16 ? 16 : 8;
@@ -180,7 +184,8 @@ Status checkPixels(bool cut, SegHeader& header) {
                      " for each pixel");
   }
   if (!pixels.pixels) {
-    return Error{"NO_FRAMES", "The file holds no pixels", "", "Export a segmentation with voxels"};
+    return Error{code::kNoFrames, "The file holds no pixels", "",
+                 "Export a segmentation with voxels"};
   }
   if (cut) return unreadableSegmentation("The file is cut short: its frames are not all there");
   const PixelPlace& place = *pixels.pixels;
@@ -242,7 +247,7 @@ void readAsBinary(DcmDataset& data) {
 }  // namespace
 
 Error unreadableSegmentation(const std::string& what) {
-  return Error{"UNREADABLE", what, "", "Copy or export the file anew"};
+  return Error{code::kUnreadable, what, "", "Copy or export the file anew"};
 }
 
 Result<SegHeader> readSegHeader(const fs::path& file, const Progress& progress) {
@@ -263,7 +268,7 @@ Result<SegHeader> readSegHeader(const fs::path& file, const Progress& progress) 
   std::string sop_class = uidText(data, DCM_SOPClassUID);
   if (sop_class.empty()) sop_class = uidText(meta, DCM_MediaStorageSOPClassUID);
   if (!isSegmentation(sop_class)) {
-    return Error{"NOT_SEGMENTATION", "The file is no DICOM segmentation", "",
+    return Error{code::kNotSegmentation, "The file is no DICOM segmentation", "",
                  "Choose a file of modality SEG"};
   }
   if (!whole) return unreadableSegmentation("The file is cut short or damaged");
@@ -286,7 +291,7 @@ Result<SegHeader> readSegHeader(const fs::path& file, const Progress& progress) 
   const std::string type = trimmedText(data, DCM_SegmentationType);
   header.label_map = sop_class == kLabelMapStorage;
   if (header.label_map ? type != "LABELMAP" : type != "BINARY" && type != "FRACTIONAL") {
-    return Error{"UNSUPPORTED_SEGMENTATION",
+    return Error{code::kUnsupportedSegmentation,
                  header.label_map ? "The label map segmentation does not say that it is one"
                                   : "The segmentation is neither binary nor fractional",
                  "", "Export it as a binary segmentation"};

@@ -9,7 +9,9 @@
 #include <new>
 #include <set>
 
+#include "base/codes.h"
 #include "base/memory.h"
+#include "imaging/codes.h"
 #include "imaging/common/text.h"
 #include "imaging/common/workers.h"
 #include "imaging/dicom/dicom_file.h"
@@ -244,14 +246,15 @@ struct Filling {
   }
 
   static Error cancelled() {
-    return Error{"CANCELLED", "Reading the segmentation was cancelled", "", ""};
+    return Error{code::kCancelled, "Reading the segmentation was cancelled", "", ""};
   }
 };
 
 Result<DicomSegmentation> read(const fs::path& file, double threshold, const Progress& progress) {
   if (!(threshold >= 0.0 && threshold <= 1.0)) {
-    return Error{"BAD_THRESHOLD", "The threshold of a fractional segmentation is a share of 0 to 1",
-                 "", "Give one, such as 0.5"};
+    return Error{code::kBadThreshold,
+                 "The threshold of a fractional segmentation is a share of 0 to 1", "",
+                 "Give one, such as 0.5"};
   }
   std::optional<Result<SegHeader>> read_header;
   PixelReader pixels(progress, kManyFrames);
@@ -268,7 +271,7 @@ Result<DicomSegmentation> read(const fs::path& file, double threshold, const Pro
           read_header = unreadableSegmentation("The frames cannot be read: " + inflated.error().what);
       });
   if (!done) {
-    return done.error().code == "CANCELLED" ? Filling::cancelled() : done.error();
+    return done.error().code == code::kCancelled ? Filling::cancelled() : done.error();
   }
   if (!*read_header) return read_header->error();
   const SegHeader& header = read_header->value();

@@ -17,14 +17,17 @@
 #include <new>
 #include <utility>
 
+#include "base/codes.h"
 #include "base/memory.h"
 #include "base/purpose.h"
 #include "base/system.h"
+#include "imaging/codes.h"
 #include "imaging/common/cielab.h"
 #include "imaging/common/text.h"
 #include "imaging/dicom/dicom_values.h"
 #include "imaging/dicom/seg_codes.h"
 #include "imaging/dicom/written_values.h"
+#include "volume/codes.h"
 
 namespace trephine {
 
@@ -42,11 +45,11 @@ constexpr std::size_t kLongestName = 64;  // characters of a LO
 constexpr std::uint64_t kMostPixelBytes = 0xFFFFFFFE;
 
 Error cannotWrite(const std::string& what, const fs::path& where, const std::string& next) {
-  return Error{"CANNOT_WRITE", what, cleanUtf8(where.string()), next};
+  return Error{code::kCannotWrite, what, cleanUtf8(where.string()), next};
 }
 
 Error cancelled() {
-  return Error{"CANCELLED", "Writing the segmentation was cancelled", "", ""};
+  return Error{code::kCancelled, "Writing the segmentation was cancelled", "", ""};
 }
 
 // What goes into the file: a structure with voxels, and the slices that hold some.
@@ -345,7 +348,7 @@ Status checkSource(const RawSourceUids& source) {
            slice.frame <= 65535;
   });
   if (named && slices) return {};
-  return Error{"BAD_SOURCE", "The CT lacks UIDs that a segmentation of it has to name", "",
+  return Error{code::kBadSource, "The CT lacks UIDs that a segmentation of it has to name", "",
                "Write the CT anew with the structures"};
 }
 
@@ -391,7 +394,7 @@ Result<WrittenStructures> write(const Volume& ct, const LabelMap& map, const fs:
   setUpDcmtk();
   if (const Status valid = checkCtSeries(ct, folder); !valid) return valid.error();
   if (!(map.geometry == ct.geometry) || map.labels.size() != ct.geometry.voxelCount()) {
-    return Error{"LABELS_ELSEWHERE", "The structures do not lie on the grid of the CT", "",
+    return Error{code::kLabelsElsewhere, "The structures do not lie on the grid of the CT", "",
                  "Fit them to it first"};
   }
   if (writing.source) {
@@ -400,11 +403,12 @@ Result<WrittenStructures> write(const Volume& ct, const LabelMap& map, const fs:
   WrittenStructures written;
   const std::vector<Written> structures = structuresOf(map, written.notes);
   if (structures.empty()) {
-    return Error{"NO_STRUCTURES", "No structure has a voxel, so there is nothing to write", "", ""};
+    return Error{code::kNoStructures, "No structure has a voxel, so there is nothing to write", "",
+                 ""};
   }
   const std::uint64_t bytes = pixelBytes(map.geometry, structures);
   if (bytes > kMostPixelBytes) {
-    return Error{"TOO_LARGE", "The structures are more than a DICOM file holds", "",
+    return Error{code::kTooLarge, "The structures are more than a DICOM file holds", "",
                  "Write fewer of them"};
   }
   // Its bits, and DCMTK's two copies of them.
@@ -445,7 +449,7 @@ Result<WrittenStructures> write(const Volume& ct, const LabelMap& map, const fs:
       }
       done = writeCtSeries(ct, writing.text, unfinished.path() / kCtFolder,
                            Progress(progress, 0.0, kCtShare));
-      if (!done && done.error().code == "CANNOT_WRITE") {
+      if (!done && done.error().code == code::kCannotWrite) {
         done = cannotWrite(done.error().what, folder, done.error().next);
       }
     }

@@ -11,6 +11,7 @@
 #include <map>
 #include <memory>
 
+#include "base/codes.h"
 #include "base/descriptor.h"
 #include "base/file.h"
 #include "base/utf8.h"
@@ -130,7 +131,7 @@ class Unpacker {
   }
 
  private:
-  static Error cancelled() { return {"CANCELLED", "The import was cancelled", "", ""}; }
+  static Error cancelled() { return {code::kCancelled, "The import was cancelled", "", ""}; }
 
   // A number; of volumes the file's own name in a folder with a number, since headers name others.
   fs::path nameFor(const fs::path& inside) {

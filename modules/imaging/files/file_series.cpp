@@ -4,6 +4,7 @@
 #include <cctype>
 #include <cstdio>
 
+#include "imaging/codes.h"
 #include "imaging/common/stored_values.h"
 #include "imaging/common/text.h"
 #include "imaging/report/answers.h"
@@ -11,6 +12,7 @@
 #include "imaging/series/series.h"
 #include "imaging/series/series_geometry.h"
 #include "volume/case_memory.h"
+#include "volume/codes.h"
 
 namespace trephine {
 
@@ -18,14 +20,13 @@ namespace {
 
 constexpr int kMostLabels = 255;
 
-void add(SeriesReport& report, const char* code, const char* severity, std::string text,
-         const char* action) {
+void add(SeriesReport& report, Code code, Severity severity, std::string text, const char* action) {
   report.findings.push_back({code, severity, std::move(text), {}, action});
 }
 
 void refuseLabelMap(SeriesReport& report, std::string text) {
   report.modality = "SEG";
-  add(report, "LABEL_MAP", "refusal", std::move(text),
+  add(report, code::kLabelMap, Severity::refusal, std::move(text),
       "Open the CT first, then this file by \"Open segmentation\" on the tab Structures");
   report.verdict = Verdict::refused;
 }
@@ -54,7 +55,7 @@ std::string wayOf(const Vec3& direction) {
 Result<VolumeFileHeader> inChosenForm(VolumeFileHeader header, const std::filesystem::path& file,
                                       const Answers& answers, SeriesReport& report) {
   if (header.forms.empty()) return header;
-  Choice choice{"FORMS_DIFFER",
+  Choice choice{code::kFormsDiffer,
                 "The file says in two ways how it lies in the patient. Which is right?",
                 {"refuse"},
                 {"Do not use the file"}};
@@ -76,14 +77,14 @@ Result<VolumeFileHeader> inChosenForm(VolumeFileHeader header, const std::filesy
   const std::string text = header.contradiction;
   const std::string chosen = ask(std::move(choice), answers, report.choices);
   if (Result<VolumeFileHeader> in_form = inForm(header, chosen, file)) {
-    add(report, "FORMS_DIFFER", "repair", text,
+    add(report, code::kFormsDiffer, Severity::repair, text,
         chosen == "sform"   ? "It was taken as its sform says, as was chosen"
         : chosen == "qform" ? "It was taken as its qform says, as was chosen"
                             : "It was taken with the steps of its pixdim along the axes of its "
                               "sform, as was chosen");
     return in_form;
   }
-  add(report, "FORMS_DIFFER", "refusal", text,
+  add(report, code::kFormsDiffer, Severity::refusal, text,
       "Measure a known length, or look where the scan came from, and choose the right one");
   return header;
 }
@@ -109,7 +110,7 @@ SeriesReport assessFile(const std::filesystem::path& file, const std::string& na
     const Error& error = header.error();
     report.source = "file";
     report.modality.clear();
-    add(report, error.code.c_str(), "refusal", error.what, "");
+    add(report, error.code, Severity::refusal, error.what, "");
     report.findings.back().action = error.next;
     report.verdict = Verdict::refused;
     return report;
@@ -124,24 +125,25 @@ SeriesReport assessFile(const std::filesystem::path& file, const std::string& na
     return report;
   }
   if (header->geometry.size[2] < 2) {
-    add(report, "ONE_LOCATION", "refusal", "A single slice is not a volume",
+    add(report, code::kOneLocation, Severity::refusal, "A single slice is not a volume",
         "Choose a file that covers the anatomy");
     report.verdict = Verdict::refused;
     return report;
   }
   header = inChosenForm(*std::move(header), file, answers, report);
   report.geometry = header->geometry;
-  add(report, "ASSUMED_HU", "notice",
+  add(report, code::kAssumedHu, Severity::notice,
       "A " + header->format + " file does not say what its values are", "They were taken as HU");
   for (const std::string& note : header->notes) {
-    add(report, "FILE_NOTE", "notice", note, "");
+    add(report, code::kFileNote, Severity::notice, note, "");
   }
   if (header->reversed_slices) {
-    add(report, "LEFT_HANDED", "notice", "The file counts its slices from the other end",
+    add(report, code::kLeftHanded, Severity::notice,
+        "The file counts its slices from the other end",
         "They were reversed; every voxel stays where it was in the patient");
   }
   if (namesLabels(file.filename().string())) {  // whatever its folder is called
-    add(report, "NAMED_AS_LABELS", "notice", "The file is named like a label map",
+    add(report, code::kNamedAsLabels, Severity::notice, "The file is named like a label map",
         "Make sure that it is the CT");
   }
   report.verdict = verdictOf(report.findings);
@@ -151,13 +153,13 @@ SeriesReport assessFile(const std::filesystem::path& file, const std::string& na
 Result<Volume> readFileSeries(const std::filesystem::path& file, const Answers& answers,
                               const Progress& progress, SeriesReport& report, HuSanityCheck& look) {
   Result<VolumeFileReading> reading =
-      readVolumeFile(file, progress, answerTo(answers, "FORMS_DIFFER"));
+      readVolumeFile(file, progress, answerTo(answers, code::kFormsDiffer));
   if (!reading) return reading.error();
   // Attenuation per cm, or shares: water has 0.2 of the one.
   constexpr double kSmall = 20.0;
   const std::size_t count = reading->volume.hu.size();
   if (reading->rounded > count / 10 && reading->hu_min >= -kSmall && reading->hu_max <= kSmall) {
-    add(report, "NOT_HU", "refusal",
+    add(report, code::kNotHu, Severity::refusal,
         "The values lie between " + shortNumber(reading->hu_min) + " and " +
             shortNumber(reading->hu_max) +
             " and are no whole numbers: attenuation (of water 0.2 per cm) or shares, not HU",
@@ -168,17 +170,18 @@ Result<Volume> readFileSeries(const std::filesystem::path& file, const Answers& 
   }
   const auto voxels = [](std::uint64_t n) { return counted(n, "voxel"); };
   if (reading->rounded > 0) {
-    add(report, "HU_ROUNDED", "repair",
+    add(report, code::kHuRounded, Severity::repair,
         voxels(reading->rounded) + " had HU that are not whole numbers",
         "They were rounded to the nearest");
   }
   if (reading->clamped > 0) {
-    add(report, "HU_CLAMPED", "repair", voxels(reading->clamped) + " had HU outside -32768..32767",
+    add(report, code::kHuClamped, Severity::repair,
+        voxels(reading->clamped) + " had HU outside -32768..32767",
         "They were set to the nearest limit");
   }
   if (reading->not_numbers > 0) {
-    add(report, "NOT_NUMBERS", "repair", voxels(reading->not_numbers) + " held no number",
-        "They became air");
+    add(report, code::kNotNumbers, Severity::repair,
+        voxels(reading->not_numbers) + " held no number", "They became air");
   }
   if (reading->hu_min >= 0.0 && reading->hu_max <= kMostLabels) {
     refuseLabelMap(report, "All values lie between 0 and 255: a label map or a picture, not a CT");
@@ -214,7 +217,7 @@ Result<SlicePicture> fileSlice(const std::filesystem::path& file, int index,
   if (!volume) return volume.error();
   const GridGeometry& g = volume->geometry;
   if (index < 0 || index >= g.size[2]) {
-    return Error{"NO_SUCH_SLICE", "There is no such slice", std::to_string(index), ""};
+    return Error{code::kNoSuchSlice, "There is no such slice", std::to_string(index), ""};
   }
   const auto first = volume->hu.begin() + std::ptrdiff_t(g.indexOf(0, 0, index));
   return SlicePicture{

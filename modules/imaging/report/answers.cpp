@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <set>
 
+#include "imaging/codes.h"
 #include "imaging/common/text.h"
+#include "volume/codes.h"
 
 namespace trephine {
 
@@ -15,39 +17,42 @@ Options optionsOf(const SeriesReport& series) {
 
 namespace {
 
-const std::set<std::string>& codes() {
-  static const std::set<std::string> known = {
-      "COUCH",          "DERIVED_IMAGES",  "DUPLICATE_POSITIONS", "FACE",
-      "FACE_REMAINS",   "FACE_TAKES_MORE", "FORMS_DIFFER",        "HIGH_BITS",
-      "IMPLAUSIBLE_HU", "INCOMPLETE",      "LOCATION_MISMATCH",   "LOSSY_SOURCE",
-      "MISSING_SLICES", "MIXED_SLICES",    "ONE_LOCATION",        "PARTS",
-      "PHASES",         "SLOPES_DIFFER",   "SPARSE_SLICES",       "UNEVEN_SPACING",
-      "VALUE_MAP"};
+const std::set<Code>& codes() {
+  static const std::set<Code> known = {
+      code::kCouch,         code::kDerivedImages, code::kDuplicatePositions, code::kFace,
+      code::kFaceRemains,   code::kFaceTakesMore, code::kFormsDiffer,        code::kHighBits,
+      code::kImplausibleHu, code::kIncomplete,    code::kLocationMismatch,   code::kLossySource,
+      code::kMissingSlices, code::kMixedSlices,   code::kOneLocation,        code::kParts,
+      code::kPhases,        code::kSlopesDiffer,  code::kSparseSlices,       code::kUnevenSpacing,
+      code::kValueMap};
   return known;
 }
 
 }  // namespace
 
-std::string answerTo(const Answers& answers, const std::string& code) {
+std::string answerTo(const Answers& answers, Code code) {
   const auto given = answers.find(code);
   return given == answers.end() ? std::string() : given->second;
 }
 
-bool isChoice(const std::string& code) {
+bool isChoice(Code code) {
   return codes().contains(code);
 }
 
 Status fits(const Options& asked, const Answers& answers) {
   for (const auto& [code, option] : answers) {
     if (!isChoice(code)) {
-      return Error{"BAD_CHOICE", "There is no choice of this name", cleanUtf8(code),
-                   "Choose among " + listed({codes().begin(), codes().end()})};
+      std::vector<std::string> names;
+      for (const Code& known : codes()) names.push_back(known.str());
+      return Error{code::kBadChoice, "There is no choice of this name", cleanUtf8(code.str()),
+                   "Choose among " + listed(names)};
     }
     const auto question = asked.find(code);
     if (question == asked.end()) continue;
     if (std::ranges::find(question->second, option) != question->second.end()) continue;
-    return Error{"BAD_CHOICE", "The choice " + code + " has no option '" + cleanUtf8(option) + "'",
-                 "", "Choose " + listed(question->second, "or")};
+    return Error{code::kBadChoice,
+                 "The choice " + code.str() + " has no option '" + cleanUtf8(option) + "'", "",
+                 "Choose " + listed(question->second, "or")};
   }
   return {};
 }

@@ -11,15 +11,15 @@
 namespace trephine {
 
 // The options of each question that is asked.
-using Options = std::map<std::string, std::vector<std::string>>;
+using Options = std::map<Code, std::vector<std::string>>;
 
 Options optionsOf(const SeriesReport& series);
 
 // What was answered to a question; empty: nothing.
-std::string answerTo(const Answers& answers, const std::string& code);
+std::string answerTo(const Answers& answers, Code code);
 
 // Whether the importer ever asks a question of this code.
-bool isChoice(const std::string& code);
+bool isChoice(Code code);
 
 // Answers to questions that are asked must be among the options, and all codes must be known.
 // Errors: BAD_CHOICE.

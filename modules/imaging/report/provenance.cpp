@@ -4,12 +4,28 @@
 
 namespace trephine {
 
+namespace {
+
+std::vector<std::string> namesOf(const std::vector<Code>& codes) {
+  std::vector<std::string> names;
+  for (const Code& code : codes) names.push_back(code.str());
+  return names;
+}
+
+std::vector<Code> codesOf(const std::vector<std::string>& names) {
+  std::vector<Code> codes;
+  for (const std::string& name : names) codes.push_back(Code::named(name));
+  return codes;
+}
+
+}  // namespace
+
 Json toJson(const Provenance& provenance) {
   Json answers = Json::object();
-  for (const auto& [code, option] : provenance.answers) answers[code] = option;
+  for (const auto& [code, option] : provenance.answers) answers[code.str()] = option;
   Json changes = Json::array();
   for (const Finding& finding : provenance.changes) {
-    changes.push_back({{"code", finding.code},
+    changes.push_back({{"code", finding.code.str()},
                        {"text", finding.text},
                        {"slices", finding.slices},
                        {"action", finding.action}});
@@ -26,8 +42,8 @@ Json toJson(const Provenance& provenance) {
           {"lossy", provenance.lossy},
           {"slices_used", provenance.slices_used},
           {"choices", std::move(answers)},
-          {"unanswered", provenance.unanswered},
-          {"unused_answers", provenance.unused_answers},
+          {"unanswered", namesOf(provenance.unanswered)},
+          {"unused_answers", namesOf(provenance.unused_answers)},
           {"changes", std::move(changes)},
           {"crop", std::move(crop)},
           {"reduction", provenance.reduction},
@@ -63,13 +79,14 @@ Result<Provenance> provenanceFrom(const Json& json, const std::string& file) {
       reader.fail("choices", "Expected an object of texts");
       break;
     }
-    provenance.answers[code] = option.get<std::string>();
+    provenance.answers[Code::named(code)] = option.get<std::string>();
   }
-  provenance.unanswered = reader.texts("unanswered", kMost);
-  provenance.unused_answers = reader.texts("unused_answers", kMost);
+  provenance.unanswered = codesOf(reader.texts("unanswered", kMost));
+  provenance.unused_answers = codesOf(reader.texts("unused_answers", kMost));
   for (JsonReader& item : reader.objects("changes", kMost)) {
-    provenance.changes.push_back({item.text("code"), "repair", item.text("text"),
-                                  item.texts("slices", kMost), item.text("action")});
+    provenance.changes.push_back({Code::named(item.text("code")), Severity::repair,
+                                  item.text("text"), item.texts("slices", kMost),
+                                  item.text("action")});
   }
   if (!reader.raw("crop").is_null()) {
     JsonReader crop = reader.object("crop");

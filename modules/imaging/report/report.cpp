@@ -30,15 +30,15 @@ std::size_t voxelsOf(const SeriesReport& series, const ImportRequest& request) {
 Json findingJson(const Finding& finding) {
   Json slices = Json::array();
   for (const std::string& slice : finding.slices) slices.push_back(cleanUtf8(slice));
-  return {{"code", finding.code},
-          {"severity", finding.severity},
+  return {{"code", finding.code.str()},
+          {"severity", severityName(finding.severity)},
           {"text", cleanUtf8(finding.text)},
           {"slices", std::move(slices)},
           {"action", cleanUtf8(finding.action)}};
 }
 
 Json choiceJson(const Choice& choice) {
-  return {{"code", choice.code},
+  return {{"code", choice.code.str()},
           {"question", choice.question},
           {"options", choice.options},
           {"words", choice.words}};
@@ -136,7 +136,7 @@ Json toJson(const ImportReport& report, Identity identity) {
                {"start_rss_mb", report.start_rss_mb},
                {"peak_rss_mb", report.peak_rss_mb}};
   if (report.error) {
-    json["error"] = {{"code", report.error->code},
+    json["error"] = {{"code", report.error->code.str()},
                      {"what", cleanUtf8(report.error->what)},
                      {"where", shown ? cleanUtf8(report.error->where) : ""},
                      {"next", cleanUtf8(report.error->next)}};

@@ -20,11 +20,13 @@ namespace trephine {
 enum class Verdict { pass, repaired, refused };
 const char* verdictName(Verdict verdict);
 
-// One thing noticed about a series. `code` is stable (listed in the room's README), `severity` is
-// "notice", "repair" or "refusal", `action` says in plain words what was done or what to do.
+enum class Severity { notice, repair, refusal };
+const char* severityName(Severity severity);
+
+// One thing noticed about a series; `action` says in plain words what was done or what to do.
 struct Finding {
-  std::string code;
-  std::string severity;
+  Code code;
+  Severity severity;
   std::string text;
   std::vector<std::string> slices;  // places in mm along the normal, or instance numbers
   std::string action;
@@ -36,7 +38,7 @@ std::string sentencesOf(const Finding& finding);
 // A question that only a person can answer. `options` are what `--choice CODE=OPTION` takes, the
 // first is what happens where nobody answers ("refuse" or "keep"); `words` say what each does.
 struct Choice {
-  std::string code;
+  Code code;
   std::string question;
   std::vector<std::string> options;
   std::vector<std::string> words;
@@ -47,7 +49,7 @@ struct Choice {
 };
 
 // What was answered: code -> option.
-using Answers = std::map<std::string, std::string>;
+using Answers = std::map<Code, std::string>;
 
 struct ImportRequest {
   Answers answers;                       // a code that the series does not ask for is no error
@@ -71,8 +73,8 @@ struct Provenance {
   bool lossy = false;
   int slices_used = 0;
   Answers answers;                          // what was done about each question of the series
-  std::vector<std::string> unanswered;      // codes of those that nobody answered
-  std::vector<std::string> unused_answers;  // codes of answers to questions that it did not ask
+  std::vector<Code> unanswered;             // codes of those that nobody answered
+  std::vector<Code> unused_answers;         // codes of answers to questions that it did not ask
   std::vector<Finding> changes;             // findings of severity repair
   std::optional<VoxelBox> crop;
   int reduction = 1;

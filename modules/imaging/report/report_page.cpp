@@ -61,9 +61,9 @@ std::string slicesText(const std::vector<std::string>& slices) {
 std::string findingRow(const Finding& finding) {
   std::string text = escaped(finding.text) + ".";
   if (!finding.slices.empty()) text += " At: " + slicesText(finding.slices) + ".";
-  return "<tr><td>" + escaped(finding.severity) + "</td><td>" + text + "</td><td>" +
+  return "<tr><td>" + escaped(severityName(finding.severity)) + "</td><td>" + text + "</td><td>" +
          escaped(finding.action) + (finding.action.empty() ? "" : ".") +
-         "</td><td><font size=\"1\">" + escaped(finding.code) + "</font></td></tr>\n";
+         "</td><td><font size=\"1\">" + escaped(finding.code.str()) + "</font></td></tr>\n";
 }
 
 std::string findingsTable(const SeriesReport& series) {
@@ -78,7 +78,7 @@ std::string findingsTable(const SeriesReport& series) {
 std::string choiceTable(const Choice& choice) {
   std::string html = "<p>" + escaped(choice.question) + "</p>\n<table cellpadding=\"2\">\n";
   for (std::size_t n = 0; n < choice.options.size(); ++n) {
-    html += "<tr><td><font size=\"1\">" + escaped(choice.code + "=" + choice.options[n]) +
+    html += "<tr><td><font size=\"1\">" + escaped(choice.code.str() + "=" + choice.options[n]) +
             "</font></td><td>" + escaped(choice.words[n]) + "</td></tr>\n";
   }
   return html + "</table>\n";
@@ -120,7 +120,7 @@ std::string seriesSection(const SeriesReport& series, std::size_t number, std::s
 std::string provenanceSection(const Provenance& provenance) {
   std::string html = "<h3>How the volume was made</h3>\n<table cellpadding=\"2\">\n";
   for (const auto& [code, option] : provenance.answers) {
-    html += row("Choice " + escaped(code), escaped(option));
+    html += row("Choice " + escaped(code.str()), escaped(option));
   }
   if (const auto& box = provenance.crop) {
     std::string text;

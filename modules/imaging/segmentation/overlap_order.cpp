@@ -5,6 +5,7 @@
 #include <set>
 #include <string_view>
 
+#include "imaging/codes.h"
 #include "imaging/common/text.h"
 
 namespace trephine {
@@ -59,7 +60,7 @@ Result<std::vector<std::size_t>> orderFrom(const std::string& answer, const Segm
     if (!found) {
       std::vector<std::string> names;
       for (const auto& segment : of.segments) names.push_back("'" + nameOf(segment) + "'");
-      return Error{"BAD_CHOICE",
+      return Error{code::kBadChoice,
                    "The order for OVERLAP names '" + cleanUtf8(parts[first]) +
                        "', which is no structure of the file or stands there already",
                    "", "Choose among " + listed(names, "and") + ", each once"};

@@ -6,12 +6,15 @@
 #include <cstdio>
 #include <new>
 
+#include "base/codes.h"
 #include "base/memory.h"
 #include "base/range.h"
+#include "imaging/codes.h"
 #include "imaging/common/text.h"
 #include "imaging/segmentation/overlap_order.h"
 #include "imaging/segmentation/structure_hu.h"
 #include "imaging/segmentation/structure_place.h"
+#include "volume/codes.h"
 #include "volume/grid_place.h"
 
 namespace trephine {
@@ -186,8 +189,9 @@ class Asking {
     const auto given = answers_.find(choice.code);
     if (given == answers_.end() || given->second != "keep") {
       if (given == answers_.end() && open_) *open_ = choice;
-      return Error{choice.code, choice.question, "the segmentation",
-                   "Export it again with its orientation, or answer " + choice.code + "=keep"};
+      return Error{
+          choice.code, choice.question, "the segmentation",
+          "Export it again with its orientation, or answer " + choice.code.str() + "=keep"};
     }
     fit_.choices.push_back(std::move(choice));
     return {};
@@ -200,9 +204,9 @@ class Asking {
     if (given != answers_.end()) {
       if (std::ranges::find(choice.options, given->second) == choice.options.end()) {
         return Error{
-            "BAD_CHOICE",
-            "The choice " + choice.code + " has no option '" + cleanUtf8(given->second) + "'", "",
-            "Choose " + listed(choice.options, "or")};
+            code::kBadChoice,
+            "The choice " + choice.code.str() + " has no option '" + cleanUtf8(given->second) + "'",
+            "", "Choose " + listed(choice.options, "or")};
       }
       option = given->second;
     } else if (option == "refuse" && !ask_all_) {
@@ -210,8 +214,9 @@ class Asking {
     }
     if (option == "refuse") {
       if (given == answers_.end() && open_) *open_ = choice;
-      return Error{choice.code, choice.question, "the segmentation",
-                   "Choose another file, or answer " + choice.code + "=" + choice.options.back()};
+      return Error{
+          choice.code, choice.question, "the segmentation",
+          "Choose another file, or answer " + choice.code.str() + "=" + choice.options.back()};
     }
     fit_.choices.push_back(std::move(choice));
     return option;
@@ -237,7 +242,7 @@ Result<std::vector<std::size_t>> orderOf(const Segmentation& of, const Answers& 
   const std::string what =
       counted(shared.size(), "pair") + " of structures share voxels, most of all " + name(most->a) +
       " and " + name(most->b) + " with " + number(double(most->voxels) * voxel_ml, 1) + " mL";
-  Choice choice{"OVERLAP",
+  Choice choice{code::kOverlap,
                 what + ". Which of them has those voxels?",
                 {"smaller", "first", "last"},
                 {"The smaller one, as a vessel in the liver", "The one that the file has first",
@@ -248,8 +253,8 @@ Result<std::vector<std::size_t>> orderOf(const Segmentation& of, const Answers& 
     if (!own) return own.error();
     fit.choices.push_back(std::move(choice));
     fit.overlapping = overlapping(of, shared, *own);
-    fit.findings.push_back({"OVERLAP",
-                            "notice",
+    fit.findings.push_back({code::kOverlap,
+                            Severity::notice,
                             what,
                             {},
                             "The first has them, of " + listed(fit.overlapping, "and")});
@@ -263,8 +268,8 @@ Result<std::vector<std::size_t>> orderOf(const Segmentation& of, const Answers& 
     }
   }
   fit.overlapping = overlapping(of, shared, order);
-  fit.findings.push_back({"OVERLAP",
-                          "notice",
+  fit.findings.push_back({code::kOverlap,
+                          Severity::notice,
                           what,
                           {},
                           *chosen == "smaller" ? "The smaller one has them"
@@ -306,7 +311,7 @@ Status placeByItsSize(Segmentation& of, const GridGeometry& ct, Asking& asking, 
       "The file is of the CT's size and says nothing of where it lies: voxels of " +
       stepsText(of.geometry.spacing_mm) + ", the first at 0";
   const auto chosen =
-      asking.ask({"NO_AFFINE",
+      asking.ask({code::kNoAffine,
                   what,
                   {"refuse", "keep", "ct"},
                   {"Do not use the segmentation", "Where it says, with the first voxel at 0",
@@ -314,8 +319,8 @@ Status placeByItsSize(Segmentation& of, const GridGeometry& ct, Asking& asking, 
   if (!chosen) return chosen.error();
   if (*chosen == "ct") of.geometry = ct;
   fit.findings.push_back(
-      {"NO_AFFINE",
-       "notice",
+      {code::kNoAffine,
+       Severity::notice,
        what,
        {},
        *chosen == "ct" ? "It was put on the CT, voxel by voxel" : "It was taken at its word"});
@@ -326,11 +331,11 @@ Result<StructureFit> fitted(Segmentation& of, const Volume& ct, const Answers& a
                             bool ask_all, const Progress& progress,
                             std::optional<Choice>* open) {
   const GridGeometry& g = ct.geometry;
-  const Error cancelled{"CANCELLED", "Reading the segmentation was cancelled", "", ""};
+  const Error cancelled{code::kCancelled, "Reading the segmentation was cancelled", "", ""};
   StructureFit fit;
   fit.format = of.format;
   for (const std::string& note : of.notes)
-    fit.findings.push_back({"FILE_NOTE", "notice", note, {}, ""});
+    fit.findings.push_back({code::kFileNote, Severity::notice, note, {}, ""});
   Asking asking(answers, ask_all, fit, open);
   if (Status placed = placeByItsSize(of, g, asking, fit); !placed) return placed.error();
   progress.at(0.0, "Placing the structures");
@@ -341,19 +346,20 @@ Result<StructureFit> fitted(Segmentation& of, const Volume& ct, const Answers& a
     outside += share.outside;
   }
   if (all == 0) {
-    return Error{"EMPTY_SEGMENTATION", "The file has no voxel of any structure", "the segmentation",
-                 "Export it again, with its structures"};
+    return Error{code::kEmptySegmentation, "The file has no voxel of any structure",
+                 "the segmentation", "Export it again, with its structures"};
   }
   if (progress.cancelled()) return cancelled;
   if (outside == all) {
-    return Error{"LABELS_ELSEWHERE", "The segmentation and the case do not overlap in the patient",
-                 "the segmentation", "Choose the one that was made from this CT"};
+    return Error{code::kLabelsElsewhere,
+                 "The segmentation and the case do not overlap in the patient", "the segmentation",
+                 "Choose the one that was made from this CT"};
   }
   for (std::size_t s = 0; s < shares.size(); ++s) {
     if (shares[s].voxels == 0) continue;
     const double percent = 100.0 * double(shares[s].far_outside) / double(shares[s].voxels);
     if (percent < kMostOutside_percent) continue;
-    return Error{"HALF_OUTSIDE",
+    return Error{code::kHalfOutside,
                  "Of the structure '" + of.segments[s].name + "' " + number(percent) +
                      " % lie outside of the CT",
                  "the segmentation", "Choose the one that was made from this CT"};
@@ -367,8 +373,8 @@ Result<StructureFit> fitted(Segmentation& of, const Volume& ct, const Answers& a
   fit.map = *std::move(map);
   fit.resampled = !sharesVoxels(of.geometry, g);
   if (fit.resampled) {
-    fit.findings.push_back({"RESAMPLED",
-                            "notice",
+    fit.findings.push_back({code::kResampled,
+                            Severity::notice,
                             "The file's voxels are not the CT's",
                             {},
                             "Each voxel of the CT takes what its middle lies in"});
@@ -377,8 +383,8 @@ Result<StructureFit> fitted(Segmentation& of, const Volume& ct, const Answers& a
   const double covered = shareCovered(of.geometry, g, fit.covers);
   fit.covers_percent = 100.0 * covered;
   if (covered < 1.0) {
-    fit.findings.push_back({"PART_OF_CT",
-                            "notice",
+    fit.findings.push_back({code::kPartOfCt,
+                            Severity::notice,
                             "The file covers " + number(fit.covers_percent) +
                                 " % of the CT: " + partWords(fit.covers, g),
                             {},
@@ -406,14 +412,14 @@ Result<StructureFit> fitted(Segmentation& of, const Volume& ct, const Answers& a
   if (!mirrored.empty()) {
     const std::string what = "The segmentation is mirrored: " + mirrored + " change places";
     if (Status taken =
-            asking.refuseUnless({"MIRRORED",
+            asking.refuseUnless({code::kMirrored,
                                  what,
                                  {"refuse", "keep"},
                                  {"Do not use the segmentation", "Use it all the same"}});
         !taken) {
       return taken.error();
     }
-    fit.findings.push_back({"MIRRORED", "notice", what, {}, "It was kept"});
+    fit.findings.push_back({code::kMirrored, Severity::notice, what, {}, "It was kept"});
   }
   if (progress.cancelled()) return cancelled;
 
@@ -434,14 +440,15 @@ Result<StructureFit> fitted(Segmentation& of, const Volume& ct, const Answers& a
       card.outside_percent = 100.0 * double(shares[s].outside) / double(shares[s].voxels);
     }
     if (card.outside_percent > 0.0) {
-      card.findings.push_back({"OUTSIDE",
-                               "notice",
+      card.findings.push_back({code::kOutside,
+                               Severity::notice,
                                number(card.outside_percent, 1) + " % of it lie outside of the CT",
                                {},
                                "They are left out"});
     }
     if (card.voxels == 0) {
-      card.findings.push_back({"EMPTY_STRUCTURE", "notice", "It has no voxel on the CT", {}, ""});
+      card.findings.push_back(
+          {code::kEmptyStructure, Severity::notice, "It has no voxel on the CT", {}, ""});
     } else {
       card.hu = {of_it->percentile(0.05), of_it->percentile(0.5), of_it->percentile(0.95)};
       const auto kind = huOfKind(structure.name, structure.tissue);
@@ -452,7 +459,7 @@ Result<StructureFit> fitted(Segmentation& of, const Volume& ct, const Answers& a
                            " but for a "
                            "tenth, and " +
                            kind->kind + " has " + number(kind->low) + " to " + number(kind->high));
-        card.findings.push_back({"HU_NOT_TISSUE", "notice", doubtful.back(), {}, ""});
+        card.findings.push_back({code::kHuNotTissue, Severity::notice, doubtful.back(), {}, ""});
       }
     }
     fit.structures.push_back(std::move(card));
@@ -467,12 +474,12 @@ Result<StructureFit> fitted(Segmentation& of, const Volume& ct, const Answers& a
     doubt += ". They would fit far better about " + moveWords(*better, g);
   }
   if (!doubt.empty()) {
-    const auto chosen = asking.ask({"HU_NOT_TISSUE",
+    const auto chosen = asking.ask({code::kHuNotTissue,
                                     doubt + ". The segmentation may lie in a wrong place",
                                     {"refuse", "keep"},
                                     {"Do not use the segmentation", "Use it all the same"}});
     if (!chosen) return chosen.error();
-    fit.findings.push_back({"HU_NOT_TISSUE", "notice", doubt, {}, "It was kept"});
+    fit.findings.push_back({code::kHuNotTissue, Severity::notice, doubt, {}, "It was kept"});
   }
   progress.at(1.0, "Placing the structures");
   return fit;
@@ -482,7 +489,7 @@ Json toJson(const StructureCard& card);
 Json toJson(const Choice& choice);
 
 Json toJson(const Finding& finding) {
-  return {{"code", finding.code}, {"text", finding.text}, {"action", finding.action}};
+  return {{"code", finding.code.str()}, {"text", finding.text}, {"action", finding.action}};
 }
 
 template <class List>
@@ -506,7 +513,7 @@ Json toJson(const StructureCard& card) {
 }
 
 Json toJson(const Choice& choice) {
-  return {{"code", choice.code}, {"question", choice.question}, {"options", choice.options}};
+  return {{"code", choice.code.str()}, {"question", choice.question}, {"options", choice.options}};
 }
 
 }  // namespace

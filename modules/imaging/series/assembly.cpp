@@ -4,6 +4,7 @@
 #include <mutex>
 #include <new>
 
+#include "base/codes.h"
 #include "base/memory.h"
 #include "imaging/common/source_watch.h"
 #include "imaging/common/text.h"
@@ -58,7 +59,7 @@ class Assembler {
     try {
       stack.resize(plan_.sources.size() * source_voxels_);
     } catch (const std::bad_alloc&) {
-      return Error{"OUT_OF_MEMORY", "There is not enough memory to interpolate the slices", "",
+      return Error{code::kOutOfMemory, "There is not enough memory to interpolate the slices", "",
                    "Close other programs and try again"};
     }
     const auto source = [&](std::size_t n) { return stack.data() + n * source_voxels_; };

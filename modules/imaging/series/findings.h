@@ -15,30 +15,31 @@ class Findings {
  public:
   explicit Findings(Series& series) : series_(series) {}
 
-  void refuse(const char* code, std::string text, std::string action,
+  void refuse(Code code, std::string text, std::string action,
               std::vector<std::string> slices = {}) {
     series_.report.findings.push_back(
-        {code, "refusal", std::move(text), std::move(slices), std::move(action)});
+        {code, Severity::refusal, std::move(text), std::move(slices), std::move(action)});
   }
-  void repaired(const char* code, std::string text, std::string action,
+  void repaired(Code code, std::string text, std::string action,
                 std::vector<std::string> slices = {}) {
     series_.report.findings.push_back(
-        {code, "repair", std::move(text), std::move(slices), std::move(action)});
+        {code, Severity::repair, std::move(text), std::move(slices), std::move(action)});
   }
-  void notice(const char* code, std::string text, std::string action,
+  void notice(Code code, std::string text, std::string action,
               std::vector<std::string> slices = {}) {
     series_.report.findings.push_back(
-        {code, "notice", std::move(text), std::move(slices), std::move(action)});
+        {code, Severity::notice, std::move(text), std::move(slices), std::move(action)});
   }
   // Asks whether the series shall be used in spite of what was found (the second option): then it
   // is a repair, else a refusal.
   void askConsent(Choice choice, const Answers& answers, std::string text, std::string done,
                   std::string to_do, std::vector<std::string> slices = {}) {
-    const std::string code = choice.code, agreed = choice.options[1];
+    const Code code = choice.code;
+    const std::string agreed = choice.options[1];
     if (ask(std::move(choice), answers, series_.report.choices) == agreed) {
-      repaired(code.c_str(), std::move(text), std::move(done), std::move(slices));
+      repaired(code, std::move(text), std::move(done), std::move(slices));
     } else {
-      refuse(code.c_str(), std::move(text), std::move(to_do), std::move(slices));
+      refuse(code, std::move(text), std::move(to_do), std::move(slices));
     }
   }
   // The names of all slices that `test` holds for.

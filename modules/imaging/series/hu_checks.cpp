@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "imaging/codes.h"
 #include "imaging/common/text.h"
 #include "imaging/series/series_geometry.h"
 
@@ -9,10 +10,8 @@ namespace trephine {
 
 namespace {
 
-constexpr const char* kImplausibleHu = "IMPLAUSIBLE_HU";
-
 bool hasPadding(const SeriesReport& report) {
-  return std::ranges::find(report.findings, "PADDING_TO_AIR", &Finding::code) !=
+  return std::ranges::find(report.findings, code::kPaddingToAir, &Finding::code) !=
          report.findings.end();
 }
 
@@ -24,26 +23,29 @@ void checkHu(const HuSanityCheck& look, const Answers& answers, SeriesReport& re
   if (!doubts.empty()) {
     const std::string text = "The values can hardly be HU: " + listed(doubts);
     const std::string answer = ask(
-        {kImplausibleHu,
+        {code::kImplausibleHu,
          "The values can hardly be HU. Use them all the same?",
          {"refuse", "accept"},
          {"Do not use the series",
           "Take them as HU: what looks and cuts like air, tissue or bone may be something else"}},
         answers, report.choices);
     if (answer == "accept") {
-      report.findings.push_back(
-          {kImplausibleHu, "repair", text, {}, "They were taken as HU, as was agreed"});
+      report.findings.push_back({code::kImplausibleHu,
+                                 Severity::repair,
+                                 text,
+                                 {},
+                                 "They were taken as HU, as was agreed"});
     } else {
-      report.findings.push_back({kImplausibleHu,
-                                 "refusal",
+      report.findings.push_back({code::kImplausibleHu,
+                                 Severity::refusal,
                                  text,
                                  {},
                                  "Export the series again with its rescale, or agree to use it"});
     }
   } else if (!look.hasAir()) {
     report.findings.push_back(
-        {"NO_AIR",
-         "notice",
+        {code::kNoAir,
+         Severity::notice,
          (hasPadding(report) ? std::string("Hardly anything in it but padding lies where air does")
                              : "Hardly anything in it lies where air does; the smallest value is " +
                                    std::to_string(report.hu_min.value_or(0))) +
@@ -55,8 +57,8 @@ void checkHu(const HuSanityCheck& look, const Answers& answers, SeriesReport& re
 
 void sayPadding(const UnnamedPadding& padding, SeriesReport& report) {
   if (padding.voxels == 0) return;
-  report.findings.push_back({"PADDING_TO_AIR",
-                             "notice",
+  report.findings.push_back({code::kPaddingToAir,
+                             Severity::notice,
                              counted(padding.voxels, "voxel") + " had " +
                                  std::to_string(padding.hu) +
                                  " HU, which nothing in a patient has: the space around the scan",
@@ -65,10 +67,11 @@ void sayPadding(const UnnamedPadding& padding, SeriesReport& report) {
 }
 
 bool refusedByHu(const SeriesReport& report, const Answers& answers) {
-  if (std::ranges::find(report.choices, kImplausibleHu, &Choice::code) == report.choices.end()) {
+  if (std::ranges::find(report.choices, code::kImplausibleHu, &Choice::code) ==
+      report.choices.end()) {
     return false;
   }
-  const auto answer = answers.find(kImplausibleHu);
+  const auto answer = answers.find(code::kImplausibleHu);
   return answer == answers.end() || answer->second != "accept";
 }
 

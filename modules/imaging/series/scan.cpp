@@ -12,7 +12,9 @@
 #include <tuple>
 #include <utility>
 
+#include "base/codes.h"
 #include "base/file.h"
+#include "imaging/codes.h"
 #include "imaging/common/source_watch.h"
 #include "imaging/common/text.h"
 #include "imaging/common/workers.h"
@@ -167,7 +169,7 @@ std::optional<FileId> fileId(const fs::path& file) {
 Result<ScannedFiles> scanFiles(const fs::path& path, const Progress& progress, ScanGuide* guide) {
   std::error_code error;
   if (!fs::exists(path, error)) {
-    return Error{"MISSING_FOLDER", "The folder does not exist or may not be opened",
+    return Error{code::kMissingFolder, "The folder does not exist or may not be opened",
                  cleanUtf8(path.string()), "Check the name and that you may read it"};
   }
   // Its dictionary takes as long to load as the folders to walk. Workers wait for it.
@@ -200,7 +202,7 @@ Result<ScannedFiles> scanFiles(const fs::path& path, const Progress& progress, S
       });
   if (!read) return read.error();
   if (watch.vanished() || !fs::exists(path, error)) {
-    return Error{kSourceVanished, "The source vanished while its files were looked through",
+    return Error{code::kSourceVanished, "The source vanished while its files were looked through",
                  cleanUtf8(path.string()), "Plug it in or connect it again, then open it again"};
   }
 
@@ -214,7 +216,7 @@ Result<ScannedFiles> scanFiles(const fs::path& path, const Progress& progress, S
     if (frames) {
       ++result.dicom_files;
       std::ranges::move(frames.value(), std::back_inserter(result.headers));
-    } else if (frames.error().code != kUnreadableFile && isVolumeFile(files[i].path) &&
+    } else if (frames.error().code != code::kUnreadableFile && isVolumeFile(files[i].path) &&
                files[i].bytes > 0) {
       result.volume_files.push_back(files[i].path);
     } else {

@@ -9,6 +9,7 @@
 #include <tuple>
 #include <utility>
 
+#include "imaging/codes.h"
 #include "imaging/common/text.h"
 #include "imaging/series/series_repeats.h"
 
@@ -157,8 +158,9 @@ void dropDuplicates(Series& series, const Progress& progress) {
     return it->second;
   };
   const auto image = [](const DicomHeader& h) { return std::tie(h.sop_instance, h.frame); };
-  Finding dropped{"DUPLICATE_FILES", "notice", "", {}, "One copy of each was kept"};
-  Finding different{"DUPLICATE_INSTANCES", "notice", "", {}, "Both were kept; places decide"};
+  Finding dropped{code::kDuplicateFiles, Severity::notice, "", {}, "One copy of each was kept"};
+  Finding different{
+      code::kDuplicateInstances, Severity::notice, "", {}, "Both were kept; places decide"};
   std::ranges::stable_sort(series.slices, {}, image);
   for (DicomHeader& header : series.slices) {
     const auto first = std::ranges::lower_bound(kept, image(header), {}, image);
@@ -224,8 +226,8 @@ std::vector<Series> splitSeries(std::vector<DicomHeader> headers) {
   for (Series& part : parts) {
     if (!isCt(part.slices.front())) continue;
     part.report.findings.push_back(
-        {"SERIES_SPLIT",
-         "repair",
+        {code::kSeriesSplit,
+         Severity::repair,
          "This is a part of a series: " + std::to_string(part.slices.size()) + " of its " +
              std::to_string(images) + " images. Its " + std::to_string(parts.size()) +
              " parts differ in " + listed(reasons),
@@ -253,10 +255,12 @@ std::string sliceName(const DicomHeader& header) {
 }
 
 Verdict verdictOf(const std::vector<Finding>& findings) {
-  const auto any = [&](const char* severity) {
+  const auto any = [&](Severity severity) {
     return std::ranges::any_of(findings, [&](const Finding& f) { return f.severity == severity; });
   };
-  return any("refusal") ? Verdict::refused : any("repair") ? Verdict::repaired : Verdict::pass;
+  return any(Severity::refusal)  ? Verdict::refused
+         : any(Severity::repair) ? Verdict::repaired
+                                 : Verdict::pass;
 }
 
 void assignVerdict(Series& series) {
@@ -264,7 +268,7 @@ void assignVerdict(Series& series) {
   series.report.verdict = verdictOf(findings);
   if (series.report.verdict != Verdict::refused) return;
   for (std::size_t n = series.findings_kept; n < findings.size(); ++n) {
-    if (findings[n].severity == "repair") findings[n].action.clear();
+    if (findings[n].severity == Severity::repair) findings[n].action.clear();
   }
 }
 
@@ -283,8 +287,8 @@ std::vector<Series> groupSeries(std::vector<DicomHeader> headers, const Progress
       if (number > 1) series.report.uid += "#" + std::to_string(number);
       if (!uids[1].empty()) {
         series.report.findings.push_back(
-            {"NO_SERIES_UID",
-             "notice",
+            {code::kNoSeriesUid,
+             Severity::notice,
              "The files name no series: their Series Instance UID was emptied",
              {},
              "Slices of one study, series number, date and time were taken together"});

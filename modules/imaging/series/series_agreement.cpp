@@ -5,6 +5,8 @@
 #include <map>
 #include <numbers>
 
+#include "imaging/codes.h"
+
 namespace trephine {
 
 namespace {
@@ -42,7 +44,7 @@ Headers chooseParts(const Series& series, Headers placed, const Answers& answers
   std::map<int, std::size_t> counts;
   for (const DicomHeader* header : placed) ++counts[header->part];
   const bool joinable = !overlap(placed);
-  Choice choice{"PARTS",
+  Choice choice{code::kParts,
                 "The slices do not say that they are of one scan. How shall they be used?",
                 {"refuse"},
                 {"Do not use the series"}};
@@ -65,13 +67,13 @@ Headers chooseParts(const Series& series, Headers placed, const Answers& answers
       "The series falls into " + counted(counts.size(), "part") + " that differ in " + differing;
   const std::string answer = ask(std::move(choice), answers, report.choices);
   if (answer == "join") {
-    findings.repaired("PARTS", text,
+    findings.repaired(code::kParts, text,
                       "They were joined: it was assumed that they are one scan of one patient who "
                       "lay still");
     return placed;
   }
   if (answer == "refuse") {
-    findings.refuse("PARTS", text,
+    findings.refuse(code::kParts, text,
                     !joinable     ? "Choose a part of the series"
                     : offers_part ? "Join them, or choose a part"
                                   : "Join them, or use another series");
@@ -81,7 +83,7 @@ Headers chooseParts(const Series& series, Headers placed, const Answers& answers
   const std::size_t whole = placed.size();
   std::erase_if(placed, [&](const DicomHeader* header) { return header->part != wanted; });
   if (answer != "refuse") {
-    findings.repaired("PARTS", text,
+    findings.repaired(code::kParts, text,
                       "Part " + answer + " was taken, " + std::to_string(placed.size()) + " of " +
                           counted(whole, "slice") + "; the others were left out");
   }
@@ -158,14 +160,14 @@ void checkAcquisition(const Headers& used, const Answers& answers, Findings& fin
   words("position of the patient", true, [](const DicomHeader& h) { return h.patient_position; });
   words("contrast agent", false, [](const DicomHeader& h) { return h.contrast; });
   if (!unsaid.empty()) {
-    findings.notice("PARTLY_SAID",
+    findings.notice(code::kPartlySaid,
                     "Not all slices say how they were made: absent are " + listed(unsaid),
                     "What is absent was taken to be as in the others");
   }
   if (differing.empty()) return;
   const std::string text =
       "The slices were not all made in one way: they differ in " + listed(differing);
-  findings.askConsent({"MIXED_SLICES",
+  findings.askConsent({code::kMixedSlices,
                        "The slices were not all made in one way. Use them as one volume?",
                        {"refuse", "accept"},
                        {"Do not use the series",
@@ -195,7 +197,7 @@ void checkDensity(const Headers& used, const Stack& stack, const Answers& answer
   }
   if (why.empty()) {
     if (thickness_mm > 0.0 && step_mm > 1.05 * thickness_mm) {
-      findings.notice("GAPS_BETWEEN_SLICES",
+      findings.notice(code::kGapsBetweenSlices,
                       "The slices are " + lengthText(thickness_mm) + " thick and lie " +
                           lengthText(step_mm) + " apart: what lies between was not scanned",
                       "It is interpolated where the volume is drawn and cut");
@@ -204,7 +206,7 @@ void checkDensity(const Headers& used, const Stack& stack, const Answers& answer
   }
   const std::string text = "The slices are too few or too far apart to be cut: " + listed(why);
   findings.askConsent(
-      {"SPARSE_SLICES",
+      {code::kSparseSlices,
        "The slices are too few or too far apart to be cut. Use them all the same?",
        {"refuse", "accept"},
        {"Do not use the series",
@@ -263,7 +265,7 @@ void checkContradictions(const Headers& in_order, const Stack& stack, const Answ
                              lengthText(is_mm) + " by position and " + lengthText(said_mm) +
                              " by slice location";
     findings.askConsent(
-        {"LOCATION_MISMATCH",
+        {code::kLocationMismatch,
          "Slice locations and positions contradict each other. Believe the positions?",
          {"refuse", "positions"},
          {"Do not use the series",
@@ -284,13 +286,13 @@ void checkContradictions(const Headers& in_order, const Stack& stack, const Answ
   const double tolerance_mm = std::max(0.05, 0.02 * step_mm);
   if (between_mm && !near(*between_mm, step_mm, tolerance_mm) &&
       !near(*between_mm, step_mm * slant, tolerance_mm)) {
-    findings.repaired("SPACING_MISMATCH",
+    findings.repaired(code::kSpacingMismatch,
                       "The header says that slices lie " + lengthText(*between_mm) +
                           " apart, by their positions it is " + lengthText(step_mm),
                       "The positions were believed");
   }
   if (tilt_deg && !near(*tilt_deg, stack.tilt_deg, kTilt_deg)) {
-    findings.repaired("TILT_MISMATCH",
+    findings.repaired(code::kTiltMismatch,
                       "The header says that the gantry was tilted by " + fixedText(*tilt_deg, 1) +
                           " degrees, by the slices' positions it is " +
                           fixedText(stack.tilt_deg, 1),

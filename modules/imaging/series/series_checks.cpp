@@ -8,6 +8,8 @@
 #include <set>
 #include <tuple>
 
+#include "base/codes.h"
+#include "imaging/codes.h"
 #include "imaging/common/text.h"
 #include "imaging/dicom/transfer_syntax.h"
 #include "imaging/report/answers.h"
@@ -19,6 +21,7 @@
 #include "imaging/series/series_repeats.h"
 #include "imaging/series/series_steps.h"
 #include "volume/case_memory.h"
+#include "volume/codes.h"
 
 namespace trephine {
 
@@ -38,30 +41,30 @@ bool refusedByKind(const DicomHeader& first, Findings& findings) {
   const std::string& kind = first.sop_class;
   const bool secondary = kind.starts_with("1.2.840.10008.5.1.4.1.1.7");
   if (!first.has_pixels && first.modality == "RTSTRUCT") {
-    findings.refuse("NOT_AN_IMAGE_SERIES", "The series holds structures as contours, not a CT",
+    findings.refuse(code::kNotAnImageSeries, "The series holds structures as contours, not a CT",
                     "Export them as a DICOM Segmentation or as a label map: contours are not read "
                     "yet");
   } else if (!first.has_pixels && first.defect == Defect::none) {
     findings.refuse(
-        "NOT_AN_IMAGE_SERIES",
+        code::kNotAnImageSeries,
         (first.modality.empty() ? "The files"
                                 : "The files of this " + shownTerm(first.modality) + " series") +
             std::string(" hold no pixels"),
         kChooseCt);
   } else if (secondary) {
-    findings.refuse("SECONDARY_CAPTURE", "The series holds captured pictures, not slices",
+    findings.refuse(code::kSecondaryCapture, "The series holds captured pictures, not slices",
                     kChooseCt);
   } else if (!isCt(first) || (!first.modality.empty() && first.modality != "CT")) {
-    findings.refuse("NOT_CT",
+    findings.refuse(code::kNotCt,
                     "The series is " +
                         (first.modality.empty() ? "no CT" : shownTerm(first.modality)) +
                         ": its values are not HU",
                     first.modality == "SEG" ? kOpenAsStructures : kChooseCt);
   } else if (isLocalizer(first)) {
-    findings.refuse("LOCALIZER", "The series is a localizer (scout), not a stack of slices",
+    findings.refuse(code::kLocalizer, "The series is a localizer (scout), not a stack of slices",
                     kChooseCt);
   } else if (first.frames > 1 && !first.position_mm && first.defect != Defect::size_mismatch) {
-    findings.refuse("MULTIFRAME",
+    findings.refuse(code::kMultiframe,
                     "The series is stored as multi-frame pictures that do not say where each frame "
                     "lies",
                     "Export it as enhanced CT, or as classic CT with one file a slice");
@@ -76,7 +79,7 @@ void checkTransferSyntax(const Series& series, Findings& findings) {
   for (const DicomHeader& header : series.slices) ++counts[header.transfer_syntax];
   for (const auto& [uid, count] : counts) {
     if (findTransferSyntax(uid)) continue;
-    findings.refuse("UNSUPPORTED_TRANSFER_SYNTAX",
+    findings.refuse(code::kUnsupportedTransferSyntax,
                     "The transfer syntax " + transferSyntaxName(uid) +
                         (uid.starts_with("1.2.840.10008.") ? " (" + cleanUtf8(uid) + ")" : "") +
                         " of " + counted(std::uint64_t(count), "slice") + " cannot be read",
@@ -89,7 +92,7 @@ void checkLoss(const Answers& answers, Findings& findings) {
   if (lossy.empty()) return;
   const std::string text = countOfSlices(lossy, "was", "were") + " compressed with loss";
   findings.askConsent(
-      {"LOSSY_SOURCE",
+      {code::kLossySource,
        "The series was compressed with loss: its HU are not those of the scanner. Use it?",
        {"refuse", "accept"},
        {"Do not use the series", "Use it for training, marked as lossy"}},
@@ -103,7 +106,7 @@ void checkValues(const Series& series, Findings& findings) {
   const DicomHeader& first = typicalSlice(series.slices);
   const bool grey = first.photometric == "MONOCHROME1" || first.photometric == "MONOCHROME2";
   if (first.samples != 1 || (!grey && !first.photometric.empty())) {
-    findings.refuse("COLOUR",
+    findings.refuse(code::kColour,
                     "The pixels are colour (" + shownTerm(first.photometric) + "), not HU",
                     "Export the original CT slices");
   }
@@ -112,7 +115,7 @@ void checkValues(const Series& series, Findings& findings) {
            (!h.holdsGreyWords() || h.ambiguous_order || h.photometric.empty());
   });
   if (!odd_format.empty()) {
-    findings.refuse("PIXEL_FORMAT",
+    findings.refuse(code::kPixelFormat,
                     countOfSlices(odd_format, "does", "do") +
                         " not say 8 or 16 allocated bits, as many stored bits or fewer, rows and "
                         "columns up to 8192 and photometric interpretation as CT must",
@@ -123,13 +126,13 @@ void checkValues(const Series& series, Findings& findings) {
            h.rescale_type != "US";
   });
   if (!not_hu.empty()) {
-    findings.refuse("NOT_HU", "The values are " + shownTerm(first.rescale_type) + ", not HU",
+    findings.refuse(code::kNotHu, "The values are " + shownTerm(first.rescale_type) + ", not HU",
                     "Choose the series in HU", not_hu);
   }
   const auto bad =
       findings.slicesWhere([](const DicomHeader& h) { return h.has_pixels && h.rescale_bad; });
   if (!bad.empty()) {
-    findings.refuse("BAD_RESCALE",
+    findings.refuse(code::kBadRescale,
                     "The rescale slope or intercept of " + countOfSlices(bad) +
                         " is no number that CT could have",
                     "Export the series again", bad);
@@ -140,7 +143,7 @@ void checkValues(const Series& series, Findings& findings) {
       findings.slicesWhere([](const DicomHeader& h) { return h.has_pixels && h.intercept_given; });
   if (!raw.empty() && !scaled.empty()) {
     findings.refuse(
-        "BAD_RESCALE",
+        code::kBadRescale,
         countOfSlices(raw, "lacks", "lack") + " the rescale intercept that the others have",
         "Export the series again", raw);
   }
@@ -148,12 +151,12 @@ void checkValues(const Series& series, Findings& findings) {
       [](const DicomHeader& h) { return h.has_pixels && !h.rescale_given && !h.rescale_bad; });
   if (!unscaled.empty()) {
     findings.notice(
-        "RESCALE_DEFAULT",
+        code::kRescaleDefault,
         countOfSlices(unscaled, "lacks", "lack") + " a rescale slope (or have 0) or intercept",
         "Slope 1 and intercept 0 were taken where absent", unscaled);
   }
   if (first.photometric == "MONOCHROME1") {
-    findings.notice("MONOCHROME1", "The series is meant to be shown with white for low values",
+    findings.notice(code::kMonochrome1, "The series is meant to be shown with white for low values",
                     "The HU are not touched by that");
   }
 }
@@ -168,7 +171,7 @@ void checkSizes(const Series& series, Findings& findings) {
   }
   if (mismatched.empty()) return;
   findings.refuse(
-      "SIZE_MISMATCH",
+      code::kSizeMismatch,
       countOfSlices(mismatched, "contradicts itself (", "contradict themselves (the last: ") +
           text + ")",
       "Export the series again", mismatched);
@@ -209,20 +212,20 @@ void checkUnplaced(const std::vector<const DicomHeader*>& lost, bool others_are_
   const std::string text = countOfSlices(names) + " cannot be read, and " +
                            (names.size() == 1 ? "its place is" : "their places are") +
                            " not known (" + (why.empty() ? "it has no pixels" : why) + ")";
-  const auto given = answers.find("MISSING_SLICES");
+  const auto given = answers.find(code::kMissingSlices);
   const bool agreed = others_are_placed && given != answers.end() && given->second != "refuse";
-  const bool asked =
-      std::ranges::find(report.choices, "MISSING_SLICES", &Choice::code) != report.choices.end();
+  const bool asked = std::ranges::find(report.choices, code::kMissingSlices, &Choice::code) !=
+                     report.choices.end();
   if (!asked && others_are_placed) {
-    report.choices.push_back({"MISSING_SLICES",
+    report.choices.push_back({code::kMissingSlices,
                               "Slices are damaged before they say where they belong. Use the rest?",
                               {"refuse", "part"},
                               {"Do not use the series", "Use it without them"}});
   }
   if (agreed) {
-    findings.repaired("MISSING_SLICES", text, "They were left out", names);
+    findings.repaired(code::kMissingSlices, text, "They were left out", names);
   } else {
-    findings.refuse("MISSING_SLICES", text, "Copy these files again from their source", names);
+    findings.refuse(code::kMissingSlices, text, "Copy these files again from their source", names);
   }
 }
 
@@ -288,7 +291,7 @@ void checkBits(const Series& series, Findings& findings) {
   const auto slices = findings.slicesWhere(more);
   if (slices.empty()) return;
   const DicomHeader& one = *std::ranges::find_if(series.slices, more);
-  findings.repaired("BITS_STORED",
+  findings.repaired(code::kBitsStored,
                     "The header says " + std::to_string(one.said_bits_stored) +
                         " bits a pixel, and the compressed pixels have " +
                         std::to_string(one.format.bits_stored),
@@ -302,7 +305,7 @@ void checkNames(const std::vector<DicomHeader>& slices, Findings& findings) {
     if (!slice.patient.front().empty()) names.insert(slice.patient.front());
   }
   if (names.size() < 2) return;
-  findings.notice("NAMES_DIFFER",
+  findings.notice(code::kNamesDiffer,
                   "The patient's name is not the same in all slices; ID and birth date are",
                   "Nothing was changed; look whether all of them are of one patient");
 }
@@ -314,14 +317,14 @@ void checkSlopes(const Answers& answers, Findings& findings) {
   const auto rising = findings.slicesWhere(
       [](const DicomHeader& h) { return h.has_pixels && h.format.slope > 0.0; });
   if (!falling.empty() && rising.empty()) {
-    findings.notice("NEGATIVE_SLOPE",
+    findings.notice(code::kNegativeSlope,
                     "The rescale slope is negative: a higher stored value is a lower HU",
                     "Nothing was changed; look whether bone is bright");
   }
   if (falling.empty() || rising.empty()) return;
   const auto& fewer = falling.size() < rising.size() ? falling : rising;
   findings.askConsent(
-      {"SLOPES_DIFFER",
+      {code::kSlopesDiffer,
        "In some slices a higher stored value is a lower HU, in the others a higher one. Use them?",
        {"refuse", "accept"},
        {"Do not use the series", "Use them as their headers say"}},
@@ -357,14 +360,14 @@ void checkConcatenation(const std::vector<DicomHeader>& slices, const Answers& a
   if (missing.empty()) return;
   const std::string text = "The series was written in parts, of which " + listed(missing) +
                            (missing.size() == 1 ? " is missing" : " are missing");
-  if (std::ranges::find(asked, "MISSING_SLICES", &Choice::code) != asked.end()) {
-    const std::string answer = answerTo(answers, "MISSING_SLICES");
-    return findings.notice("INCOMPLETE", text,
+  if (std::ranges::find(asked, code::kMissingSlices, &Choice::code) != asked.end()) {
+    const std::string answer = answerTo(answers, code::kMissingSlices);
+    return findings.notice(code::kIncomplete, text,
                            answer.empty() || answer == "refuse"
                                ? "Copy all files of the series again"
                                : "The gap that they leave became what was chosen for it");
   }
-  findings.askConsent({"INCOMPLETE",
+  findings.askConsent({code::kIncomplete,
                        "Not all parts of the series are there. Use those that are?",
                        {"refuse", "accept"},
                        {"Do not use the series", "Use them: the scan covers less than it did"}},
@@ -394,7 +397,7 @@ void placeByLocation(const Headers& placed, const Vec3& normal, const Answers& a
   const std::string text =
       "All slices claim one place, and their slice locations lie " + lengthText(step_mm) + " apart";
   const std::string answer =
-      ask({"ONE_LOCATION",
+      ask({code::kOneLocation,
            "All slices claim one place. Shall they lie where their slice locations say?",
            {"refuse", "locations"},
            {"Do not use the series",
@@ -404,8 +407,8 @@ void placeByLocation(const Headers& placed, const Vec3& normal, const Answers& a
   for (std::size_t n = 0; n < positions_mm.size(); ++n) {
     positions_mm[n] += normal * (locations_mm[n] - sorted.front());
   }
-  report.findings.push_back({"ONE_LOCATION",
-                             "repair",
+  report.findings.push_back({code::kOneLocation,
+                             Severity::repair,
                              text,
                              {},
                              "They were placed by their slice locations, as was chosen"});
@@ -416,7 +419,7 @@ SeriesPlan checkGeometry(Series& series, const Answers& answers, Findings& findi
   const auto nowhere =
       findings.slicesWhere([](const DicomHeader& h) { return h.has_pixels && !isPlaced(h); });
   if (!nowhere.empty()) {
-    findings.refuse("NO_GEOMETRY",
+    findings.refuse(code::kNoGeometry,
                     countOfSlices(nowhere, "lacks", "lack") +
                         " a usable position, orientation or pixel spacing",
                     "Export the series again with its geometry", nowhere);
@@ -550,10 +553,10 @@ SeriesPlan assessSeries(Series& series, const Answers& answers) {
     checkBits(series, findings);
     checkNames(series.slices, findings);
     plan = checkGeometry(series, answers, findings);
-    plan.whole_words = answerTo(answers, "HIGH_BITS") == "use";
+    plan.whole_words = answerTo(answers, code::kHighBits) == "use";
     checkConcatenation(series.slices, answers, report.choices, findings);
     if (const Status size = checkSize(report.geometry.size, ""); !size) {
-      findings.refuse(size.error().code == "TOO_LARGE" ? "TOO_LARGE" : "PIXEL_FORMAT",
+      findings.refuse(size.error().code == code::kTooLarge ? code::kTooLarge : code::kPixelFormat,
                       size.error().what, size.error().next);
     }
     report.reading_mb = readingMb(plan, report);
@@ -561,7 +564,7 @@ SeriesPlan assessSeries(Series& series, const Answers& answers) {
   }
   // Answers that cannot save the series are not asked for.
   const auto asked = [&](const Finding& finding) {
-    return finding.severity != "refusal" ||
+    return finding.severity != Severity::refusal ||
            std::ranges::find(report.choices, finding.code, &Choice::code) != report.choices.end();
   };
   if (!std::ranges::all_of(report.findings, asked)) report.choices.clear();

@@ -5,6 +5,7 @@
 #include <numbers>
 #include <numeric>
 
+#include "imaging/codes.h"
 #include "imaging/common/text.h"
 #include "imaging/series/series_steps.h"
 
@@ -55,13 +56,15 @@ void planSideways(const StackInput& input, const Mat3& axes, Stack& stack) {
           ? "Slices lie up to " + fixedText(worst_off_line, 2) + " mm aside of the stack's line"
       : tilted ? "The slices are sheared: the gantry was tilted by " + angle
                : "The slices are sheared sideways, by " + angle + ", as no gantry tilts";
-  const char* code = !on_a_line ? "SHIFTED_SLICES" : tilted ? "GANTRY_TILT" : "SHEARED_SIDEWAYS";
+  Code code = !on_a_line ? code::kShiftedSlices
+              : tilted   ? code::kGantryTilt
+                         : code::kShearedSideways;
   const double widest =
       std::max((high[0] - low[0]) / input.columns, (high[1] - low[1]) / input.rows);
   if (!(widest <= kWidestShift)) {
     stack.shifts.assign(stack.order.size(), {0.0, 0.0});
     stack.findings.push_back({code,
-                              "refusal",
+                              Severity::refusal,
                               text,
                               {},
                               "The slices lie farther apart sideways than they are wide: use "
@@ -77,7 +80,7 @@ void planSideways(const StackInput& input, const Mat3& axes, Stack& stack) {
   }
   stack.findings.push_back(
       {code,
-       "repair",
+       Severity::repair,
        text,
        {},
        std::string(on_a_line ? "They were straightened" : "They were moved to where they belong") +
@@ -142,8 +145,8 @@ Stack stackSlices(const StackInput& input, const Answers& answers) {
 
   const auto axes = axesOf(input.orientation);
   if (!axes) {
-    stack.findings.push_back({"NOT_ORTHONORMAL",
-                              "refusal",
+    stack.findings.push_back({code::kNotOrthonormal,
+                              Severity::refusal,
                               "The image orientation is not two perpendicular unit vectors",
                               {},
                               "Export the series again; its orientation is damaged"});
@@ -173,16 +176,16 @@ Stack stackSlices(const StackInput& input, const Answers& answers) {
   if (places.size() == 1) {
     geometry.size[2] = 1;
     if (!places.front().usable) {
-      stack.findings.push_back({"MISSING_SLICES",
-                                "refusal",
+      stack.findings.push_back({code::kMissingSlices,
+                                Severity::refusal,
                                 "The slice is missing" + input.lost_text,
                                 {},
                                 "Copy the file again from its source"});
     }
     stack.places_mm.assign(count, places.front().place_mm);
     stack.findings.push_back(
-        {"ONE_LOCATION",
-         "refusal",
+        {code::kOneLocation,
+         Severity::refusal,
          count == 1 ? "A single slice is not a volume"
                     : "All " + std::to_string(count) + " slices lie at one place: not a volume",
          {placeText(places.front().place_mm)},

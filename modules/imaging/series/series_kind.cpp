@@ -4,9 +4,11 @@
 #include <cmath>
 #include <map>
 
+#include "imaging/codes.h"
 #include "imaging/common/text.h"
 #include "imaging/series/findings.h"
 #include "imaging/series/series_geometry.h"
+#include "volume/codes.h"
 
 namespace trephine {
 
@@ -159,12 +161,12 @@ void checkKind(Series& series, const Answers& answers) {
   }
   Findings findings(series);
   if (!coloured.empty()) {
-    findings.refuse("COLOUR",
+    findings.refuse(code::kColour,
                     countText(coloured, "holds", "hold") + "pixels that stand for colours, not HU",
                     "Export the original CT slices", coloured);
   }
   if (!tables.empty()) {
-    findings.refuse("NOT_HU",
+    findings.refuse(code::kNotHu,
                     countText(tables, "needs", "need") +
                         "a look-up table (Modality LUT) to become HU, which is not read",
                     "Export the series with a rescale slope and intercept", tables);
@@ -173,11 +175,11 @@ void checkKind(Series& series, const Answers& answers) {
   std::vector<std::string> derived_words;
   for (const auto& [kind, slices] : kinds) {
     if (kind.first == Use::no_hu) {
-      findings.refuse("NOT_HU", countText(slices, "holds", "hold") + kind.second + ", not HU",
+      findings.refuse(code::kNotHu, countText(slices, "holds", "hold") + kind.second + ", not HU",
                       "Choose the series that it was calculated from", slices);
     } else if (kind.first == Use::projection) {
       findings.refuse(
-          "PROJECTION",
+          code::kProjection,
           countText(slices, "holds", "hold") + kind.second + ", not what lies at their place",
           "Choose the series that it was calculated from", slices);
     } else {
@@ -187,7 +189,7 @@ void checkKind(Series& series, const Answers& answers) {
   }
   if (!derived.empty()) {
     findings.askConsent(
-        {"DERIVED_IMAGES",
+        {code::kDerivedImages,
          "The slices are not as they were scanned, or were scanned for another purpose. Use them?",
          {"refuse", "accept"},
          {"Do not use the series",
@@ -199,7 +201,7 @@ void checkKind(Series& series, const Answers& answers) {
   if (!scales.empty()) {
     const auto& [scale, slices] = *scales.begin();
     findings.askConsent(
-        {"VALUE_MAP",
+        {code::kValueMap,
          "The header gives the values another meaning beside HU. Take them as HU?",
          {"refuse", "accept"},
          {"Do not use the series", "Take slope and intercept for HU and leave the map aside"}},

@@ -11,6 +11,7 @@
 
 #include "base/range.h"
 #include "base/sha256.h"
+#include "imaging/codes.h"
 #include "imaging/common/text.h"
 #include "imaging/common/workers.h"
 #include "imaging/dicom/dicom_pixels.h"
@@ -490,7 +491,7 @@ void dropEqualRepeats(Series& series, const Progress& progress) {
 
   PixelReader reader(progress);
   std::vector<bool> dropped(series.slices.size(), false);
-  Finding finding{"DUPLICATE_FILES", "notice", "", {}, "One of each was kept"};
+  Finding finding{code::kDuplicateFiles, Severity::notice, "", {}, "One of each was kept"};
   for (const Place& place : places) {
     if (place.count() < 2) continue;
     std::vector<std::optional<Pixels>> pixels(place.count());
@@ -580,7 +581,7 @@ std::vector<std::size_t> chooseRepeats(const std::vector<const DicomHeader*>& sl
     refine(slices, places_mm, keys, *phases, told_apart_by);
     report.phases = 1 + std::ranges::max(*phases);
     const bool by_kernel = told_apart_by == "convolution kernel";
-    Choice choice{"PHASES",
+    Choice choice{code::kPhases,
                   by_kernel ? "Which reconstruction shall be used?" : "Which phase shall be used?",
                   {"refuse"},
                   {"Do not use the series"}};
@@ -614,21 +615,22 @@ std::vector<std::size_t> chooseRepeats(const std::vector<const DicomHeader*>& sl
                              ", told apart by " + told_apart_by;
     if (answer == "all") {
       report.findings.push_back(
-          {"PHASES", "repair", text, {}, "All were taken as one scan, as was chosen"});
+          {code::kPhases, Severity::repair, text, {}, "All were taken as one scan, as was chosen"});
       for (std::size_t n = 0; n < slices.size(); ++n) chosen.push_back(n);
       return chosen;
     }
     if (answer == "refuse") {
-      report.findings.push_back({"PHASES", "refusal", text, {}, "Choose one of them"});
+      report.findings.push_back({code::kPhases, Severity::refusal, text, {}, "Choose one of them"});
       take(*phases, 0);
     } else {
-      report.findings.push_back({"PHASES", "repair", text, {}, "Number " + answer + " was taken"});
+      report.findings.push_back(
+          {code::kPhases, Severity::repair, text, {}, "Number " + answer + " was taken"});
       take(*phases, *parseInteger(answer) - 1);
     }
     return chosen;
   }
 
-  Finding finding{"DUPLICATE_POSITIONS", "refusal", "", {}, ""};
+  Finding finding{code::kDuplicatePositions, Severity::refusal, "", {}, ""};
   for (const Place& place : places) {
     if (place.count() > 1) finding.slices.push_back(placeText(places_mm[place.first]));
   }
@@ -638,7 +640,7 @@ std::vector<std::size_t> chooseRepeats(const std::vector<const DicomHeader*>& sl
   // Where most places repeat and nothing tells the phases apart, any choice would mix them.
   std::string answer = "refuse";
   if (!scanned_again) {
-    answer = ask({"DUPLICATE_POSITIONS",
+    answer = ask({code::kDuplicatePositions,
                   "Which of the slices at one place shall be used?",
                   {"refuse", "first", "last"},
                   {"Do not use the series", "The one that was acquired first",
@@ -658,7 +660,7 @@ std::vector<std::size_t> chooseRepeats(const std::vector<const DicomHeader*>& sl
         scanned_again ? "Export one of the scans alone: nothing in them tells them apart"
                       : "Choose which to use, or remove the slices that do not belong to the scan";
   } else {
-    finding.severity = "repair";
+    finding.severity = Severity::repair;
     finding.action = "Of each place the " + answer + " was taken, the others left out";
   }
   report.findings.push_back(std::move(finding));

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "imaging/codes.h"
 #include "imaging/common/text.h"
 
 namespace trephine {
@@ -164,9 +165,9 @@ void planAsTheyAre(const Slices& slices, Stack& stack) {
   stack.geometry.size[2] = std::int32_t(slices.size());
 }
 
-void keepPart(const Slices& part, const char* code, const std::string& text, Stack& stack) {
+void keepPart(const Slices& part, Code code, const std::string& text, Stack& stack) {
   stack.findings.push_back({code,
-                            "repair",
+                            Severity::repair,
                             text,
                             {},
                             "Only the longest even part was taken, " + rangeText(part) + ", " +
@@ -183,8 +184,8 @@ struct Line {
 };
 
 Finding roundedFinding(double grid_mm, double step_mm) {
-  return {"ROUNDED_POSITIONS",
-          "repair",
+  return {code::kRoundedPositions,
+          Severity::repair,
           "The positions of the slices were rounded to " + fixedText(grid_mm, 1) + " mm",
           {},
           "They were put back on the line that explains them all, with a step of " +
@@ -208,7 +209,7 @@ void planGaps(Slices slices, const Steps& steps, const Answers& answers,
       longestPart(slices, steps.step_mm,
                   steps.even ? stepTolerance_mm(steps.step_mm) : kJitter * steps.step_mm);
   Choice choice{
-      "MISSING_SLICES",
+      code::kMissingSlices,
       places.size() == 1 ? "What shall become of the gap?" : "What shall become of the gaps?",
       {"refuse"},
       {"Do not use the series"}};
@@ -238,8 +239,8 @@ void planGaps(Slices slices, const Steps& steps, const Answers& answers,
   }
   const std::string answer = ask(std::move(choice), answers, stack.choices);
   if (answer == "line") {
-    stack.findings.push_back({"MISSING_SLICES",
-                              "repair",
+    stack.findings.push_back({code::kMissingSlices,
+                              Severity::repair,
                               text,
                               {},
                               "None is missing, as was chosen: positions that were rounded to " +
@@ -249,13 +250,13 @@ void planGaps(Slices slices, const Steps& steps, const Answers& answers,
     stack.geometry.spacing_mm.z = rounded->step_mm;
     return;
   }
-  if (answer == "part") return keepPart(part, "MISSING_SLICES", text, stack);
+  if (answer == "part") return keepPart(part, code::kMissingSlices, text, stack);
   if (answer == "fill") {
     const std::size_t before = slices.size();
     trimUnusableEnds(slices);
     const bool trimmed = slices.size() < before;
     planSlices(slices, filled, stack);
-    stack.findings.push_back({"MISSING_SLICES", "repair", text, places,
+    stack.findings.push_back({code::kMissingSlices, Severity::repair, text, places,
                               std::string("Filled in by interpolation: what lies there was not "
                                           "scanned, and a lesion in it cannot be seen") +
                                   (trimmed ? ". Ends that cannot be read were cut off" : "")});
@@ -263,7 +264,7 @@ void planGaps(Slices slices, const Steps& steps, const Answers& answers,
   }
   planAsTheyAre(slices, stack);
   stack.findings.push_back(
-      {"MISSING_SLICES", "refusal", text, places,
+      {code::kMissingSlices, Severity::refusal, text, places,
        rounded    ? rounded->numbered_on
                         ? "Choose which it is: its slices are numbered without a break, as where "
                           "none is missing"
@@ -282,7 +283,7 @@ void planUneven(const Slices& slices, const Steps& steps, const Answers& answers
                            " to " + fixedText(steps.most_mm, 3) + " mm (median " +
                            fixedText(steps.median_mm, 3) + " mm)";
   const Slices part = longestPart(slices, steps.median_mm, stepTolerance_mm(steps.median_mm));
-  Choice choice{"UNEVEN_SPACING",
+  Choice choice{code::kUnevenSpacing,
                 "How shall the uneven steps be used?",
                 {"refuse"},
                 {"Do not use the series"}};
@@ -297,11 +298,11 @@ void planUneven(const Slices& slices, const Steps& steps, const Answers& answers
                            counted(part.size(), "slice"));
   }
   const std::string answer = ask(std::move(choice), answers, stack.choices);
-  if (answer == "part") return keepPart(part, "UNEVEN_SPACING", text, stack);
+  if (answer == "part") return keepPart(part, code::kUnevenSpacing, text, stack);
   if (answer == "resample") {
     planSlices(whole, count, stack);
-    stack.findings.push_back({"UNEVEN_SPACING",
-                              "repair",
+    stack.findings.push_back({code::kUnevenSpacing,
+                              Severity::repair,
                               text,
                               {},
                               "Slices were interpolated at even steps of " +
@@ -310,8 +311,8 @@ void planUneven(const Slices& slices, const Steps& steps, const Answers& answers
     return;
   }
   planAsTheyAre(slices, stack);
-  stack.findings.push_back({"UNEVEN_SPACING",
-                            "refusal",
+  stack.findings.push_back({code::kUnevenSpacing,
+                            Severity::refusal,
                             text,
                             {},
                             "Export the series with even spacing, or choose how to use it"});
@@ -576,8 +577,8 @@ void planAlongNormal(Slices slices, const StackInput& input, const Vec3& normal,
   const bool lost = std::size_t(usable) < slices.size();
   if (usable < 2) {
     planAsTheyAre(slices, stack);
-    stack.findings.push_back({"MISSING_SLICES",
-                              "refusal",
+    stack.findings.push_back({code::kMissingSlices,
+                              Severity::refusal,
                               std::to_string(slices.size() - std::size_t(usable)) + " of " +
                                   counted(slices.size(), "slice") + " cannot be used" + lost_text,
                               {},
@@ -592,8 +593,8 @@ void planAlongNormal(Slices slices, const StackInput& input, const Vec3& normal,
     planSlices(slices, std::int64_t(slices.size()), stack);
     if (stack.oneToOne()) return;  // within what even steps may differ
     stack.findings.push_back(
-        {"RESAMPLED_SPACING",
-         "repair",
+        {code::kResampledSpacing,
+         Severity::repair,
          "The steps between slices vary from " + fixedText(steps.least_mm, 3) + " to " +
              fixedText(steps.most_mm, 3) + " mm",
          {},

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "base/codes.h"
+#include "imaging/codes.h"
 #include "imaging/common/text.h"
 #include "imaging/series/series_geometry.h"
 #include "imaging/steps/coarse_grid.h"
@@ -20,7 +22,7 @@ bool stepCouch(const CoarseGrid& grid, const Answers& answers, SeriesReport& ser
   const CouchFinding couch = findCouch(grid);
   if (!couch.found) return false;
   const std::string answer =
-      ask({"COUCH",
+      ask({code::kCouch,
            "A patient couch or head holder is in the scan. Take it out?",
            {"keep", "remove"},
            {"Leave the scan as it is", "Set couch and holder to air; the patient is not touched"}},
@@ -28,14 +30,17 @@ bool stepCouch(const CoarseGrid& grid, const Answers& answers, SeriesReport& ser
   const std::string text = "The scan shows a couch or holder, " + fixedText(couch.width_mm, 0) +
                            " mm wide and " + fixedText(couch.length_mm, 0) + " mm long";
   if (answer != "remove") {
-    series.findings.push_back(
-        {"COUCH", "notice", text, {}, "It was left in; tools can touch and cut it like tissue"});
+    series.findings.push_back({code::kCouch,
+                               Severity::notice,
+                               text,
+                               {},
+                               "It was left in; tools can touch and cut it like tissue"});
     return false;
   }
   const std::uint64_t voxels = removeCouch(volume, couch);
   series.findings.push_back(
-      {"COUCH",
-       "repair",
+      {code::kCouch,
+       Severity::repair,
        text,
        {},
        "It was taken out as was agreed: " + std::to_string(voxels) + " voxels became air"});
@@ -98,9 +103,8 @@ std::string beyondText(const BeyondFace& beyond) {
   return text;
 }
 
-Error refuse(const char* code, const std::string& text, const std::string& action,
-             SeriesReport& series) {
-  series.findings.push_back({code, "refusal", text, {}, action});
+Error refuse(Code code, const std::string& text, const std::string& action, SeriesReport& series) {
+  series.findings.push_back({code, Severity::refusal, text, {}, action});
   series.verdict = Verdict::refused;
   return Error{code, text, "", action};
 }
@@ -114,15 +118,15 @@ Result<bool> stepFace(const CoarseGrid& grid, const ImportRequest& request, Seri
   if (request.crop && !keepsFace(kept_box, grid, face, volume)) return false;
   const auto kept = [&](const std::string& why) {
     series.findings.push_back(
-        {"FACE",
-         "notice",
+        {code::kFace,
+         Severity::notice,
          kFaceText,
          {},
          why + "It was kept: the case must stay on this computer until the face is cut away"});
     return false;
   };
   const std::string answer =
-      ask({"FACE",
+      ask({code::kFace,
            "The patient's face can be reconstructed from this scan. Cut it away?",
            {"keep", "deface"},
            {"Keep it; the case must then stay on this computer",
@@ -134,7 +138,7 @@ Result<bool> stepFace(const CoarseGrid& grid, const ImportRequest& request, Seri
   const std::string more = beyondText(beyond);
   if (beyond.throat_mL + beyond.beside_mL >= kLittle_mL) {
     const std::string agreed = ask(
-        {"FACE_TAKES_MORE",
+        {code::kFaceTakesMore,
          "The cut that takes the face away takes more than the face: " + more + ". Cut it away?",
          {"refuse", "accept", "keep"},
          {"Do not read this series so", "Cut all of it away",
@@ -142,13 +146,13 @@ Result<bool> stepFace(const CoarseGrid& grid, const ImportRequest& request, Seri
         request.answers, series.choices);
     if (agreed == "keep") return kept("The cut would have taken more: " + more + ". ");
     if (agreed != "accept") {
-      return refuse("FACE_TAKES_MORE", "The cut that takes the face away takes more: " + more,
+      return refuse(code::kFaceTakesMore, "The cut that takes the face away takes more: " + more,
                     "Accept it, keep the face, or crop the scan to the head", series);
     }
   }
 
-  const bool may_keep =
-      request.answers.contains("FACE_REMAINS") && request.answers.at("FACE_REMAINS") == "keep";
+  const bool may_keep = request.answers.contains(code::kFaceRemains) &&
+                        request.answers.at(code::kFaceRemains) == "keep";
   CoarseGrid before = faceGrid(volume);
   const FaceMarks marks = findFaceMarks(before);
   TakenVoxels taken;
@@ -156,7 +160,7 @@ Result<bool> stepFace(const CoarseGrid& grid, const ImportRequest& request, Seri
   const std::string doubt = faceDoubt(marks, before, faceGrid(volume));
   if (!doubt.empty()) {
     const std::string text = "It could not be made sure that the face is gone: " + doubt;
-    ask({"FACE_REMAINS",
+    ask({code::kFaceRemains,
          text + ". Keep the face?",
          {"refuse", "keep"},
          {"Do not read this series so",
@@ -164,7 +168,7 @@ Result<bool> stepFace(const CoarseGrid& grid, const ImportRequest& request, Seri
         request.answers, series.choices);
     if (!may_keep) {
       return refuse(
-          "FACE_REMAINS", text,
+          code::kFaceRemains, text,
           "Crop the head away, or keep the face; the case must then stay on this computer", series);
     }
     for (const auto& slice : taken) {
@@ -172,8 +176,8 @@ Result<bool> stepFace(const CoarseGrid& grid, const ImportRequest& request, Seri
     }
     return kept(text + ". ");
   }
-  series.findings.push_back({"FACE",
-                             "repair",
+  series.findings.push_back({code::kFace,
+                             Severity::repair,
                              kFaceText,
                              {},
                              "The face was cut away as was agreed: " + std::to_string(voxels) +
@@ -187,7 +191,9 @@ Result<bool> stepFace(const CoarseGrid& grid, const ImportRequest& request, Seri
 
 Status takeVolumeSteps(const ImportRequest& request, const Progress& progress, SeriesReport& series,
                        Volume& volume, std::optional<MeasuredLoss>& loss) {
-  const auto cancelled = [&] { return Error{"CANCELLED", "The import was cancelled", "", ""}; };
+  const auto cancelled = [&] {
+    return Error{code::kCancelled, "The import was cancelled", "", ""};
+  };
   progress.at(0.9, "Looking for couch and face");
   CoarseGrid grid = coarseGrid(volume);
   bool changed = stepCouch(grid, request.answers, series, volume);
@@ -210,8 +216,8 @@ Status takeVolumeSteps(const ImportRequest& request, const Progress& progress, S
     if (!small) return small.error();
     const ReductionLoss measured = reductionLoss(volume, *small, request.reduction);
     loss = MeasuredLoss{measured.rms_hu, measured.p99_hu, measured.bone_volume_change_percent};
-    series.findings.push_back({"REDUCED",
-                               "repair",
+    series.findings.push_back({code::kReduced,
+                               Severity::repair,
                                "The resolution was reduced to " +
                                    std::string(request.reduction == 2 ? "a half" : "a quarter") +
                                    " along each axis",

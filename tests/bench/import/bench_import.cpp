@@ -5,6 +5,7 @@
 
 #include "app/answer.h"
 #include "app/signals.h"
+#include "base/codes.h"
 #include "base/log.h"
 #include "bench/import/comparison.h"
 #include "bench/import/peers.h"
@@ -43,7 +44,7 @@ int run(int argc, char** argv) {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0 || !wantsJson(argc, argv)) return app.exit(error) == 0 ? 0 : 1;
-    return printError(kName, {"BAD_ARGUMENT", error.what(), "the command line", "See --help"},
+    return printError(kName, {code::kBadArgument, error.what(), "the command line", "See --help"},
                       true);
   }
   setUpLog(json);

@@ -108,7 +108,7 @@ Loader peerLoader(const Peer& peer, double limit_s, bool makes_volume) {
     command.measures_memory = true;
     Result<ChildRun> child = runChild(command, task.progress);
     if (!child) {
-      if (child.error().code == "CANCELLED") return child.error();
+      if (child.error().code.str() == "CANCELLED") return child.error();
       return failedRun(child.error().what);
     }
     if (child->timed_out) return failedRun(tookTooLong(limit_s));

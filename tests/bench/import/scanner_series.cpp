@@ -15,6 +15,7 @@
 #include <memory>
 #include <mutex>
 
+#include "base/codes.h"
 #include "bench/import/j2k_encoder.h"
 #include "bench/import/noisy_ct.h"
 #include "bench/import/scanner_header.h"
@@ -122,7 +123,7 @@ Status convert(const Slice& slice, SeriesSyntax syntax) {
   if (done.good()) done = storeAs(syntax, *format.getDataset());
   if (done.good()) done = format.saveFile(OFFilename(slice.to.c_str()), transferSyntaxOf(syntax));
   if (done.good()) return {};
-  return Error{"CANNOT_WRITE", std::string("A slice could not be written: ") + done.text(),
+  return Error{code::kCannotWrite, std::string("A slice could not be written: ") + done.text(),
                slice.to.parent_path().string(), "See whether the disk is full"};
 }
 

@@ -124,7 +124,7 @@ TEST(NoisyCt, RefusesEdgesThatItCannotMake) {
        {Index3{1, 8, 8}, Index3{8, 2049, 8}, Index3{8, 8, 0}, Index3{1024, 1024, 257}}) {
     const Result<Volume> volume = makeNoisyCt(size, kQuiet);
     ASSERT_FALSE(volume);
-    EXPECT_EQ(volume.error().code, "BAD_ARGUMENT");
+    EXPECT_EQ(volume.error().code.str(), "BAD_ARGUMENT");
   }
 }
 
@@ -251,7 +251,7 @@ TEST(ScannerSeries, SaysThatItCannotWrite) {
   const Status written =
       writeSeries(noisyCt({8, 8, 2}), SeriesSyntax::int16, folder / "file", kQuiet);
   ASSERT_FALSE(written);
-  EXPECT_EQ(written.error().code, "CANNOT_WRITE");
+  EXPECT_EQ(written.error().code.str(), "CANNOT_WRITE");
 }
 
 TEST(ScannerSeries, StopsWhenItIsCancelled) {
@@ -261,10 +261,10 @@ TEST(ScannerSeries, StopsWhenItIsCancelled) {
   cancelled.cancel();
   const Status written = writeSeries(volume, SeriesSyntax::int16, folder.path(), cancelled);
   ASSERT_FALSE(written);
-  EXPECT_EQ(written.error().code, "CANCELLED");
+  EXPECT_EQ(written.error().code.str(), "CANCELLED");
   const Result<Volume> made = makeNoisyCt({8, 8, 200}, cancelled);
   ASSERT_FALSE(made);
-  EXPECT_EQ(made.error().code, "CANCELLED");
+  EXPECT_EQ(made.error().code.str(), "CANCELLED");
 }
 
 TEST(ScannerSeries, AreWrittenByNameWithWhatTheyHold) {

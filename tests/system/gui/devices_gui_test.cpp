@@ -238,7 +238,7 @@ class DevicesGuiTest : public test::TrainTest {
     window_->startExercise();
     QVERIFY(failed.count() == 1 || failed.wait(kSoon_ms));
     const Error error = failed[0][0].value<Error>();
-    QCOMPARE(error.code, std::string("NO_DEVICE"));
+    QCOMPARE(error.code.str(), std::string("NO_DEVICE"));
     for (const char* part : {"right", "WoodenHaptics", "usb-9-9"}) {
       QVERIFY2(error.what.find(part) != std::string::npos, error.what.c_str());
     }

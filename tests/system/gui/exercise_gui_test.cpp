@@ -913,7 +913,7 @@ class ExerciseGuiTest : public test::WindowTest {
     QVERIFY(!find<QLineEdit>("scene:name")->isEnabled());
     Exercise other = exercise();
     other.name = "x";
-    QCOMPARE(workstation().edit(other, "name").error().code, std::string("LOCKED"));
+    QCOMPARE(workstation().edit(other, "name").error().code.str(), std::string("LOCKED"));
     workstation().setUnlocked(true);
     QVERIFY(find<QLineEdit>("scene:name")->isEnabled());
     find<QCheckBox>("scene:locks:rate")->click();

@@ -23,6 +23,7 @@
 #include <filesystem>
 
 #include "gui_support.h"
+#include "imaging/codes.h"
 #include "imaging/dicom/ct_writer.h"
 #include "slow_source/slow_source.h"
 #include "ui/common/words.h"
@@ -352,7 +353,7 @@ class ImportGuiTest : public test::WindowTest {
     closeError();
 
     Result<CtFolder> same = CtFolder::scan(toPath(folder), Progress());
-    const ImportRequest request{{{"COUCH", "remove"}, {"FACE", "deface"}}, {}, 1, {}};
+    const ImportRequest request{{{code::kCouch, "remove"}, {code::kFace, "deface"}}, {}, 1, {}};
     const Result<Volume> wanted = same->read(*same->bestSeries(), request, Progress());
     QVERIFY(wanted.ok());
     QVERIFY(workstation().currentCase()->volume->hu == wanted->hu);

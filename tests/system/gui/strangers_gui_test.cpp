@@ -15,10 +15,12 @@
 #include <QtTest>
 #include <algorithm>
 
+#include "base/codes.h"
 #include "base/file.h"
 #include "gui_support.h"
 #include "library/case_library.h"
 #include "train_support.h"
+#include "training/codes.h"
 #include "ui/cases/cases_page.h"
 #include "ui/common/error_dialog.h"
 #include "ui/common/question.h"
@@ -104,7 +106,7 @@ class StrangersGuiTest : public test::TrainTest {
   }
 
   void dialogsTooltipsAndQuestionsShowTextAsItIs() {
-    const Error error{"BAD_FIELD", name(), name(), name()};
+    const Error error{code::kBadField, name(), name(), name()};
     const QPointer<QMessageBox> box = showError(window_.get(), error);
     rest();
     for (const QLabel* label : box->findChildren<QLabel*>()) {
@@ -183,7 +185,7 @@ class StrangersGuiTest : public test::TrainTest {
     ListedRecording bad;
     bad.file = "/r/bad.h5";
     bad.volume_sha256 = "s";
-    bad.problem = Error{"BAD_RECORDING", "The recording is damaged", "/r/bad.h5", ""};
+    bad.problem = Error{code::kBadRecording, "The recording is damaged", "/r/bad.h5", ""};
     ReviewPage review;
     review.show();
     const auto* none = review.findChild<QLabel*>("noRecordings");

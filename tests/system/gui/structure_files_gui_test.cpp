@@ -23,6 +23,7 @@
 #include <optional>
 
 #include "gui_support.h"
+#include "imaging/codes.h"
 #include "imaging/dicom/seg_reader.h"
 #include "imaging/dicom/seg_writer.h"
 #include "ui/common/settings.h"
@@ -238,7 +239,7 @@ class StructureFilesGuiTest : public test::WindowTest {
     question->accept();
     QVERIFY(changed.count() == 1 || changed.wait(kLong_ms));
     const double half = ml("liver");
-    workstation().useLabels(file, {{"THRESHOLD", "0.4"}});
+    workstation().useLabels(file, {{code::kThreshold, "0.4"}});
     QVERIFY(changed.wait(kLong_ms));
     QVERIFY2(half > 0.4 * ml("liver") && half < 0.6 * ml("liver"),
              qPrintable(QString::number(half)));
@@ -269,7 +270,7 @@ class StructureFilesGuiTest : public test::WindowTest {
                  std::ranges::find(liver_.labels, 1) - liver_.labels.begin())]);
     const double all = ml("liver");
     // The other way round the part has a quarter of it.
-    workstation().useLabels(file, {{"OVERLAP", "order:segment 4"}});
+    workstation().useLabels(file, {{code::kOverlap, "order:segment 4"}});
     QVERIFY(changed.wait(kLong_ms));
     QVERIFY(std::abs(ml("segment 4") / all - 0.25) < 0.02);
     QTRY_VERIFY(!window_->findChild<OverlapDialog*>());
@@ -311,7 +312,7 @@ class StructureFilesGuiTest : public test::WindowTest {
     give("dicomDialog", folder);
     QVERIFY(failed.count() == 1 || failed.wait(kLong_ms));
     const auto error = failed.front().front().value<Error>();
-    QCOMPARE(error.code, std::string("CANNOT_WRITE"));
+    QCOMPARE(error.code.str(), std::string("CANNOT_WRITE"));
     QVERIFY2(error.what.find("already holds") != error.what.npos, error.what.c_str());
     for (QMessageBox* box : window_->findChildren<QMessageBox*>()) box->close();
   }

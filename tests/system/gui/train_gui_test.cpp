@@ -16,6 +16,7 @@
 #include <QToolButton>
 #include <QtTest>
 
+#include "base/codes.h"
 #include "tissue/tissue_edits.h"
 #include "train_support.h"
 #include "ui/common/words.h"
@@ -501,7 +502,7 @@ class TrainGuiTest : public test::TrainTest {
     QSignalSpy failed(window_.get(), &MainWindow::failed);
     window_->startExercise();
     QTRY_COMPARE(failed.count(), 1);
-    QCOMPARE(failed[0][0].value<Error>().code, std::string("LOCKED"));
+    QCOMPARE(failed[0][0].value<Error>().code.str(), std::string("LOCKED"));
     QVERIFY(workstation().phase() == Workstation::Phase::ready);
     for (auto* box : window_->findChildren<QMessageBox*>("errorDialog")) box->close();
     rest();
@@ -534,7 +535,7 @@ class TrainGuiTest : public test::TrainTest {
     window_.reset();
     Policy policy;
     policy.locks = {Lock::controller, Lock::tissues, Lock::rate};
-    policy.problem = Error{"BAD_JSON", "Everything is locked: it is no JSON", "settings.json",
+    policy.problem = Error{code::kBadJson, "Everything is locked: it is no JSON", "settings.json",
                            "An administrator must correct it"};
     open(policy);
     window_->sayProblem();

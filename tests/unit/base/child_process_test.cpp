@@ -65,7 +65,7 @@ TEST_F(Child, OfACommandOfOursTheErrorIsRead) {
   const auto error =
       said(R"({"error":{"code":"NO_DEVICE","what":"No arm","where":"left","next":"Plug it in"}})");
   ASSERT_TRUE(error);
-  EXPECT_EQ(error->code, "NO_DEVICE");
+  EXPECT_EQ(error->code.str(), "NO_DEVICE");
   EXPECT_EQ(error->sentence(), "No arm (left). Plug it in.");
   for (const char* other :
        {"", "{}", "a driver talks", R"({"error":"x"})", R"({"error":{}})", "[]"})
@@ -169,7 +169,7 @@ TEST_F(Child, IsEndedWhenTheWorkIsCancelled) {
   const auto start = std::chrono::steady_clock::now();
   const Result<ChildRun> run = runChild(command, progress);
   ASSERT_FALSE(run);
-  EXPECT_EQ(run.error().code, "CANCELLED");
+  EXPECT_EQ(run.error().code.str(), "CANCELLED");
   EXPECT_LT(std::chrono::steady_clock::now() - start, 30s);
 }
 
@@ -178,7 +178,7 @@ TEST_F(Child, ThatCannotBeRunIsNamed) {
   command.words = {(folder_ / "no-such-program").string()};
   const Result<ChildRun> run = runChild(command, progress_);
   ASSERT_FALSE(run);
-  EXPECT_EQ(run.error().code, "CANNOT_RUN");
+  EXPECT_EQ(run.error().code.str(), "CANNOT_RUN");
   EXPECT_NE(run.error().sentence().find("no-such-program"), std::string::npos);
   EXPECT_NE(run.error().sentence().find("No such file"), std::string::npos);
 }

@@ -163,7 +163,7 @@ TEST(Field, IsReadFromTheTextOfAnOption) {
   for (const auto& [key, text] : bad) {
     const Result<FieldValue> value = parseField(shapeOf(field(key)), text, "--x");
     ASSERT_FALSE(value.ok()) << key << " " << text;
-    EXPECT_EQ(value.error().code, "BAD_ARGUMENT");
+    EXPECT_EQ(value.error().code.str(), "BAD_ARGUMENT");
     EXPECT_EQ(value.error().where, "--x");
   }
 }

@@ -53,7 +53,7 @@ TEST(TryRoom, LeavesNothingAndNamesTheFolderThatHasNone) {
     status = tryRoom(folder.path(), 100'000);
   }
   ASSERT_FALSE(status);
-  EXPECT_EQ(status.error().code, "CANNOT_WRITE");
+  EXPECT_EQ(status.error().code.str(), "CANNOT_WRITE");
   EXPECT_EQ(status.error().where, folder.path().string());
   EXPECT_EQ(filesIn(folder.path()), 0u);
 }
@@ -68,7 +68,7 @@ TEST(WriteTextFile, KeepsTheOldFileWhenTheDiskIsFull) {
     status = writeTextFile(file, std::string(100000, 'x'));
   }
   ASSERT_FALSE(status);
-  EXPECT_EQ(status.error().code, "CANNOT_WRITE");
+  EXPECT_EQ(status.error().code.str(), "CANNOT_WRITE");
   EXPECT_EQ(status.error().where, file.string());
   EXPECT_NE(status.error().what.find("File too large"), std::string::npos) << status.error().what;
   EXPECT_EQ(contentOf(file), "old");
@@ -79,7 +79,7 @@ TEST(WriteTextFile, SaysWhyItCannotWriteIntoAMissingFolder) {
   const test::TemporaryFolder folder;
   const Status status = writeTextFile(folder.path() / "none" / "file", "text");
   ASSERT_FALSE(status);
-  EXPECT_EQ(status.error().code, "CANNOT_WRITE");
+  EXPECT_EQ(status.error().code.str(), "CANNOT_WRITE");
   EXPECT_NE(status.error().what.find("No such file or directory"), std::string::npos);
   EXPECT_FALSE(status.error().next.empty());
 }
@@ -89,7 +89,7 @@ TEST(WriteTextFile, LeavesAFolderInItsPlaceAlone) {
   ASSERT_TRUE(makeFolder(folder / "taken"));
   const Status status = writeTextFile(folder / "taken", "text");
   ASSERT_FALSE(status);
-  EXPECT_EQ(status.error().code, "CANNOT_WRITE");
+  EXPECT_EQ(status.error().code.str(), "CANNOT_WRITE");
   EXPECT_TRUE(fs::is_directory(folder / "taken"));
   EXPECT_EQ(filesIn(folder.path()), 1u);
 }
@@ -105,7 +105,7 @@ TEST(NewFile, IsRefusedWhereAnythingHasItsNameAndLeavesItAlone) {
                                 folder / "link", folder / "broken", fs::path("/dev/full")}) {
     const Status status = checkNewFile(taken, "--csv");
     ASSERT_FALSE(status) << taken;
-    EXPECT_EQ(status.error().code, "CANNOT_WRITE");
+    EXPECT_EQ(status.error().code.str(), "CANNOT_WRITE");
     EXPECT_EQ(status.error().where, taken.string());
     EXPECT_NE(status.error().next.find("--csv"), std::string::npos);
   }
@@ -117,8 +117,8 @@ TEST(NewFile, NeedsAFolderThatTakesIt) {
   const test::TemporaryFolder folder;
   EXPECT_TRUE(checkNewFile(folder / "new", "--csv"));
   EXPECT_TRUE(fs::is_empty(folder.path()));
-  EXPECT_EQ(checkNewFile(folder / "none" / "new", "--csv").error().code, "MISSING_FOLDER");
-  EXPECT_EQ(checkNewFile("/proc/new", "--csv").error().code, "CANNOT_WRITE");
+  EXPECT_EQ(checkNewFile(folder / "none" / "new", "--csv").error().code.str(), "MISSING_FOLDER");
+  EXPECT_EQ(checkNewFile("/proc/new", "--csv").error().code.str(), "CANNOT_WRITE");
 }
 
 TEST(AfterFailedWrite, SpaceIsNamedOnlyWhereItIsShort) {
@@ -154,7 +154,7 @@ TEST(ReplaceFile, KeepsTheOldFileAndTheWritersReasonWhenWritingFails) {
     return Error{"BROKEN", "The writer broke", "", ""};
   });
   ASSERT_FALSE(status);
-  EXPECT_EQ(status.error().code, "BROKEN");
+  EXPECT_EQ(status.error().code.str(), "BROKEN");
   EXPECT_EQ(contentOf(file), "old");
   EXPECT_EQ(filesIn(folder.path()), 1u);
 }
@@ -197,7 +197,7 @@ TEST(MakeFolder, RefusesWhereAFileIs) {
   for (const fs::path& path : {folder / "file", folder.path() / "file" / "below"}) {
     const Status status = makeFolder(path);
     ASSERT_FALSE(status);
-    EXPECT_EQ(status.error().code, "CANNOT_WRITE");
+    EXPECT_EQ(status.error().code.str(), "CANNOT_WRITE");
     EXPECT_EQ(status.error().where, path.string());
   }
   EXPECT_EQ(contentOf(folder / "file"), "text");
@@ -210,7 +210,7 @@ TEST(DiskRoom, IsThatOfTheNearestFolderThatIsThere) {
   EXPECT_TRUE(enoughRoom(wanted, 1000.0, "the case"));
   const Status status = enoughRoom(wanted, 1e30, "the exercise");
   ASSERT_FALSE(status);
-  EXPECT_EQ(status.error().code, "CANNOT_WRITE");
+  EXPECT_EQ(status.error().code.str(), "CANNOT_WRITE");
   EXPECT_EQ(status.error().where, wanted.string());
   EXPECT_EQ(status.error().what.find("The disk has no room for the exercise: it needs "), 0U);
   EXPECT_FALSE(fs::exists(folder / "new"));
@@ -233,7 +233,7 @@ TEST(TemporaryFolder, ThatIsMissingOrAFileIsAnErrorThatNamesIt) {
     const test::Environment named("TMPDIR", path.string());
     const Result<fs::path> temporary = temporaryFolder();
     ASSERT_FALSE(temporary);
-    EXPECT_EQ(temporary.error().code, "NO_TEMPORARY_FOLDER");
+    EXPECT_EQ(temporary.error().code.str(), "NO_TEMPORARY_FOLDER");
     EXPECT_EQ(temporary.error().where, "TMPDIR=" + path.string());
     EXPECT_NE(temporary.error().next.find("TMPDIR"), std::string::npos);
   }

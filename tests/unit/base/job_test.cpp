@@ -74,11 +74,11 @@ TEST_F(JobTest, OneAtATimeAndAnOutcomeMayBeginTheNext) {
 TEST_F(JobTest, WhatItThrowsIsAnError) {
   std::string code;
   ASSERT_TRUE(job_.run([](const Progress&) -> Status { throw std::bad_alloc(); },
-                       [&](const Status& status) { code = status.error().code; }));
+                       [&](const Status& status) { code = status.error().code.str(); }));
   finish();
   EXPECT_EQ(code, "OUT_OF_MEMORY");
   ASSERT_TRUE(job_.run([](const Progress&) -> Status { throw std::runtime_error("odd"); },
-                       [&](const Status& status) { code = status.error().code; }));
+                       [&](const Status& status) { code = status.error().code.str(); }));
   finish();
   EXPECT_EQ(code, "UNEXPECTED");
 }

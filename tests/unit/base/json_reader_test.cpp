@@ -87,7 +87,7 @@ TEST(JsonReader, NamesAFieldThatIsMissing) {
 
 TEST(JsonReader, NamesFieldAndValueOfAWrongType) {
   const Error number = errorOf(R"({"k": "seven"})", [](JsonReader& r) { r.number("k", kAny); });
-  EXPECT_EQ(number.code, "BAD_FIELD");
+  EXPECT_EQ(number.code.str(), "BAD_FIELD");
   EXPECT_EQ(number.where, "f.json: k");
   EXPECT_TRUE(says(number, R"("seven")")) << number.what;
   EXPECT_FALSE(number.next.empty());

@@ -19,7 +19,7 @@ TEST(ParseJson, ReadsAndKeepsTheOrderOfFields) {
 TEST(ParseJson, NamesTheFileAndThePlaceOfASyntaxError) {
   const Result<Json> json = parseJson("{\n  \"a\": 1,\n  \"b\" 2\n}", "f.json");
   ASSERT_FALSE(json.ok());
-  EXPECT_EQ(json.error().code, "BAD_JSON");
+  EXPECT_EQ(json.error().code.str(), "BAD_JSON");
   EXPECT_EQ(json.error().where, "f.json");
   EXPECT_NE(json.error().what.find("line 3"), std::string::npos) << json.error().what;
 }
@@ -117,7 +117,7 @@ TEST(ParseJson, IsCancelledInTheMiddleOfALongText) {
   progress.cancel();
   const Result<Json> json = parseJson(listOf(10000), "f.json", progress);
   ASSERT_FALSE(json.ok());
-  EXPECT_EQ(json.error().code, "CANCELLED");
+  EXPECT_EQ(json.error().code.str(), "CANCELLED");
 }
 
 TEST(ReadJsonFile, ReadsAFile) {
@@ -133,7 +133,7 @@ TEST(ReadJsonFile, NamesAFileThatIsNotThere) {
   for (const auto& path : {folder / "none.json", folder.path()}) {
     const Result<Json> json = readJsonFile(path);
     ASSERT_FALSE(json.ok());
-    EXPECT_EQ(json.error().code, "MISSING_FILE");
+    EXPECT_EQ(json.error().code.str(), "MISSING_FILE");
     EXPECT_EQ(json.error().where, path.string());
     EXPECT_FALSE(json.error().next.empty());
   }
@@ -155,7 +155,7 @@ TEST(ReadJsonFile, DoesNotWaitForAPipeOrReadADevice) {
        {folder / "pipe.json", std::filesystem::path("/dev/zero")}) {
     const Result<Json> json = readJsonFile(path);
     ASSERT_FALSE(json.ok());
-    EXPECT_EQ(json.error().code, "MISSING_FILE");
+    EXPECT_EQ(json.error().code.str(), "MISSING_FILE");
     EXPECT_EQ(json.error().where, path.string());
     EXPECT_NE(json.error().what.find("pipe"), std::string::npos) << json.error().what;
   }

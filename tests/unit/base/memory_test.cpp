@@ -76,7 +76,7 @@ TEST(Memory, ThatIsTooLittleIsSaidWithBothFigures) {
   EXPECT_TRUE(enoughMemory(900.0, "Reading", "x", 1000.0).ok());
   const Status enough = enoughMemory(1234.4, "Reading the series", "the case", 1000.0);
   ASSERT_FALSE(enough.ok());
-  EXPECT_EQ(enough.error().code, "OUT_OF_MEMORY");
+  EXPECT_EQ(enough.error().code.str(), "OUT_OF_MEMORY");
   EXPECT_EQ(enough.error().where, "the case");
   EXPECT_EQ(enough.error().what,
             "Reading the series needs 1234 MB of memory, and 1000 MB can be had");

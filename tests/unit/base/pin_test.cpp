@@ -47,7 +47,7 @@ TEST(Pin, HasFourToTwelveDigitsOrLetters) {
                             "bcd"}) {
     const Result<Pin> made = makePin(wrong);
     ASSERT_FALSE(made) << wrong;
-    EXPECT_EQ(made.error().code, "BAD_PIN");
+    EXPECT_EQ(made.error().code.str(), "BAD_PIN");
     EXPECT_EQ(made.error().sentence().find("12 34"), std::string::npos) << "it is not repeated";
   }
   EXPECT_TRUE(makePin("aZ09"));

@@ -4,11 +4,14 @@
 
 #include <memory>
 
+#include "base/codes.h"
+
 namespace trephine {
 namespace {
 
 TEST(Error, SaysWhatWhereAndWhatToDoInOneSentence) {
-  const Error error{"MISSING_FOLDER", "The folder does not exist", "case", "Choose another one"};
+  const Error error{code::kMissingFolder, "The folder does not exist", "case",
+                    "Choose another one"};
   EXPECT_EQ(error.sentence(), "The folder does not exist (case). Choose another one.");
 }
 
@@ -33,7 +36,7 @@ TEST(Result, HoldsAValue) {
 TEST(Result, HoldsAnErrorInsteadOfAValue) {
   const Result<int> result = Error{"CODE", "what", "where", "next"};
   ASSERT_FALSE(result.ok());
-  EXPECT_EQ(result.error().code, "CODE");
+  EXPECT_EQ(result.error().code.str(), "CODE");
   EXPECT_EQ(result.error().where, "where");
 }
 
@@ -55,7 +58,7 @@ TEST(Status, IsSuccessUntilItIsGivenAnError) {
   EXPECT_TRUE(status.ok());
   status = Error{"CODE", "what", "", ""};
   ASSERT_FALSE(status);
-  EXPECT_EQ(status.error().code, "CODE");
+  EXPECT_EQ(status.error().code.str(), "CODE");
 }
 
 }  // namespace

@@ -136,7 +136,7 @@ TEST_F(DeskTest, OpensACaseEditsItsExercisePractisesItAndTellsWhatWasDone) {
 
 TEST_F(DeskTest, WhatIsAskedAboutAFileIsAnsweredWithoutReadingItAgain) {
   ASSERT_NO_FATAL_FAILURE(openABonyLiver());
-  EXPECT_EQ(questions_[0].asked.choice.code, "HU_NOT_TISSUE");
+  EXPECT_EQ(questions_[0].asked.choice.code.str(), "HU_NOT_TISSUE");
   EXPECT_EQ(questions_[0].asked.choice.options, std::vector<std::string>{"keep"});
   EXPECT_EQ(desk_.placed()->labels, nullptr) << "not used yet";
 
@@ -149,7 +149,7 @@ TEST_F(DeskTest, WhatIsAskedAboutAFileIsAnsweredWithoutReadingItAgain) {
   desk_.answer("keep");
   EXPECT_FALSE(desk_.isOpening()) << "nothing is asked any more";
   ASSERT_TRUE(failed_);
-  EXPECT_EQ(failed_->code, "NOT_ASKED");
+  EXPECT_EQ(failed_->code.str(), "NOT_ASKED");
 }
 
 TEST_F(DeskTest, StructuresThatWereMadeMeanwhileLeaveTheQuestionAsItIs) {
@@ -170,14 +170,14 @@ TEST_F(DeskTest, AnAnswerAboutAnotherCaseIsRefusedInWords) {
   EXPECT_FALSE(desk_.isOpening());
   EXPECT_EQ(desk_.placed()->labels, nullptr);
   ASSERT_TRUE(failed_);
-  EXPECT_EQ(failed_->code, "NOT_ASKED");
+  EXPECT_EQ(failed_->code.str(), "NOT_ASKED");
 }
 
 TEST_F(DeskTest, TwoThingsAreNotOpenedAtOnce) {
   desk_.openPhantom("cranium");
   desk_.openPhantom("abdomen");
   ASSERT_TRUE(failed_);
-  EXPECT_EQ(failed_->code, "BUSY");
+  EXPECT_EQ(failed_->code.str(), "BUSY");
   failed_.reset();
   desk_.cancelOpening();
   ASSERT_TRUE(untilOpened());

@@ -25,7 +25,7 @@ Error refusalAfter(const std::function<void(Json&)>& edit) {
 }
 
 void expectRefused(const Error& error, const std::string& field, const std::string& value) {
-  EXPECT_EQ(error.code, "BAD_DEVICE_CONFIG") << error.sentence();
+  EXPECT_EQ(error.code.str(), "BAD_DEVICE_CONFIG") << error.sentence();
   EXPECT_NE(error.what.find("'" + field + "'"), std::string::npos) << error.sentence();
   EXPECT_NE(error.what.find(value), std::string::npos) << error.sentence();
 }
@@ -183,8 +183,8 @@ TEST(DeviceConfig, TextThatIsNotAJsonObjectIsRefused) {
   EXPECT_NE(configRefusal("{\"format\": ").what.find("not valid JSON"), std::string::npos);
   EXPECT_NE(configRefusal("[1, 2]").what.find("Expected an object"), std::string::npos);
   // A number beyond a double, and bytes that are not UTF-8.
-  EXPECT_EQ(configRefusal("{\"version\": 1e999}").code, "BAD_DEVICE_CONFIG");
-  EXPECT_EQ(configRefusal("{\"\xff\": 1}").code, "BAD_DEVICE_CONFIG");
+  EXPECT_EQ(configRefusal("{\"version\": 1e999}").code.str(), "BAD_DEVICE_CONFIG");
+  EXPECT_EQ(configRefusal("{\"\xff\": 1}").code.str(), "BAD_DEVICE_CONFIG");
 }
 
 TEST(DeviceConfig, NestingWithoutEndIsRefused) {
@@ -193,17 +193,17 @@ TEST(DeviceConfig, NestingWithoutEndIsRefused) {
     const std::string end = *before ? "}" : "";
     const Error error =
         configRefusal(before + std::string(depth, '[') + std::string(depth, ']') + end);
-    EXPECT_EQ(error.code, "BAD_DEVICE_CONFIG") << before;
+    EXPECT_EQ(error.code.str(), "BAD_DEVICE_CONFIG") << before;
     EXPECT_NE(error.what.find("nested deeper than 64"), std::string::npos) << error.sentence();
   }
 }
 
 TEST(DeviceConfig, AnArmThatIsNotThereIsNamed) {
   const Error error = configRefusal(omni().dump(), {7});
-  EXPECT_EQ(error.code, "NO_DEVICE");
+  EXPECT_EQ(error.code.str(), "NO_DEVICE");
   EXPECT_NE(error.what.find("no simulated arm 7"), std::string::npos) << error.sentence();
-  EXPECT_EQ(configRefusal(omni().dump(), {1, 1}).code, "NO_DEVICE");
-  EXPECT_EQ(configRefusal(omni().dump(), {}).code, "NO_DEVICE");
+  EXPECT_EQ(configRefusal(omni().dump(), {1, 1}).code.str(), "NO_DEVICE");
+  EXPECT_EQ(configRefusal(omni().dump(), {}).code.str(), "NO_DEVICE");
 }
 
 }  // namespace

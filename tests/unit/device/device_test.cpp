@@ -36,7 +36,7 @@ TEST(Device, StartingTwiceIsRefusedInAPlainSentence) {
   ASSERT_TRUE(bench.device && bench.start());
   const Status again = bench.device->start();
   ASSERT_FALSE(again);
-  EXPECT_EQ(again.error().code, "DEVICE_NOT_STARTED");
+  EXPECT_EQ(again.error().code.str(), "DEVICE_NOT_STARTED");
   EXPECT_EQ(again.error().what, "The arms are already running");
   bench.device->stop();
   EXPECT_TRUE(bench.device->start());
@@ -68,7 +68,7 @@ TEST(Device, CapabilitiesThatNoArmHasAreRefused) {
   ASSERT_TRUE(plugin) << plugin.error().sentence();
   auto device = Device::open(*plugin, {0}, "");
   ASSERT_FALSE(device);
-  EXPECT_EQ(device.error().code, "BAD_PLUGIN");
+  EXPECT_EQ(device.error().code.str(), "BAD_PLUGIN");
   EXPECT_NE(device.error().what.find("peak_force_N"), std::string::npos);
 }
 

@@ -44,7 +44,7 @@ TEST_F(FindArms, ABrokenPluginAndOneOfAnotherInterfaceAreNamedAndTheRestIsFound)
   EXPECT_EQ(found.arms.size(), 4u);
   ASSERT_EQ(found.problems.size(), 2u);
   EXPECT_NE(found.problems[0].sentence().find("trephine_broken.so"), std::string::npos);
-  EXPECT_EQ(found.problems[1].code, "BAD_PLUGIN");
+  EXPECT_EQ(found.problems[1].code.str(), "BAD_PLUGIN");
   EXPECT_NE(found.problems[1].sentence().find("trephine_other_abi.so"), std::string::npos);
 }
 

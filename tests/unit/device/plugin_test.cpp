@@ -69,7 +69,7 @@ TEST(DevicePlugin, TheSimulatedPluginAnswersOnlyTheAbiThatItSpeaks) {
 TEST(DevicePlugin, AMissingPluginIsNamedWithItsFolder) {
   TemporaryFolder folder;
   const Error error = refusal("touch", folder.path());
-  EXPECT_EQ(error.code, "NO_PLUGIN");
+  EXPECT_EQ(error.code.str(), "NO_PLUGIN");
   EXPECT_TRUE(names(error.what, "'touch'")) << error.sentence();
   EXPECT_TRUE(names(error.where, "trephine_touch.so")) << error.sentence();
 }
@@ -77,7 +77,7 @@ TEST(DevicePlugin, AMissingPluginIsNamedWithItsFolder) {
 TEST(DevicePlugin, ANameThatLeadsOutOfTheFolderIsRefused) {
   for (const char* name : {"", "../simulated", "a/b", "Simulated", "sim ulated"}) {
     const Error error = refusal(name, TREPHINE_TEST_PLUGIN_DIR);
-    EXPECT_EQ(error.code, "NO_PLUGIN") << name;
+    EXPECT_EQ(error.code.str(), "NO_PLUGIN") << name;
     EXPECT_TRUE(names(error.what, "not the name of a device plugin")) << error.sentence();
   }
 }
@@ -86,7 +86,7 @@ TEST(DevicePlugin, AFileThatIsNoLibraryIsRefused) {
   TemporaryFolder folder;
   std::ofstream(folder / "trephine_text.so") << "not a library";
   const Error error = refusal("text", folder.path());
-  EXPECT_EQ(error.code, "NO_PLUGIN");
+  EXPECT_EQ(error.code.str(), "NO_PLUGIN");
   EXPECT_TRUE(names(error.what, "cannot be loaded")) << error.sentence();
 }
 
@@ -97,11 +97,11 @@ TEST(DevicePlugin, ALibraryCutShortIsRefusedWhereverItEnds) {
   const std::filesystem::path cut = folder / "trephine_cut.so";
   const std::uintmax_t bytes = std::filesystem::file_size(whole);
   std::filesystem::copy_file(whole, cut);
-  EXPECT_EQ(refusal("cut", folder.path()).code, "LOADED") << "the whole file loads";
+  EXPECT_EQ(refusal("cut", folder.path()).code.str(), "LOADED") << "the whole file loads";
   for (int part = 19; part >= 0; --part) {
     std::filesystem::resize_file(cut, bytes * std::uintmax_t(part) / 20);
     const Error error = refusal("cut", folder.path());
-    EXPECT_EQ(error.code, "NO_PLUGIN") << part;
+    EXPECT_EQ(error.code.str(), "NO_PLUGIN") << part;
     EXPECT_TRUE(names(error.what, "cut short")) << error.sentence();
     EXPECT_TRUE(names(error.where, "trephine_cut.so")) << error.sentence();
   }
@@ -110,36 +110,36 @@ TEST(DevicePlugin, ALibraryCutShortIsRefusedWhereverItEnds) {
 TEST(DevicePlugin, APipeInItsPlaceIsRefusedInsteadOfWaitedFor) {
   TemporaryFolder folder;
   ASSERT_EQ(::mkfifo((folder / "trephine_pipe.so").c_str(), 0600), 0);
-  EXPECT_EQ(refusal("pipe", folder.path()).code, "NO_PLUGIN");
+  EXPECT_EQ(refusal("pipe", folder.path()).code.str(), "NO_PLUGIN");
 }
 
 TEST(DevicePlugin, ALibraryWithoutTheEntryIsRefused) {
   const Error error = oddRefusal("no_entry");
-  EXPECT_EQ(error.code, "BAD_PLUGIN");
+  EXPECT_EQ(error.code.str(), "BAD_PLUGIN");
   EXPECT_TRUE(names(error.what, "trephine_device_plugin")) << error.sentence();
 }
 
 TEST(DevicePlugin, APluginThatDoesNotServeOurAbiIsRefused) {
   const Error error = oddRefusal("other_abi");
-  EXPECT_EQ(error.code, "BAD_PLUGIN");
+  EXPECT_EQ(error.code.str(), "BAD_PLUGIN");
   EXPECT_TRUE(names(error.what, "does not speak version " + std::to_string(TREPHINE_DEVICE_ABI))) << error.sentence();
 }
 
 TEST(DevicePlugin, ATableOfAnotherVersionIsRefused) {
   const Error error = oddRefusal("other_version");
-  EXPECT_EQ(error.code, "BAD_PLUGIN");
+  EXPECT_EQ(error.code.str(), "BAD_PLUGIN");
   EXPECT_TRUE(names(error.what, "version " + std::to_string(TREPHINE_DEVICE_ABI + 1))) << error.sentence();
 }
 
 TEST(DevicePlugin, ATableThatEndsEarlyIsRefused) {
   const Error error = oddRefusal("small_table");
-  EXPECT_EQ(error.code, "BAD_PLUGIN");
+  EXPECT_EQ(error.code.str(), "BAD_PLUGIN");
   EXPECT_TRUE(names(error.what, "bytes instead of")) << error.sentence();
 }
 
 TEST(DevicePlugin, ATableWithAHoleIsRefusedByTheMissingFunctionsName) {
   const Error error = oddRefusal("hole");
-  EXPECT_EQ(error.code, "BAD_PLUGIN");
+  EXPECT_EQ(error.code.str(), "BAD_PLUGIN");
   EXPECT_TRUE(names(error.what, "lacks 'stop'")) << error.sentence();
 }
 

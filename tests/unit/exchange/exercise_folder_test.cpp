@@ -185,7 +185,7 @@ TEST_F(ExerciseFolder, WhatLiesOutsideOfItIsRefused) {
     ASSERT_TRUE(writeTextFile(list, bad.dump()));
     const auto refused = importExercise(folder_ / "stick", folder_ / "there");
     ASSERT_FALSE(refused);
-    EXPECT_EQ(refused.error().code, "BAD_FIELD");
+    EXPECT_EQ(refused.error().code.str(), "BAD_FIELD");
   }
   // An exercise that names what is no part, with a list that is right.
   ASSERT_TRUE(writeTextFile(list, good.dump()));
@@ -202,7 +202,7 @@ TEST_F(ExerciseFolder, WhatLiesOutsideOfItIsRefused) {
   ASSERT_TRUE(writeTextFile(list, matching.dump()));
   const auto refused = importExercise(folder_ / "stick", folder_ / "there");
   ASSERT_FALSE(refused);
-  EXPECT_EQ(refused.error().code, "BAD_FIELD");
+  EXPECT_EQ(refused.error().code.str(), "BAD_FIELD");
   EXPECT_FALSE(fs::exists(folder_ / "there"));
 }
 
@@ -246,12 +246,12 @@ TEST_F(ExerciseFolder, APartThatIsListedTwiceOrHasAnUnseenLetterInItsNameIsRefus
   Json twice = good;
   for (int n = 0; n < 4000; ++n) twice["parts"].push_back(good["parts"][0]);
   ASSERT_TRUE(writeTextFile(list, twice.dump()));
-  EXPECT_EQ(importExercise(folder_ / "stick", folder_ / "there").error().code, "BAD_FIELD");
+  EXPECT_EQ(importExercise(folder_ / "stick", folder_ / "there").error().code.str(), "BAD_FIELD");
   for (const char* name : {"tools/a\nb.json", "tools/a\x1b[2Jb.json", "tools/a\u200bb.json"}) {
     Json unseen = good;
     unseen["parts"][1]["file"] = name;
     ASSERT_TRUE(writeTextFile(list, unseen.dump()));
-    EXPECT_EQ(importExercise(folder_ / "stick", folder_ / "there").error().code, "BAD_FIELD");
+    EXPECT_EQ(importExercise(folder_ / "stick", folder_ / "there").error().code.str(), "BAD_FIELD");
   }
 }
 
@@ -269,7 +269,7 @@ TEST_F(ExerciseFolder, APartThatNothingNamesOrIsNamedInTwoWaysAndAListThatIsALin
   // A name like the case's makes it no part of that.
   ASSERT_TRUE(writeTextFile(stick / "case/volume.payload", "x"));
   listAnew(stick);
-  EXPECT_EQ(importExercise(stick, folder_ / "elsewhere").error().code, "BAD_FIELD");
+  EXPECT_EQ(importExercise(stick, folder_ / "elsewhere").error().code.str(), "BAD_FIELD");
   fs::remove(stick / "case/volume.payload");
   // Names beside a label map, and voxels beside a header, are named by these.
   const Segmentation read = *readSegmentation(stick / "case/structures.seg.nrrd");
@@ -302,11 +302,11 @@ TEST_F(ExerciseFolder, APartThatNothingNamesOrIsNamedInTwoWaysAndAListThatIsALin
   twice["parts"].push_back(*in_folder);
   twice["parts"].back()["file"] = other;
   ASSERT_TRUE(writeTextFile(stick / "exercise.json", twice.dump()));
-  EXPECT_EQ(importExercise(stick, folder_ / "elsewhere").error().code, "BAD_FIELD") << other;
+  EXPECT_EQ(importExercise(stick, folder_ / "elsewhere").error().code.str(), "BAD_FIELD") << other;
   ASSERT_TRUE(writeTextFile(folder_ / "list.json", good.dump()));
   fs::remove(stick / "exercise.json");
   fs::create_symlink(folder_ / "list.json", stick / "exercise.json");
-  EXPECT_EQ(importExercise(stick, folder_ / "elsewhere").error().code, "MISSING_FILE");
+  EXPECT_EQ(importExercise(stick, folder_ / "elsewhere").error().code.str(), "MISSING_FILE");
   EXPECT_TRUE(exercisesIn(folder_ / "elsewhere").empty());
 }
 
@@ -323,7 +323,7 @@ TEST_F(ExerciseFolder, WhatTheDiskHasNoRoomForIsRefusedBeforeItIsRead) {
   ASSERT_TRUE(writeTextFile(stick / "exercise.json", list.dump()));
   const auto refused = importExercise(stick, folder_ / "there");
   ASSERT_FALSE(refused);
-  EXPECT_EQ(refused.error().code, "CANNOT_WRITE");
+  EXPECT_EQ(refused.error().code.str(), "CANNOT_WRITE");
   EXPECT_NE(refused.error().what.find("no room"), std::string::npos) << refused.error().what;
 }
 
@@ -341,7 +341,7 @@ TEST_F(ExerciseFolder, ACaseThatCannotBeOpenedFromItsPartsAloneIsRefusedAndNothi
   Json exercise = good;
   exercise["case"] = "phantom:cranium/../x";
   ASSERT_TRUE(writeTextFile(stick / "scene.json", exercise.dump()));
-  EXPECT_EQ(refused().code, "BAD_FIELD");
+  EXPECT_EQ(refused().code.str(), "BAD_FIELD");
   // A header whose voxels are in a file that no list names, wherever that lies.
   fs::create_directories(folder_ / "voxels");
   Volume small;
@@ -372,12 +372,12 @@ TEST_F(ExerciseFolder, IsNotWrittenOverWhatIsThereAndLeavesNothingWhereItFails) 
   ASSERT_TRUE(writeTextFile(folder_ / "stick/mine.txt", "mine"));
   const auto taken = exportExercise(shipped("liver"), "", folder_ / "stick");
   ASSERT_FALSE(taken);
-  EXPECT_EQ(taken.error().code, "CANNOT_WRITE");
+  EXPECT_EQ(taken.error().code.str(), "CANNOT_WRITE");
   EXPECT_EQ(test::bytesOfFile(folder_ / "stick/mine.txt"), "mine");
   const auto no_case =
       exportExercise(shipped("liver"), (folder_ / "nothing.mha").string(), folder_ / "other");
   ASSERT_FALSE(no_case);
-  EXPECT_EQ(no_case.error().code, "MISSING_FILE");
+  EXPECT_EQ(no_case.error().code.str(), "MISSING_FILE");
   int there = 0;
   for (const auto& entry : fs::directory_iterator(folder_.path())) there += entry.exists();
   EXPECT_EQ(there, 1) << "the folder with mine.txt alone";
@@ -488,10 +488,10 @@ TEST_F(ExerciseFolder, APlaceThatCannotBeLookedAtIsAnErrorAndNoEndlessSearch) {
   fs::create_symlink("loop", folder_ / "loop");
   const fs::path storage = folder_ / "loop";
   const Exercise exercise = *readExercise(shipped("liver"));
-  EXPECT_EQ(saveExercise(exercise, freshExercise(storage, "Mine"), storage).error().code,
+  EXPECT_EQ(saveExercise(exercise, freshExercise(storage, "Mine"), storage).error().code.str(),
             "CANNOT_WRITE");
   exported(shipped("liver"));
-  EXPECT_EQ(importExercise(folder_ / "stick", storage).error().code, "CANNOT_WRITE");
+  EXPECT_EQ(importExercise(folder_ / "stick", storage).error().code.str(), "CANNOT_WRITE");
 }
 
 TEST_F(ExerciseFolder, WhatIsNoCaseScriptOrMeshIsNotExported) {
@@ -499,7 +499,7 @@ TEST_F(ExerciseFolder, WhatIsNoCaseScriptOrMeshIsNotExported) {
     const auto done = exportExercise(exercise, of, folder_ / "stick");
     EXPECT_FALSE(done.ok());
     EXPECT_FALSE(fs::exists(folder_ / "stick"));
-    return done ? std::string() : done.error().code;
+    return done ? std::string() : done.error().code.str();
   };
   EXPECT_FALSE(refused(shipped("liver"), "phantom:nope").empty());
   const fs::path of = ofAPatient(), file = folder_ / "letter.txt";
@@ -521,7 +521,7 @@ TEST_F(ExerciseFolder, AnotherNameOfTheExerciseALinkedFolderOrAFalseSizeIsNoVeri
   Json other = Json::parse(list);
   other["scene"] = "lesson.json";
   ASSERT_TRUE(writeTextFile(stick / "exercise.json", other.dump()).ok());
-  EXPECT_EQ(importExercise(stick, folder_ / "there").error().code, "BAD_FIELD");
+  EXPECT_EQ(importExercise(stick, folder_ / "there").error().code.str(), "BAD_FIELD");
   other = Json::parse(list);
   other["parts"][0]["bytes"] = 1;
   ASSERT_TRUE(writeTextFile(stick / "exercise.json", other.dump()).ok());
@@ -601,7 +601,7 @@ TEST_F(ExerciseFolder, WhatCannotBeSavedLeavesTheOneThatWasThereAsItWas) {
   const std::string before = textOf(folder / "scene.json");
   Exercise wrong = exercise;
   wrong.arms[0].map.motion_scale = 1e9;
-  EXPECT_EQ(saveExercise(wrong, folder, storage).error().code, "BAD_FIELD");
+  EXPECT_EQ(saveExercise(wrong, folder, storage).error().code.str(), "BAD_FIELD");
   wrong = exercise;
   wrong.operator_file = "/nowhere/operator.json";
   EXPECT_FALSE(saveExercise(wrong, folder, storage).ok());
@@ -609,7 +609,7 @@ TEST_F(ExerciseFolder, WhatCannotBeSavedLeavesTheOneThatWasThereAsItWas) {
   cancelled.cancel();
   wrong = exercise;
   wrong.rate_hz = 2000;
-  EXPECT_EQ(saveExercise(wrong, folder, storage, cancelled).error().code, "CANCELLED");
+  EXPECT_EQ(saveExercise(wrong, folder, storage, cancelled).error().code.str(), "CANCELLED");
   EXPECT_EQ(textOf(folder / "scene.json"), before);
   EXPECT_EQ(exercisesIn(storage).size(), 1u);
 }

@@ -57,8 +57,8 @@ TEST_F(SharedExercises, ATraineeChangesNoneAndIsToldWhy) {
   EXPECT_TRUE(as(kTrainee, [&] {
     const auto over = saveExercise(shipped("Mine"), folder, storage_);
     const auto beside = saveExercise(shipped("Mine"), storage_ / "exercises" / "mine", storage_);
-    return !over && over.error().code == "CANNOT_WRITE" && !over.error().next.empty() && !beside &&
-           beside.error().code == "CANNOT_WRITE";
+    return !over && over.error().code.str() == "CANNOT_WRITE" && !over.error().next.empty() &&
+           !beside && beside.error().code.str() == "CANNOT_WRITE";
   }));
   EXPECT_FALSE(as(kTrainee, [&] { return std::ofstream(exercise, std::ios::app).good(); }));
   EXPECT_FALSE(as(kTrainee, [&] { return std::remove(exercise.c_str()) == 0; }));

@@ -96,7 +96,7 @@ TEST(ExerciseDevices, AnExerciseSaysNothingOfThemAndARecordingDoes) {
 TEST_F(ArmsFile, AnArmThatTheExerciseDoesNotHaveIsNamedWithThoseThatItHas) {
   const auto used = rigWith(twoArmedExercise(), {{"middle", {"simulated", 0, ""}}}, "arms.json");
   ASSERT_FALSE(used.ok());
-  EXPECT_EQ(used.error().code, "NO_SUCH_ARM");
+  EXPECT_EQ(used.error().code.str(), "NO_SUCH_ARM");
   for (const char* part : {"'middle'", "left, right", "arms.json"}) {
     EXPECT_NE(used.error().sentence().find(part), std::string::npos) << used.error().sentence();
   }
@@ -128,7 +128,7 @@ TEST_F(ArmsFile, WhatIsWrongInItIsNamedWithFieldAndValue) {
            for (int i = 0; i < 4; ++i) j["arms"].push_back(j["arms"][0]);
          }),
          "4");
-  EXPECT_EQ(readArmsFile(folder / "nowhere.json").error().code, "MISSING_FILE");
+  EXPECT_EQ(readArmsFile(folder / "nowhere.json").error().code.str(), "MISSING_FILE");
 }
 
 }  // namespace

@@ -83,7 +83,7 @@ TEST(EntryPoint, ThePlaceGoesThroughTheExercisesFileAndIsFoundAgain) {
   EXPECT_NEAR((placed->front().frame.rotation * Vec3(0, 0, 1)).x, 1.0, 1e-9);
 
   exercise->landmarks.front().at_mm = at + Vec3(1000, 0, 0);
-  EXPECT_EQ(placeLandmarks(*exercise, volume).error().code, "NO_PLACE");
+  EXPECT_EQ(placeLandmarks(*exercise, volume).error().code.str(), "NO_PLACE");
 }
 
 }  // namespace

@@ -81,7 +81,7 @@ TEST(ExerciseStructures, WithoutTheLiverTissueIsToldByHuAndThatIsSaid) {
     const auto placed = placeStructures(exercise, of);
     ASSERT_TRUE(placed);
     ASSERT_EQ(placed->warnings.size(), 1u);
-    EXPECT_EQ(placed->warnings[0].code, "LACKS_STRUCTURE");
+    EXPECT_EQ(placed->warnings[0].code.str(), "LACKS_STRUCTURE");
     EXPECT_NE(placed->warnings[0].text.find("'liver'"), std::string::npos);
     EXPECT_TRUE(placed->elsewhere);
     for (const Tissue& t : inForce(exercise, *placed).tissues) EXPECT_TRUE(t.isAnywhere()) << t.id;
@@ -103,7 +103,7 @@ TEST(ExerciseStructures, WithNeitherStructureNorHuTheExerciseIsRefused) {
   exercise.tissues_elsewhere.reset();
   const auto placed = placeStructures(exercise, nullptr);
   ASSERT_FALSE(placed);
-  EXPECT_EQ(placed.error().code, "NO_STRUCTURE");
+  EXPECT_EQ(placed.error().code.str(), "NO_STRUCTURE");
   EXPECT_NE(placed.error().what.find("'liver'"), std::string::npos);
 }
 

@@ -91,12 +91,12 @@ TEST(Exercise, ATissueOfALabelNeedsALabelMap) {
   exercise.tissues.tissues[1].label = 5;
   const Status status = checkLabels(exercise.tissues, nullptr);
   ASSERT_FALSE(status.ok());
-  EXPECT_EQ(status.error().code, "NO_LABELS");
+  EXPECT_EQ(status.error().code.str(), "NO_LABELS");
   EXPECT_NE(status.error().what.find("'" + exercise.tissues.tissues[1].id + "'"), std::string::npos);
   EXPECT_NE(status.error().what.find("label 5"), std::string::npos);
   const LabelMap map;
   EXPECT_TRUE(checkLabels(exercise.tissues, &map).ok());
-  EXPECT_EQ(placeLandmarks(exercise, Volume{}).error().code, "NO_LABELS");
+  EXPECT_EQ(placeLandmarks(exercise, Volume{}).error().code.str(), "NO_LABELS");
 }
 
 struct Bad {
@@ -292,7 +292,7 @@ TEST(Exercise, AMissingTissueFileIsNamed) {
   json["tissues"] = "../tissues/gone.json";
   const Result<Exercise> exercise = parseExercise(json, shippedFile());
   ASSERT_FALSE(exercise.ok());
-  EXPECT_EQ(exercise.error().code, "MISSING_FILE");
+  EXPECT_EQ(exercise.error().code.str(), "MISSING_FILE");
   EXPECT_NE(exercise.error().where.find("gone.json"), std::string::npos);
 }
 

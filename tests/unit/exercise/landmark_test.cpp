@@ -92,13 +92,14 @@ TEST(Landmark, FramesAreRightHandedAndKeepTheHeadUp) {
 TEST(Landmark, SaysWhenTheTissueIsNotThere) {
   const Volume v = ball(0);
   TissueSet set = boneOnly();
-  EXPECT_EQ(findLandmark({"a", "liver", {}, {}}, v, set).error().code, "NO_SUCH_TISSUE");
+  EXPECT_EQ(findLandmark({"a", "liver", {}, {}}, v, set).error().code.str(), "NO_SUCH_TISSUE");
   set.tissues[0].hu_min = 2000;
-  EXPECT_EQ(findLandmark({"a", "bone", Vec3(1), Vec3(0)}, v, set).error().code,
+  EXPECT_EQ(findLandmark({"a", "bone", Vec3(1), Vec3(0)}, v, set).error().code.str(),
             "TISSUE_NOT_FOUND");
   set.tissues[0].hu_min = 226;
-  EXPECT_EQ(findLandmark({"a", "bone", {1.2, 1.2, 1.2}, {1.2, 1.2, 0.0}}, v, set).error().code,
-            "NO_SURFACE");
+  EXPECT_EQ(
+      findLandmark({"a", "bone", {1.2, 1.2, 1.2}, {1.2, 1.2, 0.0}}, v, set).error().code.str(),
+      "NO_SURFACE");
 }
 
 // Two balls of the same HU: a label tells them apart.
@@ -127,7 +128,7 @@ TEST(Landmark, LooksForATissueWhereItsLabelIs) {
     EXPECT_NEAR(glm::length(frame->position_mm - Vec3(60, 20, 30)), 0.0, 3.0) << landmark.id;
   }
   std::fill(labels.labels.begin(), labels.labels.end(), std::uint8_t(6));
-  EXPECT_EQ(findLandmark(from_above, v, set, &labels).error().code, "TISSUE_NOT_FOUND");
+  EXPECT_EQ(findLandmark(from_above, v, set, &labels).error().code.str(), "TISSUE_NOT_FOUND");
 
   // What a tissue with the label holds is not the other's.
   Tissue any = set.tissues[0];
@@ -135,7 +136,7 @@ TEST(Landmark, LooksForATissueWhereItsLabelIs) {
   any.label.reset();
   set.tissues.push_back(any);
   std::fill(labels.labels.begin(), labels.labels.end(), std::uint8_t(5));
-  EXPECT_EQ(findLandmark({"a", "any", Vec3(1), Vec3(0)}, v, set, &labels).error().code,
+  EXPECT_EQ(findLandmark({"a", "any", Vec3(1), Vec3(0)}, v, set, &labels).error().code.str(),
             "TISSUE_NOT_FOUND");
 }
 
@@ -147,7 +148,7 @@ TEST(Landmark, IsFoundAtOnceHoweverFarAwayTheRayBegins) {
   EXPECT_NEAR(glm::length(near->position_mm - far->position_mm), 0.0, 0.5);
   for (double miles : {1e6, 1e12, 1e300}) {
     const Landmark aside{"aside", "bone", {miles, 0.5, 1.5}, {miles, 0.5, -miles}};
-    EXPECT_EQ(findLandmark(aside, v, boneOnly()).error().code, "NO_SURFACE") << miles;
+    EXPECT_EQ(findLandmark(aside, v, boneOnly()).error().code.str(), "NO_SURFACE") << miles;
   }
 }
 
@@ -168,7 +169,7 @@ TEST(Landmark, SaysHowFarItIsAndCanBeCancelled) {
     running = &progress;
     const auto frame = findLandmark(landmark, v, boneOnly(), nullptr, progress);
     ASSERT_FALSE(frame.ok()) << landmark.id;
-    EXPECT_EQ(frame.error().code, "CANCELLED") << landmark.id;
+    EXPECT_EQ(frame.error().code.str(), "CANCELLED") << landmark.id;
     EXPECT_EQ(reports, 5) << "it gives up at once";
   }
 }

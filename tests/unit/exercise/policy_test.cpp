@@ -40,7 +40,8 @@ class PolicyFile : public testing::Test {
     EXPECT_EQ(policy.locks, kAll);
     EXPECT_FALSE(policy.pin) << "nothing takes these locks off";
     ASSERT_TRUE(policy.problem);
-    EXPECT_EQ(policy.problem->code, root_ ? code : "POLICY_UNSAFE") << policy.problem->sentence();
+    EXPECT_EQ(policy.problem->code.str(), root_ ? code : "POLICY_UNSAFE")
+        << policy.problem->sentence();
     if (!root_) return;
     EXPECT_NE(policy.problem->sentence().find(word), std::string::npos);
   }
@@ -178,7 +179,7 @@ TEST(Policy, TheExercisesLocksComeBesideTheWorkstations) {
 
 void expectLocked(const Status& status, const char* word) {
   ASSERT_FALSE(status);
-  EXPECT_EQ(status.error().code, "LOCKED");
+  EXPECT_EQ(status.error().code.str(), "LOCKED");
   EXPECT_NE(status.error().what.find(word), std::string::npos) << status.error().sentence();
 }
 

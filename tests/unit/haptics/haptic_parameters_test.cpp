@@ -51,7 +51,7 @@ TEST(HapticParameters, ThatAreImpossibleStartNoLoop) {
   HapticLoop loop(bench.core, {}, nullptr);
   const Status started = loop.startDevices();
   ASSERT_FALSE(started.ok());
-  EXPECT_EQ(started.error().code, "IMPOSSIBLE_NUMBER");
+  EXPECT_EQ(started.error().code.str(), "IMPOSSIBLE_NUMBER");
 }
 
 }  // namespace

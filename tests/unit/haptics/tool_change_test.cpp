@@ -310,7 +310,7 @@ TEST(ToolChange, AnArmHasSoManyToolsAndNoMore) {
   p.arms[0].other_tools.push_back(makeNeedle(0.05));
   EXPECT_TRUE(validate(p).ok());
   p.arms[0].other_tools.push_back(makeNeedle(0.05));
-  EXPECT_EQ(validate(p).error().code, "TOO_MANY_TOOLS");
+  EXPECT_EQ(validate(p).error().code.str(), "TOO_MANY_TOOLS");
 }
 
 // Commands of all kinds at random ticks, a hand that goes where it likes.

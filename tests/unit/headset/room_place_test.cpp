@@ -161,11 +161,11 @@ TEST(Registration, RefusesMarksThatSayNothing) {
   const std::vector<Vec3> line{{0.0, 0.0, 0.0}, {0.1, 0.0, 0.0}, {0.2, 0.0, 0.0}};
   std::vector<Vec3> no_number = good;
   no_number[2].y = std::nan("");
-  EXPECT_EQ(registerArm(std::span(good).first(2), std::span(good).first(2)).error().code,
+  EXPECT_EQ(registerArm(std::span(good).first(2), std::span(good).first(2)).error().code.str(),
             "TOO_FEW_MARKS");
   for (const auto& bad : {line, no_number, std::vector<Vec3>(3, Vec3(0.1))}) {
-    EXPECT_EQ(registerArm(bad, good).error().code, "BAD_MARKS");
-    EXPECT_EQ(registerArm(good, bad).error().code, "BAD_MARKS");
+    EXPECT_EQ(registerArm(bad, good).error().code.str(), "BAD_MARKS");
+    EXPECT_EQ(registerArm(good, bad).error().code.str(), "BAD_MARKS");
   }
 }
 

@@ -96,7 +96,7 @@ Decoded decode(const std::vector<std::uint8_t>& bytes, const Jpeg2000Expectation
   std::vector<std::int16_t> words(std::size_t(expected.rows) * std::size_t(expected.columns));
   const Status status = decodeJpeg2000(bytes, expected, words.data());
   if (!status.ok()) {
-    EXPECT_EQ(status.error().code, "UNREADABLE");
+    EXPECT_EQ(status.error().code.str(), "UNREADABLE");
     return {{}, status.error().what};
   }
   Decoded decoded;

@@ -149,7 +149,7 @@ const Finding* SeriesFixture::find(const SeriesReport& series, const std::string
 
 std::string SeriesFixture::codes(const SeriesReport& series) {
   std::string all;
-  for (const Finding& finding : series.findings) all += finding.code + " ";
+  for (const Finding& finding : series.findings) all += finding.code.str() + " ";
   return all;
 }
 
@@ -166,7 +166,7 @@ Finding SeriesFixture::expectRefused(const std::string& code) {
   const Finding* finding = find(series, code);
   EXPECT_NE(finding, nullptr) << "found only: " << codes(series);
   if (!finding) return {};
-  EXPECT_EQ(finding->severity, "refusal");
+  EXPECT_EQ(finding->severity, Severity::refusal);
   EXPECT_FALSE(finding->text.empty());
   EXPECT_FALSE(finding->action.empty());
   return *finding;

@@ -4,6 +4,7 @@
 #include <cstdlib>
 #include <cstring>
 
+#include "imaging/codes.h"
 #include "imaging/files/archive.h"
 #include "series_fixture.h"
 #include "volume/volume_files.h"
@@ -210,7 +211,7 @@ TEST_F(Archives, OfWhichAPartIsLostAreRefused) {
     writeBytes(folder() / "from-the-clinic", bytes);
     const Finding finding = expectRefused("ARCHIVE_NOT_WHOLE");
     EXPECT_NE(finding.text.find("some of its slices"), std::string::npos);
-    EXPECT_EQ(refusal({{"MISSING_SLICES", "fill"}}).code, "ARCHIVE_NOT_WHOLE");
+    EXPECT_EQ(refusal({{code::kMissingSlices, "fill"}}).code.str(), "ARCHIVE_NOT_WHOLE");
   };
   for (const bool pack : {false, true}) {
     const std::string zip = zipOf(files, pack);
@@ -256,7 +257,7 @@ TEST_F(Archives, CanBeCancelledWhileTheyAreUnpacked) {
   writeBytes(folder() / "a.zip", zipOf(slices()));
   Progress progress;
   progress.cancel();
-  EXPECT_EQ(unpack({folder() / "a.zip"}, progress).error().code, "CANCELLED");
+  EXPECT_EQ(unpack({folder() / "a.zip"}, progress).error().code.str(), "CANCELLED");
   EXPECT_EQ(left(), 0u);
 }
 

@@ -5,6 +5,7 @@
 #include <random>
 
 #include "base/memory.h"
+#include "imaging/codes.h"
 #include "series_fixture.h"
 
 namespace trephine::test {
@@ -99,13 +100,13 @@ std::string repeated(const std::string& text, int times) {
 TEST_F(BadFiles, AMissingFolderIsAnError) {
   const auto result = CtFolder::scan(folder() / "nowhere", Progress());
   ASSERT_FALSE(result.ok());
-  EXPECT_EQ(result.error().code, "MISSING_FOLDER");
+  EXPECT_EQ(result.error().code.str(), "MISSING_FOLDER");
 }
 
 TEST_F(BadFiles, AnEmptyFolderIsAnAnswerWithAnError) {
   fs::create_directories(folder());
   CtFolder ct = scan();
-  EXPECT_EQ(ct.report().error->code, "EMPTY_FOLDER");
+  EXPECT_EQ(ct.report().error->code.str(), "EMPTY_FOLDER");
   EXPECT_FALSE(ct.bestSeries().has_value());
 }
 
@@ -129,7 +130,7 @@ TEST_F(BadFiles, FilesThatAreNoDicomAreCountedEachWithItsReason) {
 TEST_F(BadFiles, AFolderWithoutCtSaysWhatWasSkipped) {
   writeBytes(folder() / "notes.txt", std::string(1000, 'x'));
   CtFolder ct = scan();
-  EXPECT_EQ(ct.report().error->code, "NO_CT");
+  EXPECT_EQ(ct.report().error->code.str(), "NO_CT");
   EXPECT_NE(ct.report().error->what.find("not a DICOM file"), std::string::npos);
 }
 
@@ -188,7 +189,7 @@ TEST_F(BadFiles, DeflatedPixelsThatAreCutShortAreAMissingSlice) {
   ASSERT_TRUE(best.has_value());
   const auto result = ct.read(*best, {}, Progress());
   ASSERT_FALSE(result.ok());
-  EXPECT_EQ(result.error().code, "MISSING_SLICES");
+  EXPECT_EQ(result.error().code.str(), "MISSING_SLICES");
 }
 
 TEST_F(BadFiles, AValueThatClaimsFourGigabytesIsNotAllocated) {
@@ -227,10 +228,10 @@ TEST_F(BadFiles, NoAnswerMakesAVolumeOfSlicesThatAllLostTheirPlace) {
   EXPECT_TRUE(report_.series.front().choices.empty());
   CtFolder ct = scan();
   ImportRequest request;
-  request.answers["MISSING_SLICES"] = "part";
+  request.answers[code::kMissingSlices] = "part";
   const auto result = ct.read(report_.series.front().uid, request, Progress());
   ASSERT_FALSE(result.ok());
-  EXPECT_EQ(result.error().code, "MISSING_SLICES");
+  EXPECT_EQ(result.error().code.str(), "MISSING_SLICES");
 }
 
 TEST_F(BadFiles, WhatIsLeftOfACutValueIsNotTakenForTheValue) {
@@ -327,7 +328,7 @@ TEST_F(BadFiles, ThousandsOfFramesAtOnePlaceAreComparedInSeconds) {
     data.putAndInsertUint16Array(DCM_PixelData, words.data(), words.size());
   });
   const auto start = std::chrono::steady_clock::now();
-  EXPECT_EQ(expectRefused("ONE_LOCATION").severity, "refusal");
+  EXPECT_EQ(expectRefused("ONE_LOCATION").severity, Severity::refusal);
   EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(20));
 }
 

@@ -100,7 +100,7 @@ TEST_F(BesideCt, ALabelMapIsOfferedAsAPartOfTheCase) {
   writeNifti("another.nii", 6, 4, 3);
   const auto read = ct.read("file:another.nii", {}, Progress());
   ASSERT_FALSE(read);
-  EXPECT_EQ(read.error().code, "LABEL_MAP");
+  EXPECT_EQ(read.error().code.str(), "LABEL_MAP");
   EXPECT_NE(read.error().next.find("Import the CT beside it"), std::string::npos);
   EXPECT_EQ(ct.labelFiles().size(), 3u);
 }
@@ -167,7 +167,7 @@ TEST_F(BesideCt, WhatIsPackedIsToldByItsFirstBytes) {
       ASSERT_EQ(ct.report().skipped.size(), 1u);
       EXPECT_EQ(ct.report().skipped.front().reason, name + std::string(kUnpack));
       ASSERT_TRUE(ct.report().error);
-      EXPECT_EQ(ct.report().error->code, "NO_CT");
+      EXPECT_EQ(ct.report().error->code.str(), "NO_CT");
       EXPECT_NE(ct.report().error->sentence().find("unpack it first"), std::string::npos);
     }
   }

@@ -90,7 +90,7 @@ TEST_F(CtWriter, AScanThatIsNotAPhantomIsNeverOverwritten) {
   const std::string before = readBytes(slice(2));
   const Status written = writeCtSeries(rampVolume({3, 3, 3}), {"Other", ""}, folder());
   ASSERT_FALSE(written.ok());
-  EXPECT_EQ(written.error().code, "CANNOT_WRITE");
+  EXPECT_EQ(written.error().code.str(), "CANNOT_WRITE");
   EXPECT_EQ(readBytes(slice(2)), before);
   EXPECT_TRUE(std::filesystem::exists(slice(1)));
 }
@@ -100,7 +100,7 @@ TEST_F(CtWriter, ACancelLeavesNothing) {
   progress.cancel();
   const Status written = writeCtSeries(rampVolume(), {"Test", ""}, folder(), progress);
   ASSERT_FALSE(written.ok());
-  EXPECT_EQ(written.error().code, "CANCELLED");
+  EXPECT_EQ(written.error().code.str(), "CANCELLED");
   EXPECT_TRUE(std::filesystem::is_empty(folder()));
 }
 
@@ -108,7 +108,7 @@ TEST_F(CtWriter, AFolderThatCannotBeMadeIsNamed) {
   writeBytes(temporary_ / "file", "x");
   const Status written = writeCtSeries(rampVolume(), {"Test", ""}, temporary_ / "file");
   ASSERT_FALSE(written.ok());
-  EXPECT_EQ(written.error().code, "CANNOT_WRITE");
+  EXPECT_EQ(written.error().code.str(), "CANNOT_WRITE");
 }
 
 TEST_F(CtWriter, AVolumeWhoseAxesAreNotPerpendicularIsRefused) {

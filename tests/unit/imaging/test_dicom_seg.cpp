@@ -3,6 +3,7 @@
 #include <random>
 #include <set>
 
+#include "imaging/codes.h"
 #include "imaging/common/cielab.h"
 #include "imaging/common/text.h"
 #include "imaging/dicom/frame_stack.h"
@@ -372,7 +373,7 @@ TEST_F(DicomSeg, AThresholdThatIsNoShareIsRefused) {
   seg.frames = {frameOf(seg, 1, 0, pattern)};
   save(seg);
   for (const double threshold : {-0.1, 1.1, std::nan("")}) {
-    EXPECT_EQ(refused(threshold).code, "BAD_THRESHOLD");
+    EXPECT_EQ(refused(threshold).code.str(), "BAD_THRESHOLD");
   }
 }
 
@@ -453,7 +454,7 @@ TEST_F(DicomSeg, OneSliceIsAsThickAsItSays) {
   save(seg);
   EXPECT_EQ(read().segmentation.geometry.spacing_mm.z, 1.25);
   seg.thickness = "";
-  EXPECT_EQ(refused(seg).code, "NO_GEOMETRY");
+  EXPECT_EQ(refused(seg).code.str(), "NO_GEOMETRY");
 }
 
 TEST_F(DicomSeg, FramesThatDoNotLieInOneStraightEvenStackAreRefused) {
@@ -462,7 +463,7 @@ TEST_F(DicomSeg, FramesThatDoNotLieInOneStraightEvenStackAreRefused) {
   for (int k = 0; k < 5; ++k) seg.frames.push_back(frameOf(seg, 1, k, pattern));
   SegFile uneven = seg;
   uneven.frames[4].position_mm.z += 0.9;
-  EXPECT_EQ(refused(uneven).code, "UNEVEN_SPACING");
+  EXPECT_EQ(refused(uneven).code.str(), "UNEVEN_SPACING");
   SegFile drifting = seg;  // no step is far off, but their sum is
   for (std::size_t k = 0; k < 5; ++k) {
     drifting.frames[k].position_mm.z = 100.0 + 2.5 * double(k) - (k > 2 ? 0.22 * double(k - 2) : 0);
@@ -471,23 +472,23 @@ TEST_F(DicomSeg, FramesThatDoNotLieInOneStraightEvenStackAreRefused) {
     drifting.frames.push_back(drifting.frames[k - 1]);
     drifting.frames[k].position_mm.z += 2.28;
   }
-  EXPECT_EQ(refused(drifting).code, "UNEVEN_SPACING");
+  EXPECT_EQ(refused(drifting).code.str(), "UNEVEN_SPACING");
   SegFile nearly = seg;
   nearly.frames[4].position_mm.z += 0.1;
   save(nearly);
   EXPECT_EQ(read().segmentation.notes.size(), 1U);
   SegFile shifted = seg;
   shifted.frames[2].position_mm.x += 0.4;
-  EXPECT_EQ(refused(shifted).code, "FRAMES_DIFFER");
+  EXPECT_EQ(refused(shifted).code.str(), "FRAMES_DIFFER");
   SegFile tilted = seg;
   tilted.frames[3].orientation = {1, 0, 0, 0, std::cos(0.1), std::sin(0.1)};
-  EXPECT_EQ(refused(tilted).code, "FRAMES_DIFFER");
+  EXPECT_EQ(refused(tilted).code.str(), "FRAMES_DIFFER");
   SegFile crooked = seg;
   crooked.orientation = {1, 0, 0, 0.5, 1, 0};
-  EXPECT_EQ(refused(crooked).code, "NO_GEOMETRY");
+  EXPECT_EQ(refused(crooked).code.str(), "NO_GEOMETRY");
   SegFile far = seg;
   for (const int k : {1, 2, 3, 4}) far.frames[std::size_t(k)].position_mm.z = 0.02 + 100.0 * k;
-  EXPECT_EQ(refused(far).code, "TOO_LARGE");
+  EXPECT_EQ(refused(far).code.str(), "TOO_LARGE");
 }
 
 TEST_F(DicomSeg, AnOrientationOfEachFrameThatIsTheSameIsRead) {
@@ -643,7 +644,7 @@ TEST_F(DicomSeg, TwoHundredAndFiftySegmentsAreReadAndThreeHundredRefused) {
   EXPECT_EQ(s.layers.size(), 250U);
   for (int n = 251; n <= 300; ++n) seg.segments.push_back({n, "s"});
   const Error error = refused(seg);
-  EXPECT_EQ(error.code, "TOO_MANY_STRUCTURES");
+  EXPECT_EQ(error.code.str(), "TOO_MANY_STRUCTURES");
   EXPECT_NE(error.what.find("300"), error.what.npos);
 }
 
@@ -711,7 +712,7 @@ TEST_F(DicomSeg, AbsurdSizesAreRefusedBeforeAnythingIsAllocated) {
     DcmDataset data = datasetOf(seg);
     change(data);
     save(data);
-    return refused().code;
+    return refused().code.str();
   };
   EXPECT_EQ(spoilt([](DcmDataset& d) {
               set16(d, DCM_Rows, 65535);
@@ -738,36 +739,36 @@ TEST_F(DicomSeg, WhatIsMissingIsNamed) {
     return refused();
   };
   EXPECT_EQ(without(DCM_PlanePositionSequence).what, "Frame 2 does not say where it lies");
-  EXPECT_EQ(without(DCM_PlaneOrientationSequence).code, "NO_GEOMETRY");
-  EXPECT_EQ(without(DCM_PixelMeasuresSequence).code, "NO_GEOMETRY");
-  EXPECT_EQ(without(DCM_SegmentIdentificationSequence).code, "UNREADABLE");
+  EXPECT_EQ(without(DCM_PlaneOrientationSequence).code.str(), "NO_GEOMETRY");
+  EXPECT_EQ(without(DCM_PixelMeasuresSequence).code.str(), "NO_GEOMETRY");
+  EXPECT_EQ(without(DCM_SegmentIdentificationSequence).code.str(), "UNREADABLE");
   DcmDataset data = datasetOf(seg);
   delete data.remove(DCM_PerFrameFunctionalGroupsSequence);
   save(data);
-  EXPECT_EQ(refused().code, "SIZE_MISMATCH");
+  EXPECT_EQ(refused().code.str(), "SIZE_MISMATCH");
   data = datasetOf(seg);
   delete data.remove(DCM_SegmentSequence);
   save(data);
-  EXPECT_EQ(refused().code, "UNREADABLE");
+  EXPECT_EQ(refused().code.str(), "UNREADABLE");
   seg.segments = {{1, "a"}, {1, "b"}};
-  EXPECT_EQ(refused(seg).code, "UNREADABLE");
+  EXPECT_EQ(refused(seg).code.str(), "UNREADABLE");
 }
 
 TEST_F(DicomSeg, WhatIsNoSegmentationIsRefusedByName) {
   SeriesFixture::write(rampVolume());
   EXPECT_FALSE(isDicomSegmentation(slice(1)));
   fs::copy_file(slice(1), file());
-  EXPECT_EQ(refused().code, "NOT_SEGMENTATION");
+  EXPECT_EQ(refused().code.str(), "NOT_SEGMENTATION");
   writeBytes(file(), "no DICOM at all, but longer than a preamble" + std::string(500, 'x'));
   EXPECT_FALSE(isDicomSegmentation(file()));
-  EXPECT_EQ(refused().code, "NOT_SEGMENTATION");
+  EXPECT_EQ(refused().code.str(), "NOT_SEGMENTATION");
   writeBytes(file(), "");
   EXPECT_FALSE(isDicomSegmentation(file()));
-  EXPECT_EQ(refused().code, "UNREADABLE");
+  EXPECT_EQ(refused().code.str(), "UNREADABLE");
   fs::remove(file());
   EXPECT_FALSE(isDicomSegmentation(file()));
   EXPECT_FALSE(isDicomSegmentation(temporary_ / "out"));
-  EXPECT_EQ(refused().code, "UNREADABLE");
+  EXPECT_EQ(refused().code.str(), "UNREADABLE");
 }
 
 TEST_F(DicomSeg, AFileOfATerabyteOfNothingIsNoneAndKeepsNobodyWaiting) {
@@ -784,7 +785,7 @@ TEST_F(DicomSeg, AFileOfATerabyteOfNothingIsNoneAndKeepsNobodyWaiting) {
   save(seg);
   writeBytes(file(), readBytes(file()).substr(0, 600));
   fs::resize_file(file(), kHuge);
-  EXPECT_EQ(refused().code, "UNREADABLE");
+  EXPECT_EQ(refused().code.str(), "UNREADABLE");
 }
 
 TEST_F(DicomSeg, FramesAlongTheAxisOfATiltedGantryAreReadWhereTheyLie) {
@@ -873,11 +874,11 @@ TEST_F(DicomSeg, ASegmentationIsToldFromOthersAndOtherKindsAreNamed) {
   set(data, DCM_SOPClassUID, "1.2.840.10008.5.1.4.1.1.66.7");
   save(data);
   EXPECT_TRUE(isDicomSegmentation(file()));
-  EXPECT_EQ(refused().code, "UNSUPPORTED_SEGMENTATION") << "it does not say that it is one";
+  EXPECT_EQ(refused().code.str(), "UNSUPPORTED_SEGMENTATION") << "it does not say that it is one";
   data = datasetOf(seg);
   set(data, DCM_SegmentationType, "LABELMAP");
   save(data);
-  EXPECT_EQ(refused().code, "UNSUPPORTED_SEGMENTATION");
+  EXPECT_EQ(refused().code.str(), "UNSUPPORTED_SEGMENTATION");
 }
 
 TEST_F(DicomSeg, SequencesNestedDeepDoNotExhaustTheStack) {
@@ -895,7 +896,7 @@ TEST_F(DicomSeg, SequencesNestedDeepDoNotExhaustTheStack) {
   }
   writeBytes(file(), whole.substr(0, at) + nested + whole.substr(at));
   EXPECT_TRUE(isDicomSegmentation(file()));
-  EXPECT_EQ(refused().code, "UNREADABLE");
+  EXPECT_EQ(refused().code.str(), "UNREADABLE");
 }
 
 TEST_F(DicomSeg, CancelledReadingIsSaid) {
@@ -904,13 +905,13 @@ TEST_F(DicomSeg, CancelledReadingIsSaid) {
   save(seg);
   Progress before;
   before.cancel();
-  EXPECT_EQ(readDicomSegmentation(file(), 0.5, before).error().code, "CANCELLED");
+  EXPECT_EQ(readDicomSegmentation(file(), 0.5, before).error().code.str(), "CANCELLED");
   Progress* at_frames = nullptr;
   Progress during([&](double fraction, const std::string&) {
     if (fraction > 0.5) at_frames->cancel();
   });
   at_frames = &during;
-  EXPECT_EQ(readDicomSegmentation(file(), 0.5, during).error().code, "CANCELLED");
+  EXPECT_EQ(readDicomSegmentation(file(), 0.5, during).error().code.str(), "CANCELLED");
 }
 
 TEST_F(DicomSeg, WithoutASourceTheCtIsWrittenBesideAndBothAreOfOneNewStudy) {
@@ -990,7 +991,7 @@ TEST_F(DicomSeg, WithASourceTheSegmentationAloneIsWrittenAndRefersToIt) {
   writing.source->study = "somebody";
   const auto refused_source =
       writeStructuresAsDicom(ct, scattered(ct.geometry, 1), temporary_ / "out", writing);
-  EXPECT_EQ(refused_source.error().code, "BAD_SOURCE");
+  EXPECT_EQ(refused_source.error().code.str(), "BAD_SOURCE");
 }
 
 TEST_F(DicomSeg, StructuresWithoutVoxelsAreLeftOutAndSaid) {
@@ -1003,7 +1004,8 @@ TEST_F(DicomSeg, StructuresWithoutVoxelsAreLeftOutAndSaid) {
   EXPECT_EQ(read(written()).segmentation.segments.size(), 2U);
   fs::remove_all(temporary_ / "out");
   std::ranges::fill(map.labels, std::uint8_t(0));
-  EXPECT_EQ(writeStructuresAsDicom(ct, map, temporary_ / "out").error().code, "NO_STRUCTURES");
+  EXPECT_EQ(writeStructuresAsDicom(ct, map, temporary_ / "out").error().code.str(),
+            "NO_STRUCTURES");
   EXPECT_FALSE(fs::exists(temporary_ / "out"));
 }
 
@@ -1016,24 +1018,26 @@ TEST_F(DicomSeg, NothingIsOverwrittenAndNothingHalfWrittenIsLeft) {
     if (fraction > 0.7) at_structures->cancel();
   });
   at_structures = &progress;
-  EXPECT_EQ(writeStructuresAsDicom(ct, map, out, {}, progress).error().code, "CANCELLED");
+  EXPECT_EQ(writeStructuresAsDicom(ct, map, out, {}, progress).error().code.str(), "CANCELLED");
   EXPECT_FALSE(fs::exists(out));
   for (const char* name : {"structures.dcm", "CT/IM0001.dcm"}) {
     fs::remove_all(out);
     writeBytes(out / name, "mine");
-    EXPECT_EQ(writeStructuresAsDicom(ct, map, out).error().code, "CANNOT_WRITE");
+    EXPECT_EQ(writeStructuresAsDicom(ct, map, out).error().code.str(), "CANNOT_WRITE");
     EXPECT_EQ(readBytes(out / name), "mine");
     EXPECT_EQ(std::distance(fs::directory_iterator(out), fs::directory_iterator{}), 1);
   }
   writeBytes(temporary_ / "file", "x");
-  EXPECT_EQ(writeStructuresAsDicom(ct, map, temporary_ / "file").error().code, "CANNOT_WRITE");
+  EXPECT_EQ(writeStructuresAsDicom(ct, map, temporary_ / "file").error().code.str(),
+            "CANNOT_WRITE");
 }
 
 TEST_F(DicomSeg, StructuresOnAnotherGridAreRefused) {
   const Volume ct = someCt();
   LabelMap map = scattered(ct.geometry, 2);
   map.geometry.origin_mm.x += 1.0;
-  EXPECT_EQ(writeStructuresAsDicom(ct, map, temporary_ / "out").error().code, "LABELS_ELSEWHERE");
+  EXPECT_EQ(writeStructuresAsDicom(ct, map, temporary_ / "out").error().code.str(),
+            "LABELS_ELSEWHERE");
 }
 
 TEST(SegCodes, NamesSayWhatAStructureIsByTheirLastWords) {
@@ -1074,7 +1078,7 @@ TEST_F(DicomSeg, AProvenanceKnowsItsSourceAndWritesNothingOfIt) {
 TEST_F(DicomSeg, SlicesThatDoNotAgreeOnAFrameOfReferenceAreOfNone) {
   SeriesFixture::write(rampVolume());
   edit(slice(3), [](DcmDataset& data) { put(data, DCM_FrameOfReferenceUID, "1.2.3"); });
-  import({{ "PARTS", "join" }});
+  import({{ code::kParts, "join" }});
   EXPECT_TRUE(report_.provenance->source_ids.frame_of_reference.empty());
   EXPECT_FALSE(report_.provenance->source_ids.study.empty());
 }

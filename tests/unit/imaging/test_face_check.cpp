@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "imaging/codes.h"
 #include "imaging/steps/face.h"
 #include "imaging/steps/face_check.h"
 #include "posed.h"
@@ -222,7 +223,8 @@ const Finding* findingOf(const CtFolder& ct, const std::string& code) {
 // Codes of what the series asks.
 std::vector<std::string> asked(const CtFolder& ct) {
   std::vector<std::string> codes;
-  for (const Choice& choice : ct.report().series.front().choices) codes.push_back(choice.code);
+  for (const Choice& choice : ct.report().series.front().choices)
+    codes.push_back(choice.code.str());
   return codes;
 }
 
@@ -234,11 +236,11 @@ TEST_F(FaceSteps, AHeadWhoseFaceIsGoneForSureIsSaidToBeDefaced) {
   write(makePhantomOn(phantomTruth("cranium").value(), centredGrid({128, 128, 90}, {1.6, 1.6, 2.0}),
                       8.0));
   CtFolder ct = scan();
-  const auto defaced = readAs(ct, {{"FACE", "deface"}});
+  const auto defaced = readAs(ct, {{code::kFace, "deface"}});
   ASSERT_TRUE(defaced.ok()) << defaced.error().sentence();
   EXPECT_EQ(asked(ct), Codes{"FACE"});
   ASSERT_NE(findingOf(ct, "FACE"), nullptr);
-  EXPECT_EQ(findingOf(ct, "FACE")->severity, "repair");
+  EXPECT_EQ(findingOf(ct, "FACE")->severity, Severity::repair);
   EXPECT_NE(findingOf(ct, "FACE")->action.find("looked for again"), std::string::npos);
 }
 
@@ -246,25 +248,25 @@ TEST_F(FaceSteps, WhereTheFaceRemainsNothingIsReadAsDefaced) {
   const Volume head = laidAs(upright(), {-1, -1, 1});
   write(head);
   CtFolder ct = scan();
-  const Answers deface{{"FACE", "deface"}, {"FACE_TAKES_MORE", "accept"}};
+  const Answers deface{{code::kFace, "deface"}, {code::kFaceTakesMore, "accept"}};
   const auto refused = readAs(ct, deface);
   ASSERT_FALSE(refused.ok());
-  EXPECT_EQ(refused.error().code, "FACE_REMAINS");
+  EXPECT_EQ(refused.error().code.str(), "FACE_REMAINS");
   EXPECT_NE(refused.error().what.find("could not be made sure"), std::string::npos);
   EXPECT_NE(refused.error().what.find("eyes, nose and mouth"), std::string::npos);
   EXPECT_EQ(ct.report().series.front().verdict, Verdict::refused);
   EXPECT_FALSE(ct.report().chosen.has_value());
   ASSERT_NE(findingOf(ct, "FACE_REMAINS"), nullptr);
-  EXPECT_EQ(findingOf(ct, "FACE_REMAINS")->severity, "refusal");
+  EXPECT_EQ(findingOf(ct, "FACE_REMAINS")->severity, Severity::refusal);
 
   Answers keep = deface;
   keep["FACE_REMAINS"] = "keep";
   const auto kept = readAs(ct, keep);
   ASSERT_TRUE(kept.ok()) << kept.error().sentence();
   EXPECT_EQ(kept->hu, head.hu);
-  EXPECT_EQ(findingOf(ct, "FACE")->severity, "notice");
+  EXPECT_EQ(findingOf(ct, "FACE")->severity, Severity::notice);
   EXPECT_NE(findingOf(ct, "FACE")->action.find("must stay on this computer"), std::string::npos);
-  EXPECT_EQ(readAs(ct, {{"FACE", "keep"}})->hu, head.hu);
+  EXPECT_EQ(readAs(ct, {{code::kFace, "keep"}})->hu, head.hu);
 }
 
 TEST_F(FaceSteps, AFaceOfWhichNothingCanBeRecognisedIsNotSaidToBeGone) {
@@ -280,9 +282,9 @@ TEST_F(FaceSteps, AFaceOfWhichNothingCanBeRecognisedIsNotSaidToBeGone) {
   CtFolder ct = scan();
   ASSERT_TRUE(readAs(ct, {}).ok());
   ASSERT_EQ(asked(ct), Codes{"FACE"});
-  const auto refused = readAs(ct, {{"FACE", "deface"}});
+  const auto refused = readAs(ct, {{code::kFace, "deface"}});
   ASSERT_FALSE(refused.ok());
-  EXPECT_EQ(refused.error().code, "FACE_REMAINS");
+  EXPECT_EQ(refused.error().code.str(), "FACE_REMAINS");
   EXPECT_NE(refused.error().what.find("can be recognised"), std::string::npos);
 }
 
@@ -292,23 +294,23 @@ TEST_F(FaceSteps, ThroatAndArmsThatWouldGoAreNamedAndAskedFor) {
   CtFolder ct = scan();
   ASSERT_TRUE(readAs(ct, {}).ok());
   EXPECT_EQ(asked(ct), Codes{"FACE"}) << "it is asked once the face is to go";
-  const auto refused = readAs(ct, {{"FACE", "deface"}});
+  const auto refused = readAs(ct, {{code::kFace, "deface"}});
   ASSERT_FALSE(refused.ok());
-  EXPECT_EQ(refused.error().code, "FACE_TAKES_MORE");
+  EXPECT_EQ(refused.error().code.str(), "FACE_TAKES_MORE");
   EXPECT_NE(refused.error().what.find("mL of the throat"), std::string::npos);
   EXPECT_NE(refused.error().what.find("arms"), std::string::npos);
   EXPECT_NE(refused.error().what.find("bone included"), std::string::npos);
-  EXPECT_EQ(asked(ct), (Codes{"FACE", "FACE_TAKES_MORE"}));
+  EXPECT_EQ(asked(ct), (Codes{code::kFace, "FACE_TAKES_MORE"}));
 
-  const auto cut = readAs(ct, {{"FACE", "deface"}, {"FACE_TAKES_MORE", "accept"}});
+  const auto cut = readAs(ct, {{code::kFace, "deface"}, {code::kFaceTakesMore, "accept"}});
   ASSERT_TRUE(cut.ok()) << cut.error().sentence();
   EXPECT_NE(cut->hu, head.hu);
   EXPECT_NE(findingOf(ct, "FACE")->action.find("mL of the throat"), std::string::npos);
-  const auto kept = readAs(ct, {{"FACE", "deface"}, {"FACE_TAKES_MORE", "keep"}});
+  const auto kept = readAs(ct, {{code::kFace, "deface"}, {code::kFaceTakesMore, "keep"}});
   ASSERT_TRUE(kept.ok());
   EXPECT_EQ(kept->hu, head.hu);
-  EXPECT_EQ(findingOf(ct, "FACE")->severity, "notice");
-  EXPECT_EQ(readAs(ct, {{"FACE", "deface"}, {"FACE_TAKES_MORE", "yes"}}).error().code,
+  EXPECT_EQ(findingOf(ct, "FACE")->severity, Severity::notice);
+  EXPECT_EQ(readAs(ct, {{code::kFace, "deface"}, {code::kFaceTakesMore, "yes"}}).error().code.str(),
             "BAD_CHOICE");
 }
 
@@ -317,12 +319,12 @@ TEST_F(FaceSteps, ACropThatLeavesTheFaceOutNeedsNoCut) {
   write(head);
   CtFolder ct = scan();
   const VoxelBox shoulders{{0, 0, 0}, {200, 150, 20}};
-  const auto part = readAs(ct, {{"FACE", "deface"}}, shoulders);
+  const auto part = readAs(ct, {{code::kFace, "deface"}}, shoulders);
   ASSERT_TRUE(part.ok()) << part.error().sentence();
   EXPECT_EQ(asked(ct), Codes{});
   EXPECT_EQ(part->hu, crop(head, shoulders)->hu);
   // To the head: then throat and shoulders do not count.
-  const auto skull = readAs(ct, {{"FACE", "deface"}}, VoxelBox{{0, 0, 75}, {200, 150, 150}});
+  const auto skull = readAs(ct, {{code::kFace, "deface"}}, VoxelBox{{0, 0, 75}, {200, 150, 150}});
   EXPECT_TRUE(skull.ok()) << skull.error().sentence();
   EXPECT_EQ(asked(ct), Codes{"FACE"});
 }

@@ -109,7 +109,7 @@ TEST_F(FileSeries, SmallNumbersFromZeroAreALabelMapAndNoCt) {
   writeRaw("case", {0, 1, 1, 5, 0, 1, 2, 2});
   EXPECT_EQ(codesOfReading(), "ASSUMED_HU LABEL_MAP ");
   EXPECT_EQ(report_.series.front().verdict, Verdict::refused);
-  EXPECT_EQ(report_.error->code, "LABEL_MAP");
+  EXPECT_EQ(report_.error->code.str(), "LABEL_MAP");
 }
 
 TEST_F(FileSeries, OneSliceIsNoVolume) {

@@ -6,10 +6,12 @@
 #include <glm/gtc/quaternion.hpp>
 #include <random>
 
+#include "imaging/codes.h"
 #include "imaging/common/hu_sanity_check.h"
 #include "imaging/series/series_geometry.h"
 #include "imaging/structure_importer.h"
 #include "series_fixture.h"
+#include "volume/codes.h"
 #include "volume/segmentation.h"
 #include "volume/volume_files.h"
 
@@ -32,7 +34,7 @@ StackInput stackAt(const std::vector<double>& places_mm, const Mat3& axes = Mat3
 
 std::string codesOf(const Stack& stack) {
   std::string codes;
-  for (const Finding& finding : stack.findings) codes += finding.code + " ";
+  for (const Finding& finding : stack.findings) codes += finding.code.str() + " ";
   return codes;
 }
 
@@ -414,9 +416,9 @@ TEST_F(NiftiForms, EqualOnesAreReadAndContradictingOnesAskedAbout) {
     const Finding& said = *find(report, "FORMS_DIFFER");
     EXPECT_NE(said.text.find("sform and " + other), std::string::npos) << said.text;
     ASSERT_FALSE(segmentation.ok());
-    EXPECT_EQ(segmentation.error().code, "FORMS_DIFFER");
+    EXPECT_EQ(segmentation.error().code.str(), "FORMS_DIFFER");
     for (const std::string& form : {std::string("sform"), other}) {
-      const SeriesReport read = scanned({{"FORMS_DIFFER", form}});
+      const SeriesReport read = scanned({{code::kFormsDiffer, form}});
       EXPECT_EQ(read.verdict, Verdict::repaired) << codes(read);
       EXPECT_NE(find(read, "FORMS_DIFFER")->action.find(form), std::string::npos);
       const Mat4& is = form == "qform" ? *of.qform : *of.sform;
@@ -527,9 +529,9 @@ TEST_F(NiftiForms, OneThatSaysNothingOfItsPlaceAndHasTheCtsSizeIsAskedAbout) {
     if (n % 2 == 0) of.pixdim = Vec3(1.0);
     of.sform = of.qform = glm::scale(Mat4(1.0), of.pixdim);
     writeBytes(temporary_ / "labels.nii", niftiBytes(of));
-    EXPECT_EQ(importStructures(temporary_ / "labels.nii", *ct).error().code, "NO_AFFINE");
+    EXPECT_EQ(importStructures(temporary_ / "labels.nii", *ct).error().code.str(), "NO_AFFINE");
     StructureRequest request;
-    request.answers = {{"NO_AFFINE", "ct"}};
+    request.answers = {{code::kNoAffine, "ct"}};
     const auto fit = importStructures(temporary_ / "labels.nii", *ct, request);
     ASSERT_TRUE(fit.ok()) << fit.error().sentence();
     EXPECT_FALSE(fit->resampled);
@@ -553,7 +555,7 @@ TEST_F(NiftiForms, OneThatSaysNothingOfItsPlaceIsAskedAboutOnWholeStepsToo) {
     of.labels = true;
     of.sform = of.qform = here;
     writeBytes(temporary_ / "labels.nii", niftiBytes(of));
-    EXPECT_EQ(importStructures(temporary_ / "labels.nii", *ct).error().code, "NO_AFFINE");
+    EXPECT_EQ(importStructures(temporary_ / "labels.nii", *ct).error().code.str(), "NO_AFFINE");
   }
 }
 
@@ -576,7 +578,7 @@ TEST_F(NiftiForms, AFileThatIsLongerThanItsHeaderSaysIsRefused) {
                  packed ? packedBy(Deflate::gzip, longer) : longer);
       const CtFolder ct = scan();
       const Error why = refusal();
-      EXPECT_EQ(why.code, "UNREADABLE") << more;
+      EXPECT_EQ(why.code.str(), "UNREADABLE") << more;
       EXPECT_NE(why.what.find("longer than its header says"), std::string::npos) << why.what;
     }
   }
@@ -617,7 +619,7 @@ TEST_F(NiftiForms, AWrongByteOrderIsDoubtedAndAsksNoOther) {
     writeBytes(folder() / "ct.nii", bytes);
     scan();
     const Error why = refusal();
-    EXPECT_EQ(why.code, "IMPLAUSIBLE_HU");
+    EXPECT_EQ(why.code.str(), "IMPLAUSIBLE_HU");
     EXPECT_NE(why.what.find("byte order"), std::string::npos) << why.what;
   }
 }
@@ -639,7 +641,7 @@ TEST_F(NiftiForms, AWrongByteOrderIsDoubtedWhereverTheBodyLies) {
     std::string bytes = readBytes(folder() / "ct.nii");
     for (std::size_t at = 352; at < bytes.size(); at += 2) std::swap(bytes[at], bytes[at + 1]);
     writeBytes(folder() / "ct.nii", bytes);
-    EXPECT_EQ(refusal().code, "IMPLAUSIBLE_HU") << around;
+    EXPECT_EQ(refusal().code.str(), "IMPLAUSIBLE_HU") << around;
   }
   // A phantom without noise, in steps of 256.
   Volume phantom;
@@ -665,7 +667,7 @@ TEST_F(NiftiForms, AHeaderIsNeverReadAsVoxels) {
   EXPECT_EQ(import().hu, volume.hu);
   for (const std::size_t cut : {1, 2, 100, 200}) {
     writeBytes(folder() / "ct.mha", bytes.substr(0, bytes.size() - cut));
-    EXPECT_EQ(refusal().code, "UNREADABLE") << cut;
+    EXPECT_EQ(refusal().code.str(), "UNREADABLE") << cut;
   }
 }
 
@@ -689,7 +691,7 @@ TEST_F(NiftiForms, MicrometresAreNoHospitalsCt) {
   of.pixdim = Vec3(0.0015);
   of.sform = of.qform = glm::scale(Mat4(1.0), of.pixdim);
   writeCt(of);
-  EXPECT_EQ(refusal().code, "BAD_GEOMETRY");
+  EXPECT_EQ(refusal().code.str(), "BAD_GEOMETRY");
 }
 
 TEST_F(NiftiForms, WhatStandsAroundTheScanBecomesAirAndStreaksOfMetalDoNot) {
@@ -803,11 +805,11 @@ TEST_F(HeadersDisagree, BitsBeyondThoseThatTheHeaderSaysAreAskedAbout) {
   fs::remove_all(folder());
   for (const int bits : {8, 9, 10, 11}) {
     writeSlices(bits, EXS_RLELossless);
-    EXPECT_EQ(refusal().code, "HIGH_BITS") << bits;
-    const Volume whole = import({{"HIGH_BITS", "use"}});
+    EXPECT_EQ(refusal().code.str(), "HIGH_BITS") << bits;
+    const Volume whole = import({{code::kHighBits, "use"}});
     EXPECT_EQ(whole.hu, truth.hu);
     EXPECT_EQ(chosen().verdict, Verdict::repaired);
-    const Volume masked = import({{"HIGH_BITS", "mask"}});
+    const Volume masked = import({{code::kHighBits, "mask"}});
     EXPECT_NE(masked.hu, truth.hu);
     fs::remove_all(folder());
     // Uncompressed words are masked, as the standard has it.
@@ -879,7 +881,7 @@ TEST_F(HeadersDisagree, SlicesAtOnePlaceAreOfferedByTheirLocation) {
     put(data, DCM_ImagePositionPatient, "-20\\10.5\\100");
   });
   EXPECT_EQ(expectRefused("ONE_LOCATION").slices.size(), 1u);
-  const Volume read = import({{"ONE_LOCATION", "locations"}});
+  const Volume read = import({{code::kOneLocation, "locations"}});
   EXPECT_EQ(read.hu, truth.hu);
   EXPECT_NEAR(read.geometry.spacing_mm.z, 2.0, 1e-9);
   EXPECT_EQ(chosen().verdict, Verdict::repaired);
@@ -892,7 +894,7 @@ TEST_F(HeadersDisagree, SlopesOfAnotherSignAreAskedAbout) {
     if (++slices == 3) put(data, DCM_RescaleSlope, "-1");
   });
   EXPECT_EQ(expectRefused("SLOPES_DIFFER").slices.size(), 1u);
-  import({{ "SLOPES_DIFFER", "accept" }});
+  import({{ code::kSlopesDiffer, "accept" }});
   EXPECT_EQ(chosen().verdict, Verdict::repaired);
 }
 
@@ -962,7 +964,7 @@ TEST_F(HeadersDisagree, ScansOfTwoVoltagesAreToldApartByThem) {
     EXPECT_NE(choice.words[1].find(std::string("(") + first + " kV)"), std::string::npos)
         << choice.words[1];
     EXPECT_NE(choice.words[2].find(std::string("(") + second + " kV)"), std::string::npos);
-    import({{ "PHASES", "2" }});
+    import({{ code::kPhases, "2" }});
   }
 }
 
@@ -982,7 +984,7 @@ TEST_F(HeadersDisagree, PartsOfAnImageThatAreMissingAreNamed) {
   part(1, 3, 0);
   part(2, 3, 8);
   EXPECT_NE(expectRefused("INCOMPLETE").text.find("part 3 of 3 is missing"), std::string::npos);
-  import({{ "INCOMPLETE", "accept" }});
+  import({{ code::kIncomplete, "accept" }});
   EXPECT_EQ(chosen().verdict, Verdict::repaired);
   part(3, 3, 16);
   import();

@@ -2,6 +2,7 @@
 #include <limits>
 #include <type_traits>
 
+#include "imaging/codes.h"
 #include "imaging/common/hu_sanity_check.h"
 #include "painted.h"
 #include "series_fixture.h"
@@ -68,13 +69,13 @@ class HuValues : public SeriesFixture {
   // Passes by its headers, is refused once its voxels are seen, and is read on consent.
   Finding expectAsked() {
     EXPECT_EQ(scan().report().series.front().verdict, Verdict::pass);
-    EXPECT_EQ(refusal().code, "IMPLAUSIBLE_HU");
+    EXPECT_EQ(refusal().code.str(), "IMPLAUSIBLE_HU");
     const SeriesReport series = report_.series.front();
     EXPECT_EQ(series.verdict, Verdict::refused);
     EXPECT_FALSE(report_.chosen);
     EXPECT_TRUE(series.hu_min && series.hu_max);
-    EXPECT_EQ(refusal({{"IMPLAUSIBLE_HU", "perhaps"}}).code, "BAD_CHOICE");
-    const Volume read = import({{"IMPLAUSIBLE_HU", "accept"}});
+    EXPECT_EQ(refusal({{code::kImplausibleHu, "perhaps"}}).code.str(), "BAD_CHOICE");
+    const Volume read = import({{code::kImplausibleHu, "accept"}});
     EXPECT_EQ(chosen().verdict, Verdict::repaired);
     const auto [low, high] = std::ranges::minmax(read.hu);
     EXPECT_EQ(chosen().hu_min, low);
@@ -201,7 +202,7 @@ TEST_F(HuValues, OfATiltedStackAreJudgedWithoutTheCornersThatItGained) {
       put(data, DCM_ImagePositionPatient, positionText(Vec3(0.0, 6.0 * k, 2.0 * k)));
     });
   }
-  EXPECT_EQ(refusal().code, "IMPLAUSIBLE_HU");
+  EXPECT_EQ(refusal().code.str(), "IMPLAUSIBLE_HU");
 }
 
 TEST_F(HuValues, OfAVolumeFileAreJudgedInTheSameWay) {
@@ -213,8 +214,8 @@ TEST_F(HuValues, OfAVolumeFileAreJudgedInTheSameWay) {
   CtFolder ct = scan();
   const std::string uid = ct.report().series.front().uid;
   EXPECT_FALSE(ct.read(uid, {}, Progress()));
-  EXPECT_FALSE(ct.bestSeries({{"COUCH", "keep"}}));
-  EXPECT_EQ(ct.bestSeries({{"IMPLAUSIBLE_HU", "accept"}}), uid);
+  EXPECT_FALSE(ct.bestSeries({{code::kCouch, "keep"}}));
+  EXPECT_EQ(ct.bestSeries({{code::kImplausibleHu, "accept"}}), uid);
 }
 
 TEST_F(HuValues, OfAVolumeFileAreJudgedWithoutWhatIsNoNumber) {
@@ -223,7 +224,7 @@ TEST_F(HuValues, OfAVolumeFileAreJudgedWithoutWhatIsNoNumber) {
     values.push_back(isCorner(hu) ? std::numeric_limits<float>::quiet_NaN() : float(hu + 1000));
   }
   writeRaw(values);
-  EXPECT_EQ(refusal().code, "IMPLAUSIBLE_HU");
+  EXPECT_EQ(refusal().code.str(), "IMPLAUSIBLE_HU");
 }
 
 // `count` values, spread evenly over a range.

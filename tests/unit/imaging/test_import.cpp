@@ -292,7 +292,7 @@ TEST_F(Import, AnUnknownSeriesIsNamed) {
   CtFolder ct = scan();
   const auto volume = ct.read("1.2.3", {}, Progress());
   ASSERT_FALSE(volume.ok());
-  EXPECT_EQ(volume.error().code, "NO_SUCH_SERIES");
+  EXPECT_EQ(volume.error().code.str(), "NO_SUCH_SERIES");
 }
 
 TEST_F(Import, ACancelStopsScanAndRead) {
@@ -300,8 +300,8 @@ TEST_F(Import, ACancelStopsScanAndRead) {
   CtFolder ct = scan();
   Progress cancelled;
   cancelled.cancel();
-  EXPECT_EQ(CtFolder::scan(folder(), cancelled).error().code, "CANCELLED");
-  EXPECT_EQ(ct.read(*ct.bestSeries(), {}, cancelled).error().code, "CANCELLED");
+  EXPECT_EQ(CtFolder::scan(folder(), cancelled).error().code.str(), "CANCELLED");
+  EXPECT_EQ(ct.read(*ct.bestSeries(), {}, cancelled).error().code.str(), "CANCELLED");
   EXPECT_TRUE(ct.read(*ct.bestSeries(), {}, Progress()).ok());
 }
 
@@ -312,7 +312,7 @@ TEST_F(Import, AFileThatIsCutAfterTheScanRefusesTheSeries) {
   fs::resize_file(slice(3), fs::file_size(slice(3)) - 10);
   const auto volume = ct.read(best, {}, Progress());
   ASSERT_FALSE(volume.ok());
-  EXPECT_EQ(volume.error().code, "MISSING_SLICES");
+  EXPECT_EQ(volume.error().code.str(), "MISSING_SLICES");
   EXPECT_FALSE(ct.bestSeries().has_value());
   EXPECT_EQ(find(ct.report().series.front(), "MISSING_SLICES")->slices,
             std::vector<std::string>{"102.50 mm"});

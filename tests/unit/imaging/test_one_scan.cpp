@@ -1,5 +1,6 @@
 // Slices become one volume without a question only where everything says that they are one scan of
 // one patient.
+#include "imaging/codes.h"
 #include "series_fixture.h"
 
 namespace trephine::test {
@@ -29,7 +30,7 @@ class OneScan : public SeriesFixture {
   }
   static std::vector<std::string> optionsOf(const SeriesReport& series, const char* code) {
     for (const Choice& choice : series.choices) {
-      if (choice.code == code) return choice.options;
+      if (choice.code.str() == code) return choice.options;
     }
     return {};
   }
@@ -259,7 +260,7 @@ TEST_F(OneScan, OfTwoKernelsIsTwoAndTheyAreToldApartByThem) {
   EXPECT_EQ(choice.on_screen[1], "Test series");
   EXPECT_GE(choice.shown[1], 0);
   EXPECT_NE(choice.shown[1], choice.shown[2]);
-  const Volume soft = import({{"PHASES", "1"}});
+  const Volume soft = import({{code::kPhases, "1"}});
   EXPECT_EQ(soft.hu, rampVolume().hu);
   EXPECT_EQ(find(chosen(), "MIXED_SLICES"), nullptr);
 }
@@ -285,7 +286,7 @@ TEST_F(OneScan, WhoseSlicesEachNameAFrameOfReferenceOrStudyIsJoinedOnConsent) {
     ASSERT_EQ(report_.series.size(), 1u);
     EXPECT_EQ(optionsOf(report_.series.front(), "PARTS"),
               (std::vector<std::string>{"refuse", "join"}));
-    EXPECT_EQ(import({{"PARTS", "join"}}).hu, rampVolume().hu);
+    EXPECT_EQ(import({{code::kParts, "join"}}).hu, rampVolume().hu);
     EXPECT_EQ(chosen().verdict, Verdict::repaired);
     EXPECT_NE(find(chosen(), "PARTS")->action.find("assumed"), std::string::npos);
   }
@@ -294,7 +295,7 @@ TEST_F(OneScan, WhoseSlicesEachNameAFrameOfReferenceOrStudyIsJoinedOnConsent) {
 TEST_F(OneScan, WhoseEverySecondSliceHasAnotherSpacingIsJoinedOnConsent) {
   editSome({2, 4, 6}, set(DCM_PixelSpacing, "0.7503\\0.5003"));
   expectRefused("PARTS");
-  const Volume joined = import({{"PARTS", "join"}});
+  const Volume joined = import({{code::kParts, "join"}});
   EXPECT_EQ(joined.hu, rampVolume().hu);
   EXPECT_NEAR(joined.geometry.spacing_mm.x, 0.50015, 1e-9);
 }
@@ -308,7 +309,7 @@ TEST_F(OneScan, WhoseOrientationIsNoisyIsJoinedOnConsent) {
     });
   }
   expectRefused("PARTS");
-  EXPECT_EQ(import({{"PARTS", "join"}}).hu, rampVolume().hu);
+  EXPECT_EQ(import({{code::kParts, "join"}}).hu, rampVolume().hu);
 }
 
 TEST_F(OneScan, CanBeAPartAndWhatWasLeftOutIsSaid) {
@@ -317,7 +318,7 @@ TEST_F(OneScan, CanBeAPartAndWhatWasLeftOutIsSaid) {
   expectRefused("PARTS");
   EXPECT_EQ(optionsOf(report_.series.front(), "PARTS"),
             (std::vector<std::string>{"refuse", "join", "1", "2"}));
-  const Volume part = import({{"PARTS", "1"}});
+  const Volume part = import({{code::kParts, "1"}});
   EXPECT_EQ(part.geometry.size, (Index3{7, 5, 6}));
   EXPECT_DOUBLE_EQ(part.geometry.origin_mm.z, 105.0);
   EXPECT_EQ(chosen().verdict, Verdict::repaired);
@@ -331,14 +332,14 @@ TEST_F(OneScan, WhosePartHasAGapSaysSoOnceThePartIsChosen) {
   anew({7, 5, 10});
   editSome({4, 5}, set(DCM_FrameOfReferenceUID, "1.2.3.99"));
   CtFolder ct = scan();
-  const Answers part{{"PARTS", "1"}};
+  const Answers part{{code::kParts, "1"}};
   const auto best = ct.bestSeries(part);
   ASSERT_TRUE(best);
   ImportRequest request;
   request.answers = part;
   const auto read = ct.read(*best, request, Progress());
   ASSERT_FALSE(read);
-  EXPECT_EQ(read.error().code, "MISSING_SLICES") << read.error().sentence();
+  EXPECT_EQ(read.error().code.str(), "MISSING_SLICES") << read.error().sentence();
   EXPECT_FALSE(optionsOf(ct.report().series.front(), "MISSING_SLICES").empty());
 }
 
@@ -352,7 +353,7 @@ TEST_F(OneScan, IsNotJoinedWithAnotherAtTheSamePlaces) {
   expectRefused("PARTS");
   EXPECT_EQ(optionsOf(report_.series.front(), "PARTS"),
             (std::vector<std::string>{"refuse", "1", "2"}));
-  EXPECT_EQ(import({{"PARTS", "1"}}).geometry.size[2], kSlices);
+  EXPECT_EQ(import({{code::kParts, "1"}}).geometry.size[2], kSlices);
 }
 
 class Contradiction : public OneScan {

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include "imaging/codes.h"
 #include "imaging/segmentation/overlap_order.h"
 #include "imaging/segmentation/structure_fit.h"
 
@@ -42,7 +43,7 @@ TEST(OverlapOrder, ANameThatIsNoneOfThemIsNamed) {
   for (const char* answer : {"order:liver,spleen", "order:spleen", "order:", "order:liver,liver"}) {
     const auto order = orderFrom(answer, threeThatOverlap());
     ASSERT_FALSE(order) << answer;
-    EXPECT_EQ(order.error().code, "BAD_CHOICE");
+    EXPECT_EQ(order.error().code.str(), "BAD_CHOICE");
     EXPECT_NE(order.error().next.find("'vessel, portal'"), std::string::npos);
   }
 }
@@ -54,15 +55,17 @@ TEST(OverlapOrder, AsAnAnswerToTheQuestionGivesTheFirstTheVoxels) {
   const auto first = fitStructures(threeThatOverlap(), ct);
   ASSERT_TRUE(first) << first.error().sentence();
   EXPECT_EQ(first->overlapping, (std::vector<std::string>{"tumour", "vessel, portal", "Liver"}));
-  const auto fit = fitStructures(threeThatOverlap(), ct,
-                                 {{"OVERLAP", orderAnswer({"vessel, portal", "tumour", "Liver"})}});
+  const auto fit =
+      fitStructures(threeThatOverlap(), ct,
+                    {{code::kOverlap, orderAnswer({"vessel, portal", "tumour", "Liver"})}});
   ASSERT_TRUE(fit) << fit.error().sentence();
   EXPECT_EQ(fit->structures[1].voxels, 4u);
   EXPECT_EQ(fit->structures[2].voxels, 0u);
   EXPECT_EQ(fit->structures[0].voxels, 4u);
   EXPECT_EQ(fit->overlapping, (std::vector<std::string>{"vessel, portal", "tumour", "Liver"}));
-  EXPECT_EQ(fitStructures(threeThatOverlap(), ct, {{"OVERLAP", "order:foot"}}).error().code,
-            "BAD_CHOICE");
+  EXPECT_EQ(
+      fitStructures(threeThatOverlap(), ct, {{code::kOverlap, "order:foot"}}).error().code.str(),
+      "BAD_CHOICE");
 }
 
 }  // namespace

@@ -6,11 +6,12 @@ namespace {
 
 std::string codesIn(const std::filesystem::path& folder) {
   auto ct = CtFolder::scan(folder, Progress());
-  if (!ct.ok()) return ct.error().code;
+  if (!ct.ok()) return ct.error().code.str();
   std::string codes;
   for (const SeriesReport& series : ct->report().series) {
     for (const Finding& finding : series.findings) {
-      if (finding.severity == "refusal") codes += (codes.empty() ? "" : " ") + finding.code;
+      if (finding.severity == Severity::refusal)
+        codes += (codes.empty() ? "" : " ") + finding.code.str();
     }
   }
   return codes;

@@ -1,4 +1,5 @@
 #include "base/memory.h"
+#include "imaging/codes.h"
 #include "series_fixture.h"
 
 namespace trephine::test {
@@ -12,7 +13,7 @@ TEST_F(Refusal, AMissingSliceIsNamedInMillimetres) {
   const Finding finding = expectRefused("MISSING_SLICES");
   EXPECT_EQ(finding.slices, std::vector<std::string>{"102.50 mm"});
   ASSERT_TRUE(report_.error.has_value());
-  EXPECT_EQ(report_.error->code, "ALL_REFUSED");
+  EXPECT_EQ(report_.error->code.str(), "ALL_REFUSED");
 }
 
 TEST_F(Refusal, ATruncatedSliceIsAMissingSliceAndTheOthersAreStillListed) {
@@ -120,7 +121,7 @@ TEST_F(Refusal, ImagesThatAreNotCt) {
     put(data, DCM_Modality, "MR");
   });
   expectRefused("NOT_CT");
-  EXPECT_EQ(report_.error->code, "NO_CT");
+  EXPECT_EQ(report_.error->code.str(), "NO_CT");
 }
 
 TEST_F(Refusal, SecondaryCapturesThatSayTheyAreCt) {
@@ -228,7 +229,7 @@ TEST_F(Refusal, WhatNoAnswerCanSaveIsNotAskedAbout) {
   editAll([](DcmDataset& data) { put(data, DCM_PixelSpacing, "0\\0"); });
   EXPECT_EQ(scan().report().series.front().verdict, Verdict::refused);
   EXPECT_TRUE(scan().report().series.front().choices.empty());
-  EXPECT_FALSE(scan().bestSeries({{"LOSSY_SOURCE", "accept"}}));
+  EXPECT_FALSE(scan().bestSeries({{code::kLossySource, "accept"}}));
 }
 
 TEST_F(Refusal, OfAWholeSeriesWhoseOrientationIsNone) {

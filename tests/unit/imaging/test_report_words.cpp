@@ -1,6 +1,7 @@
 // What a report says, and whom it does not name.
 #include <regex>
 
+#include "imaging/codes.h"
 #include "imaging/report/report_page.h"
 #include "series_fixture.h"
 
@@ -90,7 +91,7 @@ TEST_F(ReportWords, CallShearAlongRowsNoGantryTilt) {
     EXPECT_EQ(find(only(), "GANTRY_TILT"), nullptr);
     const Finding* sideways = find(only(), "SHEARED_SIDEWAYS");
     ASSERT_NE(sideways, nullptr) << codes(only());
-    EXPECT_EQ(sideways->severity, "repair");
+    EXPECT_EQ(sideways->severity, Severity::repair);
     EXPECT_NE(sideways->text.find("sideways"), std::string::npos);
     EXPECT_GT(only().tilt_deg, 10.0);
   }
@@ -103,7 +104,7 @@ TEST_F(ReportWords, SayOfWhatIsRefusedThatNothingWasPutRight) {
   EXPECT_EQ(only().verdict, Verdict::refused);
   EXPECT_EQ(find(only(), "GANTRY_TILT")->action, "");
   EXPECT_EQ(reportPage(scanned_).find("straightened"), std::string::npos);
-  import({{ "LOSSY_SOURCE", "accept" }});
+  import({{ code::kLossySource, "accept" }});
   EXPECT_NE(find(chosen(), "GANTRY_TILT")->action.find("straightened"), std::string::npos);
 }
 
@@ -190,7 +191,7 @@ TEST_F(ReportWords, ANumberChoosesTheSeriesAsItsUidDoes) {
   const std::string uid = ct.report().series.front().uid;
   ASSERT_TRUE(ct.read("1", {}, Progress()).ok());
   EXPECT_EQ(ct.report().chosen, uid);
-  EXPECT_EQ(ct.read("2", {}, Progress()).error().code, "NO_SUCH_SERIES");
+  EXPECT_EQ(ct.read("2", {}, Progress()).error().code.str(), "NO_SUCH_SERIES");
 }
 
 TEST(SourceIds, ByAKeyStandForTheSameUidsAndForNobodyWithoutIt) {
@@ -209,13 +210,13 @@ TEST(SourceIds, ByAKeyStandForTheSameUidsAndForNobodyWithoutIt) {
 TEST_F(ReportWords, AnOptionThatNoSeriesOffersIsNamedWhereverItIsAsked) {
   editAll([](DcmDataset& data) { put(data, DCM_LossyImageCompression, "01"); });
   const auto answer = [&](const char* option) {
-    return scan().checkAnswers({{"LOSSY_SOURCE", option}});
+    return scan().checkAnswers({{code::kLossySource, option}});
   };
   EXPECT_TRUE(answer("accept").ok());
   ASSERT_FALSE(answer("yes").ok());
-  EXPECT_EQ(answer("yes").error().code, "BAD_CHOICE");
+  EXPECT_EQ(answer("yes").error().code.str(), "BAD_CHOICE");
   EXPECT_EQ(answer("yes").error().next, "Choose refuse or accept");
-  EXPECT_TRUE(scan().checkAnswers({{"PHASES", "7"}}).ok()) << "nobody asked";
+  EXPECT_TRUE(scan().checkAnswers({{code::kPhases, "7"}}).ok()) << "nobody asked";
 }
 
 TEST_F(ReportWords, AnOptionOfAQuestionThatComesWithAnAnswerIsChecked) {
@@ -227,11 +228,11 @@ TEST_F(ReportWords, AnOptionOfAQuestionThatComesWithAnAnswerIsChecked) {
       put(data, DCM_RescaleIntercept, "-1000");
     });
   }
-  EXPECT_TRUE(scan().checkAnswers({{"PHASES", "1"}, {"MISSING_SLICES", "guess"}}).ok());
-  EXPECT_TRUE(scan().checkAnswers({{"PHASES", "2"}, {"MISSING_SLICES", "fill"}}).ok());
-  const Status wrong = scan().checkAnswers({{"PHASES", "2"}, {"MISSING_SLICES", "guess"}});
+  EXPECT_TRUE(scan().checkAnswers({{code::kPhases, "1"}, {code::kMissingSlices, "guess"}}).ok());
+  EXPECT_TRUE(scan().checkAnswers({{code::kPhases, "2"}, {code::kMissingSlices, "fill"}}).ok());
+  const Status wrong = scan().checkAnswers({{code::kPhases, "2"}, {code::kMissingSlices, "guess"}});
   ASSERT_FALSE(wrong.ok());
-  EXPECT_EQ(wrong.error().code, "BAD_CHOICE");
+  EXPECT_EQ(wrong.error().code.str(), "BAD_CHOICE");
 }
 
 }  // namespace trephine::test

@@ -2,8 +2,10 @@
 // what is doubtful about it is said in the right words.
 #include <cmath>
 
+#include "imaging/codes.h"
 #include "imaging/structure_importer.h"
 #include "series_fixture.h"
+#include "volume/codes.h"
 
 namespace trephine::test {
 namespace {
@@ -23,18 +25,20 @@ struct Reported {
 };
 
 const Reported kReported[] = {
-    {"nii_sform_step_0.8_qform_0.6", "2.667 mm, the other of 1.5 x 2 x 2 mm", {{"FORMS_DIFFER", "qform"}}},
-    {"nii_qform_30mm_off", "up to 30 mm from where", {{"FORMS_DIFFER", "sform"}}},
-    {"concatenation_last_missing", "part 3 of 3 is missing", {{"INCOMPLETE", "accept"}}},
-    {"concatenation_middle_missing", "part 2 of 3 is missing", {{"MISSING_SLICES", "fill"}}},
-    {"jpeg_12bit_stream_header_10", "more bits than that", {{"HIGH_BITS", "use"}}},
-    {"rle_12bit_values_header_10", "more bits than that", {{"HIGH_BITS", "use"}}},
+    {"nii_sform_step_0.8_qform_0.6",
+     "2.667 mm, the other of 1.5 x 2 x 2 mm",
+     {{code::kFormsDiffer, "qform"}}},
+    {"nii_qform_30mm_off", "up to 30 mm from where", {{code::kFormsDiffer, "sform"}}},
+    {"concatenation_last_missing", "part 3 of 3 is missing", {{code::kIncomplete, "accept"}}},
+    {"concatenation_middle_missing", "part 2 of 3 is missing", {{code::kMissingSlices, "fill"}}},
+    {"jpeg_12bit_stream_header_10", "more bits than that", {{code::kHighBits, "use"}}},
+    {"rle_12bit_values_header_10", "more bits than that", {{code::kHighBits, "use"}}},
     {"mhd_352_bytes_more", "352 bytes longer than its header says", {}, false},
     {"dual_energy_alternate", "(80 kV)", {}, false},
     {"enhanced_cardiac_delay_only", "(40 ms)", {}, false},
     {"wrong_syntax_implicit_called_explicit", "written in Implicit VR", {}, false},
     {"un_undefined_explicit_inside", "pass"},
-    {"cbct_one_position_slicelocation", "slice locations", {{"ONE_LOCATION", "locations"}}},
+    {"cbct_one_position_slicelocation", "slice locations", {{code::kOneLocation, "locations"}}},
     {"nii_padding_3024", "-3024 HU", {}, false},
     {"nii_microct_mu_per_cm", "attenuation", {}, false},
     {"nrrd_detached_list", "voxels are in several files", {}, false},
@@ -111,9 +115,9 @@ TEST(ReportedInputs, SegmentationsAreReadOrNamed) {
   EXPECT_EQ(organ(on("seg_ct_tilted", "tilted.dcm"), "liver"), "");
   EXPECT_EQ(organ(on("seg_ct", "lab_names_in_header.nii.gz"), "liver"), "");
   EXPECT_EQ(organ(on("seg_ct", "masks"), "liver"), "");
-  EXPECT_EQ(on("seg_ct", "rtstruct.dcm").error().code, "CONTOURS");
-  EXPECT_EQ(on("seg_ct", "lab_identity_affine.nii.gz").error().code, "NO_AFFINE");
-  EXPECT_EQ(organ(on("seg_ct", "lab_identity_affine.nii.gz", {{"NO_AFFINE", "ct"}}), "label 5"),
+  EXPECT_EQ(on("seg_ct", "rtstruct.dcm").error().code.str(), "CONTOURS");
+  EXPECT_EQ(on("seg_ct", "lab_identity_affine.nii.gz").error().code.str(), "NO_AFFINE");
+  EXPECT_EQ(organ(on("seg_ct", "lab_identity_affine.nii.gz", {{code::kNoAffine, "ct"}}), "label 5"),
             "");
 }
 

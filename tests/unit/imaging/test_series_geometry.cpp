@@ -17,7 +17,8 @@ StackInput axialStack(std::initializer_list<double> places) {
 
 std::string codesOf(const Stack& stack) {
   std::string codes;
-  for (const Finding& finding : stack.findings) codes += (codes.empty() ? "" : " ") + finding.code;
+  for (const Finding& finding : stack.findings)
+    codes += (codes.empty() ? "" : " ") + finding.code.str();
   return codes;
 }
 

@@ -87,7 +87,7 @@ class SlowSourceTest : public SeriesFixture {
   }
   template <class T>
   static std::string codeOf(const Result<T>& result) {
-    return result ? "" : result.error().code;
+    return result ? "" : result.error().code.str();
   }
 };
 
@@ -186,7 +186,7 @@ TEST_F(SlowSourceTest, ASourceThatVanishesWhileItIsReadIsRefusedAsAWhole) {
     const SlowSource slow(folder().c_str(), 1e9, 2e6);  // of 8 MB
     const auto volume = ct.read(*ct.bestSeries(), {}, Progress());
     ASSERT_FALSE(volume);
-    EXPECT_EQ(volume.error().code, "SOURCE_VANISHED") << volume.error().sentence();
+    EXPECT_EQ(volume.error().code.str(), "SOURCE_VANISHED") << volume.error().sentence();
     EXPECT_EQ(volume.error().what, "The source vanished while it was read");
     const SeriesReport& series = ct.report().series.front();
     EXPECT_EQ(series.verdict, Verdict::refused);
@@ -212,7 +212,7 @@ TEST_F(SlowSourceTest, AFolderThatIsRemovedWhileItIsReadIsRefusedAsAWhole) {
     const auto volume = ct.read(*ct.bestSeries(), {}, Progress());
     away.join();
     ASSERT_FALSE(volume);
-    EXPECT_EQ(volume.error().code, "SOURCE_VANISHED") << volume.error().sentence();
+    EXPECT_EQ(volume.error().code.str(), "SOURCE_VANISHED") << volume.error().sentence();
   }
 }
 
@@ -224,7 +224,7 @@ TEST_F(SlowSourceTest, AFewSlicesThatCannotBeReadAreStillAskedAbout) {
   }
   const auto volume = ct.read(*ct.bestSeries(), {}, Progress());
   ASSERT_FALSE(volume);
-  EXPECT_EQ(volume.error().code, "MISSING_SLICES") << volume.error().sentence();
+  EXPECT_EQ(volume.error().code.str(), "MISSING_SLICES") << volume.error().sentence();
 }
 
 TEST_F(SlowSourceTest, AVolumeFileThatVanishesIsRefusedByTheSameName) {
@@ -270,7 +270,7 @@ TEST_F(SlowSourceTest, AFoundSeriesCanBeHadBeforeTheScanEnds) {
   EXPECT_EQ(series->verdict, Verdict::repaired);
   const Finding* stopped = find(*series, "SCAN_STOPPED");
   ASSERT_NE(stopped, nullptr) << codes(*series);
-  EXPECT_EQ(stopped->severity, "repair");
+  EXPECT_EQ(stopped->severity, Severity::repair);
   EXPECT_NE(stopped->text.find("files were not looked at"), std::string::npos) << stopped->text;
   EXPECT_EQ(ct->report().files_seen, 1600);
   int left = 0;
@@ -280,7 +280,7 @@ TEST_F(SlowSourceTest, AFoundSeriesCanBeHadBeforeTheScanEnds) {
   const auto other = std::ranges::find(ct->report().series, "b", &SeriesReport::description);
   if (other != ct->report().series.end()) {
     EXPECT_EQ(other->verdict, Verdict::refused) << "half of a series is none";
-    EXPECT_EQ(find(*other, "SCAN_STOPPED")->severity, "refusal");
+    EXPECT_EQ(find(*other, "SCAN_STOPPED")->severity, Severity::refusal);
   }
   EXPECT_EQ(ct->bestSeries(), series->uid);
   const auto volume = ct->read(series->uid, {}, Progress());

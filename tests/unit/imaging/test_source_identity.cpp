@@ -1,3 +1,4 @@
+#include "imaging/codes.h"
 #include "imaging/common/source_identity.h"
 #include "imaging/report/provenance.h"
 #include "series_fixture.h"
@@ -59,10 +60,11 @@ TEST(Provenance, IsReadBackAsItWasWritten) {
   of.transfer_syntax = "JPEG 2000";
   of.lossy = true;
   of.slices_used = 120;
-  of.answers = {{"COUCH", "remove"}, {"FACE", "deface"}};
+  of.answers = {{code::kCouch, "remove"}, {code::kFace, "deface"}};
   of.unanswered = {"FACE"};
   of.unused_answers = {"PHASES"};
-  of.changes = {{"GANTRY_TILT", "repair", "The stack leans", {"3", "4"}, "Straightened"}};
+  of.changes = {
+      {code::kGantryTilt, Severity::repair, "The stack leans", {"3", "4"}, "Straightened"}};
   of.crop = VoxelBox{{1, 2, 3}, {10, 20, 30}};
   of.reduction = 2;
   of.loss = MeasuredLoss{3.5, 40.0, -1.25};

@@ -73,10 +73,12 @@ TEST(SourceUids, OfAnotherFolderOrOfNoDicomAreRefused) {
   importedFrom(folder / "b", 70);
   const auto other = sourceUids(folder / "b", own.of, own.ct.geometry);
   ASSERT_FALSE(other);
-  EXPECT_EQ(other.error().code, "BAD_SOURCE");
+  EXPECT_EQ(other.error().code.str(), "BAD_SOURCE");
   EXPECT_NE(other.error().what.find("not in this folder"), std::string::npos);
-  EXPECT_EQ(sourceUids(folder / "a", Provenance(), own.ct.geometry).error().code, "BAD_SOURCE");
-  EXPECT_EQ(sourceUids(folder / "none", own.of, own.ct.geometry).error().code, "MISSING_FOLDER");
+  EXPECT_EQ(sourceUids(folder / "a", Provenance(), own.ct.geometry).error().code.str(),
+            "BAD_SOURCE");
+  EXPECT_EQ(sourceUids(folder / "none", own.of, own.ct.geometry).error().code.str(),
+            "MISSING_FOLDER");
 }
 
 }  // namespace

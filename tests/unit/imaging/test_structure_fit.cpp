@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include "imaging/codes.h"
 #include "imaging/segmentation/structure_fit.h"
 #include "volume/phantom.h"
 
@@ -39,12 +40,12 @@ Segmentation liverOf(const LabelMap& truth) {
 }
 
 bool found(const std::vector<Finding>& findings, const std::string& code) {
-  return std::ranges::any_of(findings, [&](const Finding& f) { return f.code == code; });
+  return std::ranges::any_of(findings, [&](const Finding& f) { return f.code.str() == code; });
 }
 
 std::string codeOf(const Segmentation& of, const Answers& answers = {}, bool ask_all = true) {
   const auto fit = fitStructures(of, abdomen().ct, answers, ask_all);
-  return fit ? "fits" : fit.error().code;
+  return fit ? "fits" : fit.error().code.str();
 }
 
 TEST(StructureFit, AFittingLiverIsTakenAsItIs) {
@@ -85,7 +86,7 @@ TEST(StructureFit, WhatCoversAPartOfTheCtSaysWhich) {
   EXPECT_EQ(fit->covers.high[2], slices / 2 + 5);
   ASSERT_EQ(fit->findings.size(), 1u);
   const Finding& finding = fit->findings[0];
-  EXPECT_EQ(finding.code, "PART_OF_CT");
+  EXPECT_EQ(finding.code.str(), "PART_OF_CT");
   const std::string words = "slices " + std::to_string(slices / 2 + 1) + " to " +
                             std::to_string(slices / 2 + 5) + " of " + std::to_string(slices) +
                             " (30 of";
@@ -98,7 +99,7 @@ TEST(StructureFit, WhatLiesElsewhereOrHalfOutsideIsRefusedByName) {
   const double far_mm = 6.0 * slices * 0.6;
   const auto fit = fitStructures(part(0, slices, Vec3(0, 0, far_mm)), abdomen().ct);
   ASSERT_FALSE(fit);
-  EXPECT_EQ(fit.error().code, "HALF_OUTSIDE");
+  EXPECT_EQ(fit.error().code.str(), "HALF_OUTSIDE");
   EXPECT_NE(fit.error().what.find("'liver'"), std::string::npos);
 }
 
@@ -107,7 +108,7 @@ TEST(StructureFit, APartThatIsOutsideIsLeftOutAndSaid) {
   // Up until a quarter of it or so is beyond the scan.
   for (double by_mm = 0.0; by_mm < 6.0 * slices; by_mm += 6.0) {
     const auto fit = fitStructures(part(0, slices, Vec3(0, 0, by_mm)), abdomen().ct,
-                                   {{"HU_NOT_TISSUE", "keep"}});
+                                   {{code::kHuNotTissue, "keep"}});
     if (!fit || fit->structures[0].outside_percent < 10.0) continue;
     EXPECT_TRUE(found(fit->structures[0].findings, "OUTSIDE"));
     EXPECT_NEAR(fit->structures[0].ml,
@@ -134,14 +135,14 @@ TEST(StructureFit, AMirroredLiverIsRefusedWithTheSidesNamed) {
   const Segmentation of = mirroredLiver();
   const auto fit = fitStructures(of, abdomen().ct);
   ASSERT_FALSE(fit);
-  EXPECT_EQ(fit.error().code, "MIRRORED");
+  EXPECT_EQ(fit.error().code.str(), "MIRRORED");
   EXPECT_NE(fit.error().what.find("left and right"), std::string::npos) << fit.error().what;
 }
 
 TEST(StructureFit, AMirroredOneIsTakenWhereAPersonSaysSoAndNotElse) {
   const Segmentation of = mirroredLiver();
   EXPECT_EQ(codeOf(of, {}, false), "MIRRORED") << "nor where nobody is asked";
-  EXPECT_EQ(codeOf(of, {{"MIRRORED", "keep"}, {"HU_NOT_TISSUE", "keep"}}), "fits");
+  EXPECT_EQ(codeOf(of, {{code::kMirrored, "keep"}, {code::kHuNotTissue, "keep"}}), "fits");
 }
 
 // Each structure alone, in its place: whatever would have closer HU elsewhere.
@@ -175,7 +176,7 @@ TEST(StructureFit, WhatAnObliqueFileCoversIsCounted) {
   of.geometry.direction =
       glm::mat3_cast(glm::angleAxis(glm::radians(45.0), Vec3(0, 0, 1))) * of.geometry.direction;
   of.geometry.origin_mm += middle - of.geometry.centre_mm();
-  const auto fit = fitStructures(of, abdomen().ct, {{"HU_NOT_TISSUE", "keep"}}, false);
+  const auto fit = fitStructures(of, abdomen().ct, {{code::kHuNotTissue, "keep"}}, false);
   ASSERT_TRUE(fit) << fit.error().sentence();
   const GridGeometry& g = abdomen().ct.geometry;
   const Mat4 to_file = of.geometry.patientToVoxel() * g.voxelToPatient();
@@ -198,13 +199,13 @@ TEST(StructureFit, AStructureWhoseHuCannotBeItsTissueIsAskedAbout) {
   Segmentation of = liverOf(abdomen().truth);
   of.segments[0].name = "Left_lung";
   EXPECT_EQ(codeOf(of), "HU_NOT_TISSUE");
-  const auto kept = fitStructures(of, abdomen().ct, {{"HU_NOT_TISSUE", "keep"}});
+  const auto kept = fitStructures(of, abdomen().ct, {{code::kHuNotTissue, "keep"}});
   ASSERT_TRUE(kept) << kept.error().sentence();
   ASSERT_EQ(kept->choices.size(), 1u);
-  EXPECT_EQ(kept->choices[0].code, "HU_NOT_TISSUE");
+  EXPECT_EQ(kept->choices[0].code.str(), "HU_NOT_TISSUE");
   EXPECT_TRUE(found(kept->findings, "HU_NOT_TISSUE"));
   EXPECT_EQ(codeOf(of, {}, false), "fits") << "where nobody is asked it is said";
-  EXPECT_EQ(codeOf(of, {{"HU_NOT_TISSUE", "perhaps"}}), "BAD_CHOICE");
+  EXPECT_EQ(codeOf(of, {{code::kHuNotTissue, "perhaps"}}), "BAD_CHOICE");
 }
 
 TEST(StructureFit, OverlapsAreAskedAboutOnce) {
@@ -223,8 +224,8 @@ TEST(StructureFit, OverlapsAreAskedAboutOnce) {
     return fit->structures[1].voxels;
   };
   EXPECT_EQ(count({}), taken) << "the smaller one";
-  EXPECT_EQ(count({{"OVERLAP", "last"}}), taken);
-  EXPECT_EQ(count({{"OVERLAP", "first"}}), 0u);
+  EXPECT_EQ(count({{code::kOverlap, "last"}}), taken);
+  EXPECT_EQ(count({{code::kOverlap, "first"}}), 0u);
 }
 
 TEST(StructureFit, NothingAtAllAndAnEmptyStructureAreSaid) {

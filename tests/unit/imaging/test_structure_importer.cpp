@@ -1,5 +1,6 @@
 #include <algorithm>
 
+#include "imaging/codes.h"
 #include "imaging/dicom/seg_writer.h"
 #include "imaging/importer.h"
 #include "imaging/structure_importer.h"
@@ -60,7 +61,7 @@ TEST(StructureImporter, ASegmentationOfThisCtIsTakenWithoutAWord) {
   ASSERT_TRUE(fit) << fit.error().sentence();
   EXPECT_EQ(fit->structures[0].voxels, 600u);
   EXPECT_TRUE(fit->choices.empty());
-  for (const Finding& f : fit->findings) EXPECT_EQ(f.code, "PART_OF_CT") << f.text;
+  for (const Finding& f : fit->findings) EXPECT_EQ(f.code.str(), "PART_OF_CT") << f.text;
   const LabelMap liver = importedLiver(own.volume);
   for (std::size_t v = 0; v < liver.labels.size(); ++v) {
     ASSERT_EQ(fit->map.labels[v] != 0, liver.labels[v] != 0) << v;
@@ -73,12 +74,14 @@ TEST(StructureImporter, AnotherStudyThatLiesOnTheCtIsAskedAbout) {
   const Written other = write(belly(Vec3(0.4, 0.0, 0.0), 7), folder / "b");
   const auto asked = importStructures(other.seg, own.volume, of(own.ids));
   ASSERT_FALSE(asked);
-  EXPECT_EQ(asked.error().code, "OTHER_FRAME");
+  EXPECT_EQ(asked.error().code.str(), "OTHER_FRAME");
   EXPECT_NE(asked.error().what.find("another study"), std::string::npos);
-  const auto kept = importStructures(other.seg, own.volume, of(own.ids, {{"OTHER_FRAME", "keep"}}));
+  const auto kept =
+      importStructures(other.seg, own.volume, of(own.ids, {{code::kOtherFrame, "keep"}}));
   ASSERT_TRUE(kept) << kept.error().sentence();
   EXPECT_EQ(kept->choices.size(), 1u);
-  EXPECT_FALSE(importStructures(other.seg, own.volume, of(own.ids, {{"OTHER_FRAME", "refuse"}})));
+  EXPECT_FALSE(
+      importStructures(other.seg, own.volume, of(own.ids, {{code::kOtherFrame, "refuse"}})));
   // Of a volume file nothing is known: its place alone speaks.
   EXPECT_TRUE(importStructures(other.seg, own.volume, of({})));
 }
@@ -95,11 +98,11 @@ TEST(StructureImporter, APersonsAnswersNeedNoFileAnyMore) {
   const auto* question = std::get_if<StructureAsked>(&*asked);
   ASSERT_TRUE(question);
   EXPECT_EQ(question->kind, StructureAsked::Kind::option);
-  EXPECT_EQ(question->choice.code, "OTHER_FRAME");
+  EXPECT_EQ(question->choice.code.str(), "OTHER_FRAME");
   EXPECT_EQ(question->choice.options, std::vector<std::string>{"keep"});
   // It has everything by now, also of a file that is not there any more.
   ASSERT_TRUE(std::filesystem::remove(other.seg));
-  request.answers["OTHER_FRAME"] = "keep";
+  request.answers[code::kOtherFrame] = "keep";
   const auto fit = file.fit(own.volume, request);
   ASSERT_TRUE(fit) << fit.error().sentence();
   ASSERT_TRUE(std::holds_alternative<StructureFit>(*fit));
@@ -114,7 +117,7 @@ TEST(StructureImporter, ACancelledLookAtAHeaderIsNoDamage) {
   request.ask_person = true;
   Progress progress;
   progress.cancel();
-  EXPECT_EQ(file.fit(own.volume, request, progress).error().code, "CANCELLED");
+  EXPECT_EQ(file.fit(own.volume, request, progress).error().code.str(), "CANCELLED");
   EXPECT_TRUE(file.fit(own.volume, request)) << "and it can be read again";
 }
 
@@ -122,10 +125,10 @@ TEST(StructureImporter, ASegmentationOfAnotherPatientIsRefused) {
   const test::TemporaryFolder folder;
   const Written own = write(belly(), folder / "a");
   const Written other = write(belly(Vec3(13.0, 2.0, 31.0), 7), folder / "b");
-  for (const Answers& answers : {Answers(), Answers{{"OTHER_FRAME", "keep"}}}) {
+  for (const Answers& answers : {Answers(), Answers{{code::kOtherFrame, "keep"}}}) {
     const auto refused = importStructures(other.seg, own.volume, of(own.ids, answers));
     ASSERT_FALSE(refused);
-    EXPECT_EQ(refused.error().code, "OTHER_PATIENT");
+    EXPECT_EQ(refused.error().code.str(), "OTHER_PATIENT");
   }
 }
 
@@ -137,7 +140,7 @@ TEST(StructureImporter, OfACaseThatIsKeptByAKeyTheSameIsTakenAndAnotherRefused) 
   ASSERT_TRUE(fit) << fit.error().sentence();
   EXPECT_TRUE(fit->choices.empty());
   const Written other = write(belly(Vec3(13.0, 2.0, 31.0), 7), folder / "b");
-  EXPECT_EQ(importStructures(other.seg, own.volume, of(kept)).error().code, "OTHER_PATIENT");
+  EXPECT_EQ(importStructures(other.seg, own.volume, of(kept)).error().code.str(), "OTHER_PATIENT");
 }
 
 TEST(StructureImporter, WhereItIsNotKnownWhichCtTheCaseIsOfThatIsSaidAndThePlaceDecides) {
@@ -149,7 +152,7 @@ TEST(StructureImporter, WhereItIsNotKnownWhichCtTheCaseIsOfThatIsSaidAndThePlace
   ASSERT_TRUE(fit) << fit.error().sentence();
   EXPECT_EQ(std::ranges::count(fit->findings, "SOURCE_UNCHECKED", &Finding::code), 1);
   const Written other = write(belly(Vec3(13.0, 2.0, 31.0), 7), folder / "b");
-  EXPECT_EQ(importStructures(other.seg, own.volume, of(unknown)).error().code, "OTHER_FRAME");
+  EXPECT_EQ(importStructures(other.seg, own.volume, of(unknown)).error().code.str(), "OTHER_FRAME");
 }
 
 TEST(StructureImporter, NamesThatAreHiddenAreNeitherSaidNorInTheMap) {

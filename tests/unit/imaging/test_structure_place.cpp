@@ -165,7 +165,7 @@ LabelMap mirroredAlong(LabelMap map, std::size_t axis) {
 // "fits", or the code and what is said.
 std::string answerTo(const Segmentation& of, const Volume& ct) {
   const auto fit = fitStructures(of, ct);
-  return fit ? "fits" : fit.error().code + ": " + fit.error().what;
+  return fit ? "fits" : fit.error().code.str() + ": " + fit.error().what;
 }
 
 bool asks(const Segmentation& of, const Volume& ct, const std::string& code) {

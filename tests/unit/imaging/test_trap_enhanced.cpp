@@ -1,5 +1,6 @@
 // Enhanced multi-frame CT: what a frame says overrides what all share, and frames are slices.
 #include "base/memory.h"
+#include "imaging/codes.h"
 #include "series_fixture.h"
 
 namespace trephine::test {
@@ -112,7 +113,7 @@ TEST_F(TrapEnhanced, PhasesByTemporalPositionIndex) {
   expectRefused("PHASES");
   EXPECT_EQ(report_.series.front().phases, 2);
   for (const int phase : {1, 2}) {
-    const Volume volume = import({{"PHASES", std::to_string(phase)}});
+    const Volume volume = import({{code::kPhases, std::to_string(phase)}});
     ASSERT_EQ(volume.geometry.size[2], 4);
     for (int k = 0; k < 4; ++k) expectFrame(volume, k, 2 * k + (phase == 1 ? 1 : 0));
   }
@@ -178,7 +179,7 @@ TEST_F(TrapEnhanced, ACutFileKeepsTheFramesThatAreWhole) {
   const auto file = std::filesystem::directory_iterator(folder())->path();
   std::filesystem::resize_file(file, std::filesystem::file_size(file) - 35 * 2 - 10);
   expectRefused("MISSING_SLICES");
-  const Volume volume = import({{"MISSING_SLICES", "part"}});
+  const Volume volume = import({{code::kMissingSlices, "part"}});
   ASSERT_EQ(volume.geometry.size[2], 4);
   for (int k = 0; k < 4; ++k) expectFrame(volume, k, k);
 }
@@ -194,7 +195,7 @@ TEST_F(TrapEnhanced, ACutFileKeepsTheCompressedFramesThatAreWhole) {
       const auto file = std::filesystem::directory_iterator(folder())->path();
       std::filesystem::resize_file(file, std::filesystem::file_size(file) - std::uintmax_t(cut));
       EXPECT_EQ(expectRefused("MISSING_SLICES").slices, std::vector<std::string>{"104.00 mm"});
-      const Volume volume = import({{"MISSING_SLICES", "part"}});
+      const Volume volume = import({{code::kMissingSlices, "part"}});
       ASSERT_EQ(volume.geometry.size[2], 4);
       for (int k = 0; k < 4; ++k) expectFrame(volume, k, k);
     }

@@ -3,6 +3,7 @@
 
 #include <stdexcept>
 
+#include "imaging/codes.h"
 #include "imaging/report/provenance.h"
 #include "imaging/report/report_page.h"
 #include "series_fixture.h"
@@ -132,7 +133,7 @@ TEST_F(TrapFiles, HeadersThatAreCutAnywhereNeverLoseTheOtherSlices) {
         ASSERT_EQ(cut, 4);
         ASSERT_EQ(volume->geometry.size[2], 4);
       } else {
-        ASSERT_EQ(volume.error().code, "MISSING_SLICES");
+        ASSERT_EQ(volume.error().code.str(), "MISSING_SLICES");
       }
     }
   }
@@ -391,7 +392,7 @@ TEST_F(TrapFiles, ProvenanceAndPageTellNothingOfThePatient) {
   const auto refused = ct.read("1.2.826.4711", request, Progress());
   ASSERT_FALSE(refused.ok());
   expectSilent(reportPage(ct.report()));
-  request.answers = {{"MISSING_SLICES", "fill"}};
+  request.answers = {{code::kMissingSlices, "fill"}};
   const auto volume = ct.read("1.2.826.4711", request, Progress());
   ASSERT_TRUE(volume.ok()) << volume.error().sentence();
   expectSilent(reportPage(ct.report()));

@@ -2,6 +2,7 @@
 // computed here from the slices that were written.
 #include <cmath>
 
+#include "imaging/codes.h"
 #include "series_fixture.h"
 
 namespace trephine::test {
@@ -73,7 +74,7 @@ TEST_F(TrapGaps, OneMissingSliceIsNamedFilledAndMarked) {
   EXPECT_EQ(report_.series.front().choices.front().options,
             (std::vector<std::string>{"refuse", "fill", "part"}));
 
-  const Volume volume = import({{"MISSING_SLICES", "fill"}});
+  const Volume volume = import({{code::kMissingSlices, "fill"}});
   ASSERT_EQ(volume.geometry.size, (Index3{7, 5, 8}));
   EXPECT_DOUBLE_EQ(volume.geometry.spacing_mm.z, 1.25);
   for (int k = 0; k < 8; ++k) {
@@ -89,15 +90,15 @@ TEST_F(TrapGaps, OneMissingSliceIsNamedFilledAndMarked) {
   }
   EXPECT_EQ(chosen().verdict, Verdict::repaired);
   ASSERT_NE(find(chosen(), "MISSING_SLICES"), nullptr);
-  EXPECT_EQ(find(chosen(), "MISSING_SLICES")->severity, "repair");
+  EXPECT_EQ(find(chosen(), "MISSING_SLICES")->severity, Severity::repair);
   EXPECT_EQ(find(chosen(), "MISSING_SLICES")->slices, std::vector<std::string>{"103.75 mm"});
   ASSERT_TRUE(report_.provenance.has_value());
-  EXPECT_EQ(report_.provenance->answers, (Answers{{"MISSING_SLICES", "fill"}}));
-  EXPECT_EQ(report_.provenance->changes.front().code, "MISSING_SLICES");
+  EXPECT_EQ(report_.provenance->answers, (Answers{{code::kMissingSlices, "fill"}}));
+  EXPECT_EQ(report_.provenance->changes.front().code.str(), "MISSING_SLICES");
   EXPECT_EQ(report_.provenance->slices_used, 7);
   EXPECT_TRUE(report_.provenance->unanswered.empty());
   EXPECT_TRUE(report_.provenance->unused_answers.empty());
-  import({{"MISSING_SLICES", "fill"}, {"PHASES", "2"}});
+  import({{code::kMissingSlices, "fill"}, { code::kPhases, "2" }});
   EXPECT_EQ(report_.provenance->unused_answers, std::vector<std::string>{"PHASES"});
 }
 
@@ -113,7 +114,7 @@ TEST_F(TrapGaps, AGapOfMoreSlicesThanWereScannedIsNotFilled) {
   EXPECT_EQ(expectRefused("MISSING_SLICES").action, "Copy or export the series again");
   EXPECT_EQ(report_.series.front().choices.front().options,
             (std::vector<std::string>{"refuse", "part"}));
-  EXPECT_EQ(refusal({{"MISSING_SLICES", "fill"}}).code, "BAD_CHOICE");
+  EXPECT_EQ(refusal({{code::kMissingSlices, "fill"}}).code.str(), "BAD_CHOICE");
 }
 
 TEST_F(TrapGaps, SlicesLostAtTheEndAreCutOffAndDoNotCountAsFilled) {
@@ -123,13 +124,13 @@ TEST_F(TrapGaps, SlicesLostAtTheEndAreCutOffAndDoNotCountAsFilled) {
   }
   addPatterns({100, 101, 102, 104});  // as if the copying of the others had been broken off
   expectRefused("MISSING_SLICES");
-  const Volume volume = import({{"MISSING_SLICES", "fill"}});
+  const Volume volume = import({{code::kMissingSlices, "fill"}});
   EXPECT_EQ(volume.geometry.size[2], 5);
 }
 
 TEST_F(TrapGaps, ThePartWithoutAGapIsTheLongest) {
   addPatterns({100, 101.25, 102.5, 105, 106.25, 107.5, 108.75});
-  const Volume volume = import({{"MISSING_SLICES", "part"}});
+  const Volume volume = import({{code::kMissingSlices, "part"}});
   ASSERT_EQ(volume.geometry.size, (Index3{7, 5, 4}));
   EXPECT_EQ(volume.geometry.origin_mm, Vec3(-20, 10.5, 105));
   EXPECT_DOUBLE_EQ(volume.geometry.spacing_mm.z, 1.25);
@@ -145,7 +146,7 @@ TEST_F(TrapGaps, SeveralMissingSlicesAreNamedAndFilled) {
   EXPECT_EQ(expectRefused("MISSING_SLICES").slices,
             (std::vector<std::string>{"102.50 mm", "106.25 mm to 107.50 mm (2 slices)"}));
   EXPECT_TRUE(report_.series.front().findings.front().text.starts_with("3 slices"));
-  const Volume volume = import({{"MISSING_SLICES", "fill"}});
+  const Volume volume = import({{code::kMissingSlices, "fill"}});
   ASSERT_EQ(volume.geometry.size[2], 10);
   expectInterpolated(volume, 100, 111.25, 0.0);
 }
@@ -153,16 +154,16 @@ TEST_F(TrapGaps, SeveralMissingSlicesAreNamedAndFilled) {
 TEST_F(TrapGaps, TwoSpacingsAskAndAreResampledOverTheWholeExtent) {
   addPatterns({100, 101, 102, 103, 104, 105, 107.6, 110.2, 112.8});
   expectRefused("UNEVEN_SPACING");
-  const Volume volume = import({{"UNEVEN_SPACING", "resample"}});
+  const Volume volume = import({{code::kUnevenSpacing, "resample"}});
   EXPECT_EQ(volume.geometry.size[2], 14);
   expectInterpolated(volume, 100, 112.8, 0.01);
   EXPECT_EQ(chosen().verdict, Verdict::repaired);
-  EXPECT_EQ(find(chosen(), "UNEVEN_SPACING")->severity, "repair");
+  EXPECT_EQ(find(chosen(), "UNEVEN_SPACING")->severity, Severity::repair);
 }
 
 TEST_F(TrapGaps, OfTwoSpacingsTheLongestEvenPartCanBeTaken) {
   addPatterns({100, 101, 102, 103, 104, 105, 107.6, 110.2, 112.8});
-  const Volume volume = import({{"UNEVEN_SPACING", "part"}});
+  const Volume volume = import({{code::kUnevenSpacing, "part"}});
   ASSERT_EQ(volume.geometry.size[2], 6);
   EXPECT_DOUBLE_EQ(volume.geometry.spacing_mm.z, 1.0);
   for (std::size_t v = 0; v < volume.hu.size(); ++v) {
@@ -204,14 +205,14 @@ TEST_F(TrapGaps, StepsWithinOneHundredthAreNotTouched) {
 TEST_F(TrapGaps, AGapInAJitteredStackIsFilledWhereTheSlicesLie) {
   addPatterns({100, 102.1, 104, 106, 110.1, 112, 114.1, 116});
   EXPECT_EQ(expectRefused("MISSING_SLICES").slices.size(), 1u);
-  const Volume volume = import({{"MISSING_SLICES", "fill"}});
+  const Volume volume = import({{code::kMissingSlices, "fill"}});
   ASSERT_EQ(volume.geometry.size[2], 9);
   expectInterpolated(volume, 100, 116, 0.02);
 }
 
 TEST_F(TrapGaps, ThePartOfAJitteredStackIsAsLongAsTheSlicesBetweenGaps) {
   addPatterns({100, 102.1, 104, 106, 110.1, 112, 114.1, 116, 118});
-  const Volume volume = import({{"MISSING_SLICES", "part"}});
+  const Volume volume = import({{code::kMissingSlices, "part"}});
   ASSERT_EQ(volume.geometry.size[2], 5);
   written_.erase(written_.begin(), written_.begin() + 4);
   expectInterpolated(volume, 110.1, 118, 0.02);
@@ -229,7 +230,7 @@ TEST_F(TrapGaps, WithoutTheFirstAndLastSliceTheRestIsSaidToBeAll) {
   EXPECT_EQ(expectRefused("MISSING_SLICES").slices,
             (std::vector<std::string>{"100.00 mm", "110.00 mm"}));
   for (const char* option : {"fill", "part"}) {
-    const Volume volume = import({{"MISSING_SLICES", option}});
+    const Volume volume = import({{code::kMissingSlices, option}});
     ASSERT_EQ(volume.geometry.size[2], 4) << option;
     EXPECT_EQ(volume.geometry.origin_mm.z, 102.0);
     for (std::size_t v = 0; v < volume.hu.size(); ++v) {
@@ -240,12 +241,12 @@ TEST_F(TrapGaps, WithoutTheFirstAndLastSliceTheRestIsSaidToBeAll) {
 
 TEST_F(TrapGaps, AnAnswerThatCannotBeIsRefusedAndOneThatIsNotAskedForIsNot) {
   addPatterns({100, 101.25, 102.5, 105, 106.25});
-  EXPECT_EQ(refusal({{"MISSING_SLICES", "guess"}}).code, "BAD_CHOICE");
-  EXPECT_EQ(refusal({{"MISING_SLICES", "fill"}}).code, "BAD_CHOICE");
-  EXPECT_EQ(refusal({{"missing_slices", "fill"}}).code, "BAD_CHOICE");
-  EXPECT_EQ(refusal({{"MISSING_SLICES", "refuse"}}).code, "MISSING_SLICES");
-  import({{"MISSING_SLICES", "fill"}, {"PHASES", "7"}, { "LOSSY_SOURCE", "accept" }});
-  EXPECT_EQ(report_.provenance->answers, (Answers{{"MISSING_SLICES", "fill"}}));
+  EXPECT_EQ(refusal({{code::kMissingSlices, "guess"}}).code.str(), "BAD_CHOICE");
+  EXPECT_EQ(refusal({{"MISING_SLICES", "fill"}}).code.str(), "BAD_CHOICE");
+  EXPECT_EQ(refusal({{"missing_slices", "fill"}}).code.str(), "BAD_CHOICE");
+  EXPECT_EQ(refusal({{code::kMissingSlices, "refuse"}}).code.str(), "MISSING_SLICES");
+  import({{code::kMissingSlices, "fill"}, {code::kPhases, "7"}, { code::kLossySource, "accept" }});
+  EXPECT_EQ(report_.provenance->answers, (Answers{{code::kMissingSlices, "fill"}}));
 }
 
 }  // namespace trephine::test

@@ -1,6 +1,7 @@
 // Several slices at one place: phases, copies, overlaps.
 #include <random>
 
+#include "imaging/codes.h"
 #include "series_fixture.h"
 
 namespace trephine::test {
@@ -56,11 +57,11 @@ class TrapRepeats : public SeriesFixture {
     EXPECT_EQ(report_.series.front().phases, 2);
     EXPECT_EQ(report_.series.front().choices.front().options,
               (std::vector<std::string>{"refuse", "1", "2"}));
-    expectPhase(import({{"PHASES", "1"}}), 0);
-    expectPhase(import({{"PHASES", "2"}}), 1);
+    expectPhase(import({{code::kPhases, "1"}}), 0);
+    expectPhase(import({{code::kPhases, "2"}}), 1);
     EXPECT_EQ(chosen().verdict, Verdict::repaired);
-    EXPECT_EQ(report_.provenance->answers, (Answers{{"PHASES", "2"}}));
-    EXPECT_EQ(refusal({{"PHASES", "3"}}).code, "BAD_CHOICE");
+    EXPECT_EQ(report_.provenance->answers, (Answers{{code::kPhases, "2"}}));
+    EXPECT_EQ(refusal({{code::kPhases, "3"}}).code.str(), "BAD_CHOICE");
   }
 };
 
@@ -121,7 +122,7 @@ TEST_F(TrapRepeats, PhasesThatShareASliceOfAirStayWhole) {
   }
   expectRefused("PHASES");
   for (const char* phase : {"1", "2"}) {
-    const Volume volume = import({{"PHASES", phase}});
+    const Volume volume = import({{code::kPhases, phase}});
     ASSERT_EQ(volume.geometry.size[2], kSlices) << phase;
     EXPECT_EQ(volume.at(3, 3, 0), -1000);
     EXPECT_EQ(volume.at(3, 3, 3), -1000);
@@ -134,10 +135,10 @@ TEST_F(TrapRepeats, OfAPhaseWithAMissingSliceOnlyThatPhaseIsIncomplete) {
                int) { put(data, DCM_TemporalPositionIdentifier, std::to_string(phase + 1)); },
             [](int phase, int k) { return phase == 0 || k != 2; });
   expectRefused("PHASES");
-  expectPhase(import({{"PHASES", "1"}}), 0);
-  EXPECT_EQ(refusal({{"PHASES", "2"}}).code, "MISSING_SLICES");
-  expectPhase(import({{"PHASES", "2"}, {"MISSING_SLICES", "part"}}), 1, 3, kSlices);
-  const Volume filled = import({{"PHASES", "2"}, {"MISSING_SLICES", "fill"}});
+  expectPhase(import({{code::kPhases, "1"}}), 0);
+  EXPECT_EQ(refusal({{code::kPhases, "2"}}).code.str(), "MISSING_SLICES");
+  expectPhase(import({{code::kPhases, "2"}, {code::kMissingSlices, "part"}}), 1, 3, kSlices);
+  const Volume filled = import({{code::kPhases, "2"}, {code::kMissingSlices, "fill"}});
   ASSERT_EQ(filled.geometry.size[2], kSlices);
   for (int j = 0; j < 5; ++j) {
     for (int i = 0; i < 7; ++i) {
@@ -188,7 +189,7 @@ TEST_F(TrapRepeats, PhasesWithJitteredSteps) {
       });
     }
   }
-  const Volume volume = import({{"PHASES", "2"}});
+  const Volume volume = import({{code::kPhases, "2"}});
   ASSERT_EQ(volume.geometry.size[2], kSlices);
   ASSERT_NE(find(chosen(), "RESAMPLED_SPACING"), nullptr);
   ASSERT_NE(find(chosen(), "PHASES"), nullptr);
@@ -245,14 +246,14 @@ TEST_F(TrapRepeats, ScansThatLieBetweenOneAnotherAreAskedAboutWhateverTellsThemA
       EXPECT_EQ(series.choices.front().options,
                 (std::vector<std::string>{"refuse", "1", "2", "all"}));
       for (int phase = 0; phase < 2; ++phase) {
-        const Volume volume = import({{"PHASES", std::to_string(phase + 1)}});
+        const Volume volume = import({{code::kPhases, std::to_string(phase + 1)}});
         ASSERT_EQ(volume.geometry.size, (Index3{7, 5, kSlices})) << what;
         EXPECT_NEAR(volume.geometry.origin_mm.z, 100.0 + shift_mm * phase, 1e-9) << what;
         EXPECT_NEAR(volume.geometry.spacing_mm.z, 2.0, 1e-9) << what;
         EXPECT_EQ(volume.at(2, 3, 4), patternValue(2, 3, 100 * phase + 4) - 1024) << what;
       }
       if (shift_mm != 1.0 || one.tag == DCM_KVP || one.tag == DCM_ConvolutionKernel) continue;
-      EXPECT_EQ(import({{"PHASES", "all"}}).geometry.size[2], 2 * kSlices) << what;
+      EXPECT_EQ(import({{code::kPhases, "all"}}).geometry.size[2], 2 * kSlices) << what;
     }
   }
 }
@@ -268,7 +269,7 @@ TEST_F(TrapRepeats, AScanThatCoversAPartOfAnotherIsAskedAboutToo) {
     }
   }
   expectRefused("PHASES");
-  EXPECT_EQ(import({{"PHASES", "1"}}).geometry.size[2], kSlices);
+  EXPECT_EQ(import({{code::kPhases, "1"}}).geometry.size[2], kSlices);
 }
 
 TEST_F(TrapRepeats, HoweverTheSlicesOfEachAreNumberedAndTimed) {
@@ -320,8 +321,8 @@ TEST_F(TrapRepeats, HoweverTheSlicesOfEachAreNumberedAndTimed) {
       const CtFolder ct = scan();
       EXPECT_NE(find(ct.report().series.front(), "PHASES"), nullptr)
           << what << " " << shift_mm << ": " << codes(ct.report().series.front());
-      EXPECT_EQ(import({{"PHASES", "1"}}).geometry.size[2], kMany) << what;
-      EXPECT_EQ(import({{"PHASES", "2"}}).geometry.size[2], kMany) << what;
+      EXPECT_EQ(import({{code::kPhases, "1"}}).geometry.size[2], kMany) << what;
+      EXPECT_EQ(import({{code::kPhases, "2"}}).geometry.size[2], kMany) << what;
     }
   }
 }
@@ -377,7 +378,7 @@ TEST_F(TrapRepeats, WhatIsToldApartIsLookedAtByTheOtherKeysAsWell) {
   const CtFolder ct = scan();
   EXPECT_EQ(ct.report().series.front().phases, 4);
   for (const char* number : {"1", "2", "3", "4"}) {
-    const Volume volume = import({{"PHASES", number}});
+    const Volume volume = import({{code::kPhases, number}});
     EXPECT_EQ(volume.geometry.size[2], 12);
     EXPECT_NEAR(volume.geometry.spacing_mm.z, 2.0, 1e-9);
   }
@@ -464,7 +465,7 @@ TEST_F(TrapRepeats, TwoStationsThatOverlapByASliceAreNoPhases) {
   }
   EXPECT_EQ(expectRefused("DUPLICATE_POSITIONS").slices, std::vector<std::string>{"108.00 mm"});
   for (const int phase : {0, 1}) {
-    const Volume volume = import({{"DUPLICATE_POSITIONS", phase ? "last" : "first"}});
+    const Volume volume = import({{code::kDuplicatePositions, phase ? "last" : "first"}});
     ASSERT_EQ(volume.geometry.size[2], 9);
     for (int k = 0; k < 9; ++k) {
       const int of = k < 4 ? 0 : k > 4 ? 1 : phase;
@@ -481,7 +482,7 @@ TEST_F(TrapRepeats, AnEqualSliceUnderANewNameIsDropped) {
   expectPhase(import(), 0);
   EXPECT_EQ(chosen().verdict, Verdict::pass);
   ASSERT_NE(find(chosen(), "DUPLICATE_FILES"), nullptr);
-  EXPECT_EQ(find(chosen(), "DUPLICATE_FILES")->severity, "notice");
+  EXPECT_EQ(find(chosen(), "DUPLICATE_FILES")->severity, Severity::notice);
 }
 
 TEST_F(TrapRepeats, ASeriesThatWasSentTwiceUnderNewNamesIsOneSeries) {
@@ -504,7 +505,7 @@ TEST_F(TrapRepeats, ADifferentSliceAtOnePlaceAsksWhich) {
   addSlice(image(7, 3, 9));  // of a smaller number: acquired first
   EXPECT_EQ(expectRefused("DUPLICATE_POSITIONS").slices, std::vector<std::string>{"106.00 mm"});
   for (const bool first : {true, false}) {
-    const Volume volume = import({{"DUPLICATE_POSITIONS", first ? "first" : "last"}});
+    const Volume volume = import({{code::kDuplicatePositions, first ? "first" : "last"}});
     ASSERT_EQ(volume.geometry.size[2], kSlices);
     for (int k = 0; k < kSlices; ++k) {
       const int pattern = first && k == 3 ? 703 : k;
@@ -525,7 +526,7 @@ TEST_F(TrapRepeats, AWholeSliceIsTakenRatherThanACutOneAtItsPlace) {
   const SeriesReport series = scan().report().series.front();
   if (series.verdict == Verdict::refused) {  // asking is right too, mixing is not
     ASSERT_NE(find(series, "DUPLICATE_POSITIONS"), nullptr);
-    expectPhase(import({{"DUPLICATE_POSITIONS", "first"}}), 0);
+    expectPhase(import({{code::kDuplicatePositions, "first"}}), 0);
   } else {
     expectPhase(import(), 0);
   }

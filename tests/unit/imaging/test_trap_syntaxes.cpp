@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "base/memory.h"
+#include "imaging/codes.h"
 #include "series_fixture.h"
 
 namespace trephine::test {
@@ -181,7 +182,8 @@ TEST_F(TrapSyntaxes, CompressedPixelsOfAnotherSizeThanTheHeaderSays) {
       // As many pixels in another shape cannot be told in RLE, which states no size.
       if (syntax == EXS_RLELossless && columns * rows == 247) continue;
       const Error error = refusal();
-      EXPECT_TRUE(error.code == "MISSING_SLICES" || error.code == "SIZE_MISMATCH") << error.code;
+      EXPECT_TRUE(error.code.str() == "MISSING_SLICES" || error.code.str() == "SIZE_MISMATCH")
+          << error.code.str();
     }
   }
 }
@@ -197,7 +199,7 @@ TEST_F(TrapSyntaxes, PixelsThatAreClaimedToBeFourGigavoxelsAllocateNothing) {
       saveEncapsulated(data, codestreams, {syntax}, folder() / std::to_string(k));
     }
     const double before_mb = peakResidentMb();
-    EXPECT_EQ(refusal().code, "PIXEL_FORMAT");
+    EXPECT_EQ(refusal().code.str(), "PIXEL_FORMAT");
     CtFolder ct = scan();
     EXPECT_FALSE(ct.slice("1.2.3.4", 0).ok());
     EXPECT_LT(peakResidentMb(), before_mb + 100.0);
@@ -218,9 +220,9 @@ TEST_F(TrapSyntaxes, AFileThatIsCutIsAMissingSliceWhereverItLies) {
         const fs::path file = fileOf(instance);
         fs::resize_file(file, fs::file_size(file) - cut);
         const Error error = refusal();
-        EXPECT_EQ(error.code, "MISSING_SLICES") << error.sentence();
-        if (error.code != "MISSING_SLICES") continue;
-        const Volume volume = import({{"MISSING_SLICES", "fill"}});
+        EXPECT_EQ(error.code.str(), "MISSING_SLICES") << error.sentence();
+        if (error.code.str() != "MISSING_SLICES") continue;
+        const Volume volume = import({{code::kMissingSlices, "fill"}});
         const int first = instance == 1 ? 1 : 0, last = instance == 5 ? 3 : 4;
         ASSERT_EQ(volume.geometry.size[2], last - first + 1);
         for (int k = first; k <= last; ++k) {
@@ -255,11 +257,11 @@ TEST_F(TrapSyntaxes, ACodestreamThatIsCutInsideAWholeFileIsAMissingSlice) {
       if (zeros) bytes.resize(whole, 0);
       saveEncapsulated(data, codestreams, {syntax}, fileOf(3));
       const Error error = refusal();
-      EXPECT_EQ(error.code, "MISSING_SLICES") << error.sentence();
-      if (error.code != "MISSING_SLICES") continue;
+      EXPECT_EQ(error.code.str(), "MISSING_SLICES") << error.sentence();
+      if (error.code.str() != "MISSING_SLICES") continue;
       EXPECT_EQ(find(report_.series.front(), "MISSING_SLICES")->slices,
                 std::vector<std::string>{"102.00 mm"});
-      const Volume part = import({{"MISSING_SLICES", "part"}});
+      const Volume part = import({{code::kMissingSlices, "part"}});
       EXPECT_EQ(part.geometry.size[2], 4);
     }
   }
@@ -277,7 +279,7 @@ TEST_F(TrapSyntaxes, OneDamagedFrameOfACompressedFileIsOneMissingSlice) {
     auto codestreams = encodeFrames(data, {syntax});
     std::fill(codestreams[1].begin() + 64, codestreams[1].end(), 0);
     saveEncapsulated(data, codestreams, {syntax}, folder() / "x");
-    EXPECT_EQ(refusal().code, "MISSING_SLICES");
+    EXPECT_EQ(refusal().code.str(), "MISSING_SLICES");
     EXPECT_EQ(find(report_.series.front(), "MISSING_SLICES")->slices,
               std::vector<std::string>{"101.00 mm"});
   }
@@ -314,8 +316,8 @@ class TrapLossy : public TrapSyntaxes {
     addSmooth(form, packing);
     expectRefused("LOSSY_SOURCE");
     EXPECT_TRUE(report_.series.front().lossy);
-    EXPECT_EQ(refusal({{"LOSSY_SOURCE", "refuse"}}).code, "LOSSY_SOURCE");
-    const Volume volume = import({{"LOSSY_SOURCE", "accept"}});
+    EXPECT_EQ(refusal({{code::kLossySource, "refuse"}}).code.str(), "LOSSY_SOURCE");
+    const Volume volume = import({{code::kLossySource, "accept"}});
     ASSERT_EQ(volume.geometry.size, (Index3{32, 32, 5}));
     EXPECT_EQ(chosen().verdict, Verdict::repaired);
     EXPECT_TRUE(chosen().lossy);
@@ -368,23 +370,23 @@ TEST_F(TrapLossy, LossAndAMissingSliceAreAskedForBoth) {
   Packing near_lossless{EXS_JPEGLSLossy};
   near_lossless.near_by = 3;
   addSmooth({16, 12, false}, near_lossless, 2);
-  EXPECT_FALSE(refusal({{"LOSSY_SOURCE", "accept"}}).code.empty());
-  EXPECT_EQ(refusal({{"LOSSY_SOURCE", "accept"}}).code, "MISSING_SLICES");
-  EXPECT_EQ(refusal({{"MISSING_SLICES", "fill"}}).code, "LOSSY_SOURCE");
-  const Volume volume = import({{"LOSSY_SOURCE", "accept"}, {"MISSING_SLICES", "fill"}});
+  EXPECT_FALSE(refusal({{code::kLossySource, "accept"}}).code.empty());
+  EXPECT_EQ(refusal({{code::kLossySource, "accept"}}).code.str(), "MISSING_SLICES");
+  EXPECT_EQ(refusal({{code::kMissingSlices, "fill"}}).code.str(), "LOSSY_SOURCE");
+  const Volume volume = import({{code::kLossySource, "accept"}, {code::kMissingSlices, "fill"}});
   ASSERT_EQ(volume.geometry.size[2], 5);
   for (int i = 0; i < 32; ++i) {
     ASSERT_NEAR(volume.at(i, 5, 2), smooth(i, 5, 2, 4095) - 24, 4);
   }
   EXPECT_EQ(report_.provenance->answers,
-            (Answers{{"LOSSY_SOURCE", "accept"}, {"MISSING_SLICES", "fill"}}));
+            (Answers{{code::kLossySource, "accept"}, {code::kMissingSlices, "fill"}}));
 }
 
 TEST_F(TrapLossy, AnOldLossIsRememberedByItsAttribute) {
   addStack(kForms[1], {EXS_LittleEndianExplicit}, 4);
   editAll([](DcmDataset& data) { put(data, DCM_LossyImageCompression, "01"); });
   expectRefused("LOSSY_SOURCE");
-  expectStack(import({{"LOSSY_SOURCE", "accept"}}), kForms[1], 4);
+  expectStack(import({{code::kLossySource, "accept"}}), kForms[1], 4);
 }
 
 }  // namespace trephine::test

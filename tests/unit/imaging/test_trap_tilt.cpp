@@ -2,6 +2,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "imaging/codes.h"
 #include "series_fixture.h"
 
 namespace trephine::test {
@@ -181,7 +182,7 @@ TEST_F(TrapTilt, PaddingIsNeverBlendedWhenSlicesAreStraightened) {
 TEST_F(TrapTilt, ATiltedStackWithAMissingSlice) {
   addTilted(wide(), -20.0, false, 4);
   EXPECT_EQ(expectRefused("MISSING_SLICES").slices, std::vector<std::string>{"106.00 mm"});
-  const Volume volume = import({{"MISSING_SLICES", "fill"}});
+  const Volume volume = import({{code::kMissingSlices, "fill"}});
   ASSERT_EQ(volume.geometry.size[2], 9);
   ASSERT_NE(find(chosen(), "SHEARED_SIDEWAYS"), nullptr);
   ASSERT_NE(find(chosen(), "MISSING_SLICES"), nullptr);
@@ -192,7 +193,7 @@ TEST_F(TrapTilt, ATiltedStackWithAMissingSlice) {
       ASSERT_NEAR(volume.at(i, j, 4), scanned(volume.geometry.toPatient_mm({i, j, 4})), 1.6);
     }
   }
-  const Volume part = import({{"MISSING_SLICES", "part"}});
+  const Volume part = import({{code::kMissingSlices, "part"}});
   ASSERT_EQ(part.geometry.size[2], 4);
   frames_.resize(4);
   expectAtTheirPlaces(part, 1.01);

@@ -1,6 +1,7 @@
 // Stored words of every form: what they mean is computed here from the values that were stored.
 #include <cmath>
 
+#include "imaging/codes.h"
 #include "series_fixture.h"
 
 namespace trephine::test {
@@ -119,7 +120,7 @@ TEST_F(TrapValues, SlopeAndInterceptDifferFromSliceToSlice) {
     fillPattern(image, k);
     add(makeImage(image));
   }
-  const Volume volume = import({{"SLOPES_DIFFER", "accept"}});
+  const Volume volume = import({{code::kSlopesDiffer, "accept"}});
   int clamped = 0, rounded = 0;
   for (int k = 0; k < 6; ++k) {
     const double slope = std::stod(scales[k].first), intercept = std::stod(scales[k].second);
@@ -217,7 +218,7 @@ TEST_F(TrapValues, PaddingIsNotMixedIntoFilledSlices) {
     data.putAndInsertUint16(DCM_PixelPaddingValue, 0);
     add(data);
   }
-  const Volume volume = import({{"MISSING_SLICES", "fill"}});
+  const Volume volume = import({{code::kMissingSlices, "fill"}});
   for (int n = 0; n < 35; ++n) {
     const int hu = volume.hu[std::size_t(2 * 35 + n)];
     if (n == 1) {

@@ -1,3 +1,4 @@
+#include "imaging/codes.h"
 #include "imaging/report/provenance.h"
 #include "imaging/report/report_page.h"
 #include "series_fixture.h"
@@ -40,7 +41,7 @@ TEST_F(VolumeSteps, ABoxOutsideTheVolumeIsRefusedAndTheNextReadIsWhole) {
   CtFolder ct = scan();
   ImportRequest request;
   request.crop = VoxelBox{{0, 0, 0}, {8, 5, 6}};
-  EXPECT_EQ(readWith(ct, request).error().code, "BAD_CROP");
+  EXPECT_EQ(readWith(ct, request).error().code.str(), "BAD_CROP");
   EXPECT_FALSE(ct.report().chosen.has_value());
   EXPECT_EQ(readWith(ct, {})->hu, whole.hu);
 }
@@ -89,7 +90,7 @@ TEST_F(VolumeSteps, WhatDoesNotFitTheMemoryIsRefusedInWordsBeforeItIsRead) {
   request.most_memory_mb = 0.1;
   const auto volume = readWith(ct, request);
   ASSERT_FALSE(volume.ok());
-  EXPECT_EQ(volume.error().code, "OUT_OF_MEMORY");
+  EXPECT_EQ(volume.error().code.str(), "OUT_OF_MEMORY");
   EXPECT_NE(volume.error().what.find("can be had"), std::string::npos);
 }
 
@@ -99,13 +100,13 @@ TEST_F(VolumeSteps, AnUnknownChoiceAndAnUnknownOptionAreNamed) {
   CtFolder ct = scan();
   const std::string uid = ct.report().series.front().uid;
   ImportRequest request;
-  request.answers["MISSING_SLICES"] = "guess";
+  request.answers[code::kMissingSlices] = "guess";
   const auto bad_option = ct.read(uid, request, Progress());
   ASSERT_FALSE(bad_option.ok());
-  EXPECT_EQ(bad_option.error().code, "BAD_CHOICE");
+  EXPECT_EQ(bad_option.error().code.str(), "BAD_CHOICE");
   EXPECT_NE(bad_option.error().next.find("fill"), std::string::npos);
   request.answers = {{"MISSING", "fill"}};
-  EXPECT_EQ(ct.read(uid, request, Progress()).error().code, "BAD_CHOICE");
+  EXPECT_EQ(ct.read(uid, request, Progress()).error().code.str(), "BAD_CHOICE");
 }
 
 TEST_F(VolumeSteps, ProvenanceAndPageTellWhatWasDoneAndNotWhoseItIs) {
@@ -118,7 +119,7 @@ TEST_F(VolumeSteps, ProvenanceAndPageTellWhatWasDoneAndNotWhoseItIs) {
   });
   CtFolder ct = scan();
   ImportRequest request;
-  request.answers["MISSING_SLICES"] = "fill";
+  request.answers[code::kMissingSlices] = "fill";
   const auto volume = readWith(ct, request);
   ASSERT_TRUE(volume.ok()) << volume.error().sentence();
   const fs::path target = temporary_ / "out.nii.gz";

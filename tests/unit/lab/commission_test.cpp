@@ -13,6 +13,7 @@
 #include "lab/commission/arm_checks.h"
 #include "lab/commission/disk_check.h"
 #include "lab/commission/start_check.h"
+#include "render/codes.h"
 #include "support.h"
 
 namespace trephine {
@@ -90,7 +91,7 @@ TEST(CommissionLimits, EachCheckCanPassWarnAndFail) {
 Commissioning some() {
   return {
       {judged("disk_room", 100.0), judged("priority", 0.0), judged("frame_time", 50.0, "<llvm>"),
-       notMeasured("volume_edge", Fitness::fail, {"NO_DISPLAY", "No display", "", "Start X"})},
+       notMeasured("volume_edge", Fitness::fail, {code::kNoDisplay, "No display", "", "Start X"})},
       "2026-11-26 09:30",
       "0.1.0 Release",
       "2 processors",
@@ -130,7 +131,7 @@ TEST(Commissioning, IsReadAsItWasWritten) {
     bad[key] = value;
     EXPECT_TRUE(refused(bad)) << bad.dump();
   }
-  EXPECT_EQ(readCommissioning(folder / "none.json").error().code, "MISSING_FILE");
+  EXPECT_EQ(readCommissioning(folder / "none.json").error().code.str(), "MISSING_FILE");
 }
 
 TEST(Commissioning, SaysWhatIsOtherwiseThanTheLastTime) {
@@ -270,7 +271,7 @@ TEST(StartCheck, SaysOneLineWhetherItIsAsCommissioned) {
 
 TEST(StartCheck, ThePersonsLastCommissioningOrTheHospitalsWhereThatIsNewer) {
   test::TemporaryFolder own, hospital;
-  EXPECT_EQ(lastCommissioning(own.path(), hospital.path()).error().code, "NOT_COMMISSIONED");
+  EXPECT_EQ(lastCommissioning(own.path(), hospital.path()).error().code.str(), "NOT_COMMISSIONED");
   Commissioning one = some();
   one.when = "2026-11-20 08:00";
   ASSERT_TRUE(writeTextFile(hospital / "commission.json", toJson(one).dump()));

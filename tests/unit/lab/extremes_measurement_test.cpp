@@ -144,7 +144,7 @@ TEST(Extremes, LeaveNoFileWhenTheyAreCancelled) {
   progress.cancel();
   const auto measurement = measureExtremes(folder.path(), progress);
   ASSERT_FALSE(measurement);
-  EXPECT_EQ(measurement.error().code, "CANCELLED");
+  EXPECT_EQ(measurement.error().code.str(), "CANCELLED");
   EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
 }
 

@@ -122,7 +122,7 @@ TEST(HapticsRow, ThatIsCancelledIsNoRow) {
   const Result<HapticsRow> measured = measureHapticsRow(
       row("needle", 32, 49.2, TouchPhase::free, 0.0), grid, 100, folder.path(), progress);
   ASSERT_FALSE(measured);
-  EXPECT_EQ(measured.error().code, "CANCELLED");
+  EXPECT_EQ(measured.error().code.str(), "CANCELLED");
 }
 
 TEST(HapticsMeasurement, RunsEveryToolArmAndPhase) {
@@ -153,7 +153,7 @@ TEST(HapticsMeasurement, RefusesWhatCannotBeBeforeItMakesAFolder) {
   for (const HapticsOptions& options : bad) {
     const Result<HapticsMeasurement> m = measureHaptics(options, folder / "out");
     ASSERT_FALSE(m);
-    EXPECT_EQ(m.error().code, "BAD_ARGUMENT");
+    EXPECT_EQ(m.error().code.str(), "BAD_ARGUMENT");
   }
   EXPECT_FALSE(std::filesystem::exists(folder / "out"));
 }
@@ -167,7 +167,7 @@ TEST(HapticsMeasurement, LeavesNoFileWhenItIsCancelled) {
   to_cancel = &progress;
   const Result<HapticsMeasurement> m = measureHaptics(small(), folder.path(), progress);
   ASSERT_FALSE(m);
-  EXPECT_EQ(m.error().code, "CANCELLED");
+  EXPECT_EQ(m.error().code.str(), "CANCELLED");
   EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
 }
 
@@ -178,7 +178,7 @@ TEST(HapticsMeasurement, SaysBeforeItMeasuresThatTheFolderCannotBeMade) {
   const Progress progress([&](double, const std::string&) { began = true; });
   const Result<HapticsMeasurement> m = measureHaptics(small(), folder / "file", progress);
   ASSERT_FALSE(m);
-  EXPECT_EQ(m.error().code, "CANNOT_WRITE");
+  EXPECT_EQ(m.error().code.str(), "CANNOT_WRITE");
   EXPECT_FALSE(began);
 }
 
@@ -186,7 +186,7 @@ TEST(HapticsMeasurement, WithoutAFolderOfItsOwnNeedsTheTemporaryOne) {
   const test::Environment missing("TMPDIR", "/no/such/folder");
   const Result<HapticsMeasurement> m = measureHaptics(small(), {});
   ASSERT_FALSE(m);
-  EXPECT_EQ(m.error().code, "NO_TEMPORARY_FOLDER");
+  EXPECT_EQ(m.error().code.str(), "NO_TEMPORARY_FOLDER");
 }
 
 TEST(HapticsMeasurement, IsAnsweredWithExactlyItsKeys) {

@@ -8,6 +8,7 @@
 #include <iterator>
 #include <string>
 
+#include "base/codes.h"
 #include "base/file.h"
 #include "lab/import/import_measurement.h"
 #include "support.h"
@@ -33,7 +34,7 @@ class Measured : public ::testing::Test {
     subjects_.write = [](const ImportSeries& series, const std::filesystem::path& folder,
                          const Progress& progress) -> Result<std::vector<KnownVolume>> {
       progress.at(0.5, "making");
-      if (progress.cancelled()) return Error{"CANCELLED", "Cancelled", "", ""};
+      if (progress.cancelled()) return Error{code::kCancelled, "Cancelled", "", ""};
       for (const std::string& name : series.names) {
         std::filesystem::create_directories(folder / name);
       }

@@ -147,7 +147,7 @@ TEST_F(Measured, NothingStaysWhenItIsCancelled) {
     const Result<ImportMeasurement> measured =
         measureImport(options_, subjects_, folder_ / "out", progress);
     ASSERT_FALSE(measured) << when;
-    EXPECT_EQ(measured.error().code, "CANCELLED");
+    EXPECT_EQ(measured.error().code.str(), "CANCELLED");
     EXPECT_EQ(entriesOfOut(), 0) << when;
   }
 }
@@ -166,7 +166,7 @@ TEST_F(Measured, WhatCannotBeMeasuredIsRefusedBeforeAnythingIsMade) {
     change(options);
     const Result<ImportMeasurement> measured = measureImport(options, subjects_, folder_ / "none");
     ASSERT_FALSE(measured) << what;
-    EXPECT_EQ(measured.error().code, "BAD_ARGUMENT") << what;
+    EXPECT_EQ(measured.error().code.str(), "BAD_ARGUMENT") << what;
   };
   refused("size", [](ImportOptions& o) { o.series.size[0] = 4096; });
   refused("slices", [](ImportOptions& o) { o.series.size[2] = 1; });
@@ -176,7 +176,8 @@ TEST_F(Measured, WhatCannotBeMeasuredIsRefusedBeforeAnythingIsMade) {
   refused("series", [](ImportOptions& o) { o.series.names = {"u12", "mp3"}; });
   EXPECT_FALSE(fs::exists(folder_ / "none"));
   std::ofstream(folder_ / "file") << "in the way";
-  EXPECT_EQ(measureImport(options_, subjects_, folder_ / "file").error().code, "CANNOT_WRITE");
+  EXPECT_EQ(measureImport(options_, subjects_, folder_ / "file").error().code.str(),
+            "CANNOT_WRITE");
 }
 
 }  // namespace

@@ -75,16 +75,16 @@ TEST(OwnSeries, OfTheScanAreAsManyAsAsked) {
 TEST(OwnSeries, SayThatTheyCannotBeWrittenAndStopWhenCancelled) {
   const test::TemporaryFolder folder;
   std::ofstream(folder / "file") << "in the way";
-  EXPECT_EQ(writeOwnSeries(tiny(), folder / "file", Progress()).error().code, "CANNOT_WRITE");
+  EXPECT_EQ(writeOwnSeries(tiny(), folder / "file", Progress()).error().code.str(), "CANNOT_WRITE");
   Progress cancelled;
   cancelled.cancel();
-  EXPECT_EQ(writeOwnSeries(tiny(), folder.path(), cancelled).error().code, "CANCELLED");
+  EXPECT_EQ(writeOwnSeries(tiny(), folder.path(), cancelled).error().code.str(), "CANCELLED");
 }
 
 TEST(SeriesSize, IsRefusedWhereNoSeriesCanHaveIt) {
   for (const Index3 size :
        {Index3{1, 8, 8}, Index3{8, 2049, 8}, Index3{8, 8, 0}, Index3{1024, 1024, 257}}) {
-    EXPECT_EQ(checkSeriesSize(size).error().code, "BAD_ARGUMENT");
+    EXPECT_EQ(checkSeriesSize(size).error().code.str(), "BAD_ARGUMENT");
   }
   EXPECT_TRUE(checkSeriesSize({1024, 1024, 256}));
 }

@@ -128,7 +128,7 @@ TEST(JitterRow, StopsSoonAfterItIsCancelledFromAnotherThread) {
   const auto returned_at = std::chrono::steady_clock::now();
   canceller.join();
   ASSERT_FALSE(row);
-  EXPECT_EQ(row.error().code, "CANCELLED");
+  EXPECT_EQ(row.error().code.str(), "CANCELLED");
   EXPECT_LT(returned_at - cancelled_at, 2s) << "0.2 s, and room for a busy machine";
 }
 
@@ -138,7 +138,7 @@ TEST(JitterMeasurement, RefusesATimeThatIsTooShortTooLongOrNone) {
                          std::numeric_limits<double>::quiet_NaN()}) {
     const Result<JitterMeasurement> measured = measureJitter({seconds}, folder / "out");
     ASSERT_FALSE(measured) << seconds;
-    EXPECT_EQ(measured.error().code, "BAD_ARGUMENT");
+    EXPECT_EQ(measured.error().code.str(), "BAD_ARGUMENT");
     EXPECT_NE(measured.error().sentence().find("0.1 and 600"), std::string::npos);
   }
   EXPECT_FALSE(std::filesystem::exists(folder / "out"));
@@ -177,7 +177,7 @@ TEST(JitterMeasurement, LeavesNoFileWhenItIsCancelled) {
   to_cancel = &progress;
   const Result<JitterMeasurement> measured = measureJitter({60.0}, folder.path(), progress);
   ASSERT_FALSE(measured);
-  EXPECT_EQ(measured.error().code, "CANCELLED");
+  EXPECT_EQ(measured.error().code.str(), "CANCELLED");
   EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
 }
 
@@ -188,7 +188,7 @@ TEST(JitterMeasurement, SaysBeforeItMeasuresThatTheFolderCannotBeMade) {
   const Progress progress([&](double, const std::string&) { began = true; });
   const Result<JitterMeasurement> measured = measureJitter({0.1}, folder / "file", progress);
   ASSERT_FALSE(measured);
-  EXPECT_EQ(measured.error().code, "CANNOT_WRITE");
+  EXPECT_EQ(measured.error().code.str(), "CANNOT_WRITE");
   EXPECT_FALSE(began);
 }
 

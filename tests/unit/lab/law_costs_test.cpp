@@ -29,10 +29,10 @@ TEST(LawCosts, EveryLawAndEveryControllerHasAFigure) {
 TEST(LawCosts, IsCancelledAndSaysWhatIsMissing) {
   Progress progress;
   progress.cancel();
-  EXPECT_EQ(measureLawCosts(cranium(), progress).error().code, "CANCELLED");
+  EXPECT_EQ(measureLawCosts(cranium(), progress).error().code.str(), "CANCELLED");
   Exercise none = cranium();
   none.arms.clear();
-  EXPECT_EQ(measureLawCosts(none).error().code, "BAD_SCENE");
+  EXPECT_EQ(measureLawCosts(none).error().code.str(), "BAD_SCENE");
 }
 
 }  // namespace

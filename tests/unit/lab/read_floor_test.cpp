@@ -26,9 +26,9 @@ TEST(ReadFloor, ReadsEveryByteOfEveryFile) {
 
 TEST(ReadFloor, SaysWhatItCannotRead) {
   const test::TemporaryFolder folder;
-  EXPECT_EQ(readEveryByte(folder / "none").error().code, "MISSING_FOLDER");
+  EXPECT_EQ(readEveryByte(folder / "none").error().code.str(), "MISSING_FOLDER");
   std::filesystem::create_directory(folder / "sub");
-  EXPECT_EQ(readEveryByte(folder.path()).error().code, "UNREADABLE");
+  EXPECT_EQ(readEveryByte(folder.path()).error().code.str(), "UNREADABLE");
 }
 
 }  // namespace

@@ -33,7 +33,7 @@ TEST(Recommended, ThatIsBrokenIsRefusedByItsField) {
     change(bad);
     const auto back = read(bad);
     ASSERT_FALSE(back) << field;
-    EXPECT_EQ(back.error().code, "BAD_FIELD");
+    EXPECT_EQ(back.error().code.str(), "BAD_FIELD");
     EXPECT_NE(back.error().sentence().find(field), std::string::npos) << back.error().sentence();
   };
   refused("format", [](Json& j) { j["format"] = "trephine.scene"; });
@@ -49,7 +49,7 @@ TEST(Recommended, ThatIsMissingSaysSo) {
   const test::TemporaryFolder folder;
   const auto back = readRecommended(folder / "none.json");
   ASSERT_FALSE(back);
-  EXPECT_EQ(back.error().code, "MISSING_FILE");
+  EXPECT_EQ(back.error().code.str(), "MISSING_FILE");
 }
 
 class RecommendedHere : public ::testing::Test {
@@ -61,7 +61,7 @@ class RecommendedHere : public ::testing::Test {
   }
   std::string here(const std::string& knob) {
     const auto all = recommendedHere(policy_, own_.path());
-    if (!all) return all.error().code;
+    if (!all) return all.error().code.str();
     std::string found;
     for (const RecommendedSetting& s : *all) {
       if (s.knob == knob) found += s.setting + ";";

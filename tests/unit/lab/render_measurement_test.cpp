@@ -116,7 +116,7 @@ TEST(RenderMeasurement, RefusesWhatCannotBeBeforeItMakesAFolder) {
   for (const RenderOptions& options : bad) {
     const auto m = measureRender(options, folder / "out");
     ASSERT_FALSE(m) << &options - bad.data();
-    EXPECT_EQ(m.error().code, "BAD_ARGUMENT");
+    EXPECT_EQ(m.error().code.str(), "BAD_ARGUMENT");
   }
   EXPECT_FALSE(std::filesystem::exists(folder / "out"));
 }

@@ -62,13 +62,13 @@ TEST(Sliding, RefusesWhatCannotBeAndStops) {
         SlidingOptions{64, 1, 1.0, -1.0}}) {
     const Result<SlidingMeasurement> m = measureSliding(bad, Progress());
     ASSERT_FALSE(m);
-    EXPECT_EQ(m.error().code, "BAD_ARGUMENT");
+    EXPECT_EQ(m.error().code.str(), "BAD_ARGUMENT");
   }
   Progress progress;
   progress.cancel();
   const Result<SlidingMeasurement> m = measureSliding({64, 1, 1.0, 0.0}, progress);
   ASSERT_FALSE(m);
-  EXPECT_EQ(m.error().code, "CANCELLED");
+  EXPECT_EQ(m.error().code.str(), "CANCELLED");
 }
 
 }  // namespace

@@ -170,10 +170,10 @@ TEST(StabilityMaps, OfWallsThatDampSaySo) {
 TEST(StabilityMaps, OfNothingAreRefused) {
   const auto none = stabilityMaps({});
   ASSERT_FALSE(none.ok());
-  EXPECT_EQ(none.error().code, "BAD_ARGUMENT");
+  EXPECT_EQ(none.error().code.str(), "BAD_ARGUMENT");
   const auto zero = stabilityMaps({damper(1e-3, 0)});
   ASSERT_FALSE(zero.ok());
-  EXPECT_EQ(zero.error().code, "BAD_ARGUMENT");
+  EXPECT_EQ(zero.error().code.str(), "BAD_ARGUMENT");
 }
 
 TEST(StabilityMaps, OfValuesThatCannotBeAreRefusedWithTheCellsNumber) {
@@ -193,7 +193,7 @@ TEST(StabilityMaps, OfValuesThatCannotBeAreRefusedWithTheCellsNumber) {
     if (which == 9) cell.mass_kg = 0.0;
     const auto maps = stabilityMaps(cells);
     ASSERT_FALSE(maps.ok()) << which;
-    EXPECT_EQ(maps.error().code, "BAD_ARGUMENT") << which;
+    EXPECT_EQ(maps.error().code.str(), "BAD_ARGUMENT") << which;
     EXPECT_NE(maps.error().where.find("cell 2"), std::string::npos) << which;
   }
 }

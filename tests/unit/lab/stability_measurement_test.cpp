@@ -44,7 +44,7 @@ class GridFile {
 void expectRefused(const Result<std::vector<StabilityCell>>& read, const std::string& code,
                    const std::string& field) {
   ASSERT_FALSE(read) << field;
-  EXPECT_EQ(read.error().code, code) << field;
+  EXPECT_EQ(read.error().code.str(), code) << field;
   EXPECT_NE(read.error().where.find("grid.json"), std::string::npos) << read.error().sentence();
   const std::string& where = read.error().where;
   EXPECT_TRUE(where.size() >= field.size() &&
@@ -371,7 +371,7 @@ TEST(StabilityTable, IsNotWrittenWhereItsFolderCannotBeMade) {
   std::ofstream(folder / "file") << "in the way";
   const Status written = writeStabilityTable({}, folder / "file");
   ASSERT_FALSE(written);
-  EXPECT_EQ(written.error().code, "CANNOT_WRITE");
+  EXPECT_EQ(written.error().code.str(), "CANNOT_WRITE");
 }
 
 TEST(StabilityMeasurement, ThatIsCancelledBeforeItBeginsIsCancelled) {
@@ -379,7 +379,7 @@ TEST(StabilityMeasurement, ThatIsCancelledBeforeItBeginsIsCancelled) {
   progress.cancel();
   const auto measured = measureStability(fullGrid(), progress);
   ASSERT_FALSE(measured);
-  EXPECT_EQ(measured.error().code, "CANCELLED");
+  EXPECT_EQ(measured.error().code.str(), "CANCELLED");
 }
 
 TEST(StabilityMeasurement, StopsSoonAfterItIsCancelled) {
@@ -393,7 +393,7 @@ TEST(StabilityMeasurement, StopsSoonAfterItIsCancelled) {
   const auto start = std::chrono::steady_clock::now();
   const auto measured = measureStability(fullGrid(), progress);
   ASSERT_FALSE(measured);
-  EXPECT_EQ(measured.error().code, "CANCELLED");
+  EXPECT_EQ(measured.error().code.str(), "CANCELLED");
   EXPECT_LT(furthest, 1.0);
   EXPECT_LT(std::chrono::steady_clock::now() - start, 5s) << "0.2 s, and room for a busy machine";
 }

@@ -182,7 +182,7 @@ TEST(StabilityPictures, OfNothingAreRefusedBeforeAFolderIsMade) {
   const test::TemporaryFolder folder;
   const auto files = writeStabilityMaps({}, folder / "maps", Progress());
   ASSERT_FALSE(files.ok());
-  EXPECT_EQ(files.error().code, "BAD_ARGUMENT");
+  EXPECT_EQ(files.error().code.str(), "BAD_ARGUMENT");
   EXPECT_TRUE(fs::is_empty(folder.path()));
 }
 
@@ -191,7 +191,7 @@ TEST(StabilityPictures, InAFolderThatCannotBeMadeAreAnError) {
   std::ofstream(folder / "file") << "in the way";
   const auto files = writeStabilityMaps({damper(1e-3, 5)}, folder / "file", Progress());
   ASSERT_FALSE(files.ok());
-  EXPECT_EQ(files.error().code, "CANNOT_WRITE");
+  EXPECT_EQ(files.error().code.str(), "CANNOT_WRITE");
 }
 
 TEST(StabilityPictures, ThatCannotBeWrittenLeaveNothingHalfWritten) {
@@ -214,7 +214,7 @@ TEST(StabilityPictures, StopWhenCancelledAndTellTheirProgress) {
   const auto files =
       writeStabilityMaps({damper(1e-3, 5), wall(1e-3, 300)}, folder.path(), progress);
   ASSERT_FALSE(files.ok());
-  EXPECT_EQ(files.error().code, "CANCELLED");
+  EXPECT_EQ(files.error().code.str(), "CANCELLED");
   EXPECT_EQ(fractions, std::vector<double>{0.0});
   EXPECT_TRUE(fs::exists(folder / "direct-dampers-no-hand.png"));
   EXPECT_FALSE(fs::exists(folder / "direct-walls-no-hand.png"));

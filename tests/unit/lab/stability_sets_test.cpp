@@ -23,7 +23,7 @@ TEST(StabilitySets, AreReadByName) {
   for (const char* wrong : {"", "grid,", "grids", "grid long"}) {
     const auto refused = readStabilitySets(wrong);
     ASSERT_FALSE(refused) << wrong;
-    EXPECT_EQ(refused.error().code, "BAD_ARGUMENT");
+    EXPECT_EQ(refused.error().code.str(), "BAD_ARGUMENT");
     EXPECT_NE(refused.error().sentence().find("--sets"), std::string::npos);
   }
 }
@@ -120,7 +120,7 @@ TEST(StabilitySets, AreCancelledWithTheMeasurement) {
   const auto measured =
       measureStabilitySet(StabilitySet::lasting, representativeCells(), {}, progress);
   ASSERT_FALSE(measured);
-  EXPECT_EQ(measured.error().code, "CANCELLED");
+  EXPECT_EQ(measured.error().code.str(), "CANCELLED");
 }
 
 }  // namespace

@@ -37,13 +37,15 @@ TEST(TradeAxis, IsLogarithmicOverWideRanges) {
 
 TEST(TradeCharts, RefuseWhatCannotBeDrawn) {
   const test::TemporaryFolder folder;
-  EXPECT_EQ(writeTradeCharts({}, folder.path()).error().code, "BAD_ARGUMENT");
+  EXPECT_EQ(writeTradeCharts({}, folder.path()).error().code.str(), "BAD_ARGUMENT");
   for (double bad :
        {-1.0, std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
-    EXPECT_EQ(writeTradeCharts({row("force_at", "tip", bad, 1.0)}, folder.path()).error().code,
-              "BAD_ARGUMENT");
-    EXPECT_EQ(writeTradeCharts({row("force_at", "tip", 1.0, bad)}, folder.path()).error().code,
-              "BAD_ARGUMENT");
+    EXPECT_EQ(
+        writeTradeCharts({row("force_at", "tip", bad, 1.0)}, folder.path()).error().code.str(),
+        "BAD_ARGUMENT");
+    EXPECT_EQ(
+        writeTradeCharts({row("force_at", "tip", 1.0, bad)}, folder.path()).error().code.str(),
+        "BAD_ARGUMENT");
   }
   EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
 }

@@ -236,7 +236,7 @@ TEST(Trades, RefuseWhatCannotBeBeforeTheyMakeAFolder) {
   for (const TradesOptions& options : bad) {
     const Result<TradesMeasurement> m = measureTrades(options, folder / "out");
     ASSERT_FALSE(m) << &options - bad.data();
-    EXPECT_EQ(m.error().code, "BAD_ARGUMENT");
+    EXPECT_EQ(m.error().code.str(), "BAD_ARGUMENT");
   }
   EXPECT_FALSE(std::filesystem::exists(folder / "out"));
 }
@@ -259,7 +259,7 @@ TEST(Trades, LeaveNoFileWhenTheyAreCancelledAtAnyKnob) {
     to_cancel = &progress;
     const Result<TradesMeasurement> m = measureTrades(small(), folder.path(), progress);
     ASSERT_FALSE(m) << knob;
-    EXPECT_EQ(m.error().code, "CANCELLED");
+    EXPECT_EQ(m.error().code.str(), "CANCELLED");
     EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
   }
 }
@@ -272,7 +272,7 @@ TEST(Trades, EveryKnobStopsByItself) {
        {tradePoints(ToolKind::burr, {8}, options, progress), tradeForceAt(options, progress),
         tradeRate(options, progress), tradeGrid(options, progress)}) {
     ASSERT_FALSE(rows);
-    EXPECT_EQ(rows.error().code, "CANCELLED");
+    EXPECT_EQ(rows.error().code.str(), "CANCELLED");
   }
 }
 
@@ -283,7 +283,7 @@ TEST(Trades, SayBeforeTheyMeasureThatTheFolderCannotBeMade) {
   const Progress progress([&](double, const std::string&) { began = true; });
   const Result<TradesMeasurement> m = measureTrades(small(), folder / "file", progress);
   ASSERT_FALSE(m);
-  EXPECT_EQ(m.error().code, "CANNOT_WRITE");
+  EXPECT_EQ(m.error().code.str(), "CANNOT_WRITE");
   EXPECT_FALSE(began);
 }
 

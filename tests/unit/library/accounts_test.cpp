@@ -65,7 +65,7 @@ TEST_F(Accounts, ATraineeIsToldThatItMayLookAndNotChange) {
     const auto removed = library.remove(id);
     const auto renamed = library.rename(id, "Another");
     const auto says = [](const Error& error) {
-      return error.code == "CANNOT_WRITE" &&
+      return error.code.str() == "CANNOT_WRITE" &&
              error.what == "This account may look at the cases here, and not change them";
     };
     return !saved && says(saved.error()) && !removed && says(removed.error()) && !renamed &&
@@ -88,7 +88,7 @@ TEST_F(Accounts, WhatACaseMayNotBeCalledIsReadByItsMakerAlone) {
   const std::string id = CaseLibrary(storage_).list().front().id;
   EXPECT_TRUE(as(kOther, [&] {
     const auto renamed = CaseLibrary(storage_).rename(id, "Skull");
-    return !renamed && renamed.error().code == "NAME_UNCHECKED";
+    return !renamed && renamed.error().code.str() == "NAME_UNCHECKED";
   }));
 }
 
@@ -119,7 +119,7 @@ TEST_F(Accounts, ALockedStorageAndAHalfWrittenCaseAreSaid) {
   ASSERT_EQ(::flock(fd, LOCK_EX), 0);
   EXPECT_TRUE(as(kOther, [&] {
     const auto saved = CaseLibrary(storage_).save(named("Two"));
-    return !saved && saved.error().code == "BUSY";
+    return !saved && saved.error().code.str() == "BUSY";
   }));
   ::close(fd);
   fs::resize_file(storage_ / "cases" / id / "volume.mha", 100);
@@ -136,8 +136,9 @@ TEST_F(Accounts, SharingAgainTakesInWhatWasThereBefore) {
   const std::string id = CaseLibrary(old).list().front().id;
   EXPECT_TRUE(as(kTrainee, [&] { return CaseLibrary(old).load(id).ok(); }));
   EXPECT_TRUE(as(kTeacher, [&] { return CaseLibrary(old).remove(id).ok(); }));
-  EXPECT_EQ(shareStorage(old, {"no-such-group", "games"}).error().code, "NO_GROUP");
-  EXPECT_TRUE(as(kTeacher, [&] { return shareStorage(old, kGroups).error().code == "NOT_ROOT"; }));
+  EXPECT_EQ(shareStorage(old, {"no-such-group", "games"}).error().code.str(), "NO_GROUP");
+  EXPECT_TRUE(
+      as(kTeacher, [&] { return shareStorage(old, kGroups).error().code.str() == "NOT_ROOT"; }));
 }
 
 // The order of these checks: nothing is changed where one of them fails.
@@ -150,7 +151,7 @@ TEST_F(Accounts, OnlyAStorageFolderIsShared) {
     ::stat(folder.c_str(), &after);
     EXPECT_EQ(before.st_mode, after.st_mode) << folder;
     EXPECT_EQ(before.st_gid, after.st_gid) << folder;
-    return shared ? std::string("shared") : shared.error().code;
+    return shared ? std::string("shared") : shared.error().code.str();
   };
   for (const char* system :
        {"/", "/srv", "/srv/", "/srv/.", "/srv//", "/home", "relative/folder", "/tmp/..",
@@ -260,12 +261,12 @@ TEST_F(Accounts, SharingFollowsNoLinkOutOfTheStorage) {
   for (const char* in : {"tissues", ".parts", "cases"}) {
     const fs::path link = storage_ / in / "link";
     fs::create_directory_symlink(secret, link);
-    EXPECT_EQ(shareStorage(storage_, kGroups).error().code, "NOT_A_STORAGE") << in;
+    EXPECT_EQ(shareStorage(storage_, kGroups).error().code.str(), "NOT_A_STORAGE") << in;
     giveToGroup(link);
     fs::remove(link);
   }
   ASSERT_EQ(::mkfifo((storage_ / "tissues" / "fifo").c_str(), 0600), 0);
-  EXPECT_EQ(shareStorage(storage_, kGroups).error().code, "NOT_A_STORAGE");
+  EXPECT_EQ(shareStorage(storage_, kGroups).error().code.str(), "NOT_A_STORAGE");
   fs::remove(storage_ / "tissues" / "fifo");
   EXPECT_EQ(fs::status(secret / "key").permissions(), fs::perms(0600));
   EXPECT_EQ(fs::status(secret).permissions(), fs::perms(0700));

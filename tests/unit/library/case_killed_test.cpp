@@ -143,7 +143,7 @@ TEST(CaseKilled, WhileItIsSavedIsThereWholeOrNotAtAll) {
       EXPECT_EQ(loaded->volume->hu, of.volume->hu);
       EXPECT_EQ(loaded->structures->labels, of.structures->labels);
       EXPECT_EQ(loaded->tissues, of.tissues);
-      EXPECT_EQ(library.rename(one.id, "Jane").error().code, "NAME_IS_IDENTITY");
+      EXPECT_EQ(library.rename(one.id, "Jane").error().code.str(), "NAME_IS_IDENTITY");
     }
     if (cases.size() > there && first == steps) first = step;
     there += step >= first;
@@ -182,7 +182,7 @@ TEST(CaseKilled, WhileItsStructuresAreSavedHasTheOldOrTheNewOnes) {
     old += kept;
     ASSERT_EQ(library.list().size(), 1u);
     EXPECT_EQ(library.list()[0].record.structures[0].name, loaded->structures->structures[0].name);
-    EXPECT_EQ(library.rename(id, "Jane").error().code, "NAME_IS_IDENTITY");
+    EXPECT_EQ(library.rename(id, "Jane").error().code.str(), "NAME_IS_IDENTITY");
   }
   std::printf("[ figures  ] of %d steps on the disk the old ones are there until %d\n", steps, old);
   EXPECT_GT(old, 1);

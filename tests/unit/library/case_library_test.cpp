@@ -50,8 +50,8 @@ class CaseLibraryTest : public ::testing::Test {
 TEST_F(CaseLibraryTest, OfAFolderThatIsNotThereIsEmpty) {
   EXPECT_TRUE(library_.list().empty());
   EXPECT_FALSE(fs::exists(storage())) << "looking makes nothing";
-  EXPECT_EQ(library_.load("head").error().code, "NO_SUCH_CASE");
-  EXPECT_EQ(library_.remove("head").error().code, "NO_SUCH_CASE");
+  EXPECT_EQ(library_.load("head").error().code.str(), "NO_SUCH_CASE");
+  EXPECT_EQ(library_.remove("head").error().code.str(), "NO_SUCH_CASE");
 }
 
 TEST_F(CaseLibraryTest, GivesBackWhatWasSaved) {
@@ -177,7 +177,7 @@ TEST_F(CaseLibraryTest, ListsADamagedFolderWithItsProblemBesideTheOthers) {
       continue;
     }
     ASSERT_TRUE(one.problem) << one.id;
-    EXPECT_EQ(one.problem->code, expected[one.id]) << one.problem->sentence();
+    EXPECT_EQ(one.problem->code.str(), expected[one.id]) << one.problem->sentence();
     EXPECT_TRUE(one.problem->where.starts_with(one.id)) << one.problem->where;
     const auto loaded = library_.load(one.id);
     ASSERT_FALSE(loaded);
@@ -204,7 +204,7 @@ TEST_F(CaseLibraryTest, SaysWhichPartOfACaseIsNotAsItWasSaved) {
   const std::string volume = bytesOf(record.folder / "volume.mha");
   const auto whereOf = [&] {
     const auto loaded = library_.load(record.id);
-    return loaded ? "none" : loaded.error().code + " " + loaded.error().where;
+    return loaded ? "none" : loaded.error().code.str() + " " + loaded.error().where;
   };
   std::string other = volume;
   other.back() = char(other.back() ^ 1);
@@ -223,13 +223,13 @@ TEST_F(CaseLibraryTest, SaysWhichPartOfACaseIsNotAsItWasSaved) {
   ASSERT_TRUE(loaded) << "the case is worth more than its tissues and structures";
   EXPECT_FALSE(loaded->structures);
   ASSERT_TRUE(loaded->structures_problem);
-  EXPECT_EQ(loaded->structures_problem->code + " " + loaded->structures_problem->where,
+  EXPECT_EQ(loaded->structures_problem->code.str() + " " + loaded->structures_problem->where,
             "UNREADABLE " + record.id + "/structures.seg.nrrd");
   EXPECT_EQ(library_.list()[0].record.structures.size(), structures.size())
       << "what it had is not forgotten for that";
   EXPECT_TRUE(loaded->tissues.empty());
   ASSERT_TRUE(loaded->tissues_problem);
-  EXPECT_EQ(loaded->tissues_problem->code + " " + loaded->tissues_problem->where,
+  EXPECT_EQ(loaded->tissues_problem->code.str() + " " + loaded->tissues_problem->where,
             "BAD_JSON " + record.id + "/tissues.json");
 }
 
@@ -244,7 +244,7 @@ TEST_F(CaseLibraryTest, WaitsForNobodyWhoKeepsTheLockOfTheList) {
   EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(2));
   const Status removed = library.remove(record.id);
   ASSERT_FALSE(removed);
-  EXPECT_EQ(removed.error().code, "BUSY");
+  EXPECT_EQ(removed.error().code.str(), "BUSY");
   ::close(held);
   EXPECT_TRUE(library.remove(record.id));
 }
@@ -252,7 +252,7 @@ TEST_F(CaseLibraryTest, WaitsForNobodyWhoKeepsTheLockOfTheList) {
 TEST_F(CaseLibraryTest, KnowsAFolderThatWasRenamedUnderneathByItsNewName) {
   const CaseRecord record = saved();
   fs::rename(record.folder, folderOf("Mein Fall 3"));
-  EXPECT_EQ(library_.load(record.id).error().code, "NO_SUCH_CASE");
+  EXPECT_EQ(library_.load(record.id).error().code.str(), "NO_SUCH_CASE");
   const auto cases = library_.list();
   ASSERT_EQ(cases.size(), 1u);
   EXPECT_EQ(cases[0].id, "Mein Fall 3");
@@ -263,8 +263,8 @@ TEST_F(CaseLibraryTest, KnowsAFolderThatWasRenamedUnderneathByItsNewName) {
 TEST_F(CaseLibraryTest, FollowsNoNameOutOfItsFolder) {
   saved();
   for (const char* id : {"", ".", "..", "../cases", ".parts", "a/b", "/"}) {
-    EXPECT_EQ(library_.load(id).error().code, "NO_SUCH_CASE") << id;
-    EXPECT_EQ(library_.remove(id).error().code, "NO_SUCH_CASE") << id;
+    EXPECT_EQ(library_.load(id).error().code.str(), "NO_SUCH_CASE") << id;
+    EXPECT_EQ(library_.remove(id).error().code.str(), "NO_SUCH_CASE") << id;
   }
   EXPECT_EQ(library_.list().size(), 1u);
 }
@@ -278,7 +278,7 @@ TEST_F(CaseLibraryTest, RemovesACaseWhole) {
   EXPECT_FALSE(fs::exists(record.folder));
   EXPECT_EQ(entriesIn(storage() / ".parts"), 0u);
   EXPECT_EQ(entriesIn(storage() / "private"), 1u);
-  EXPECT_EQ(library_.remove(record.id).error().code, "NO_SUCH_CASE");
+  EXPECT_EQ(library_.remove(record.id).error().code.str(), "NO_SUCH_CASE");
   // Of a case whose case.json says nothing any more, too.
   std::ofstream(other.folder / "case.json") << "x";
   ASSERT_TRUE(library_.remove(other.id));
@@ -293,7 +293,7 @@ TEST_F(CaseLibraryTest, RemovesACaseWhereTheFoldersBesideItAreMissing) {
   const Status removed = library.remove(saved->record.id);
   EXPECT_TRUE(removed.ok()) << removed.error().sentence();
   EXPECT_FALSE(fs::exists(saved->record.folder));
-  EXPECT_EQ(library.remove(saved->record.id).error().code, "NO_SUCH_CASE");
+  EXPECT_EQ(library.remove(saved->record.id).error().code.str(), "NO_SUCH_CASE");
 }
 
 TEST_F(CaseLibraryTest, PutsAStorageFolderInOrderWhenItIsOpened) {
@@ -323,8 +323,8 @@ TEST_F(CaseLibraryTest, SavesOtherStructuresOfACase) {
   EXPECT_FALSE(fs::exists(record.folder / "structures.seg.nrrd"));
 
   map.geometry.origin_mm.x += 1.0;
-  EXPECT_EQ(library_.saveStructures(record.id, map).error().code, "WRONG_GRID");
-  EXPECT_EQ(library_.saveStructures("gone", *of.structures).error().code, "NO_SUCH_CASE");
+  EXPECT_EQ(library_.saveStructures(record.id, map).error().code.str(), "WRONG_GRID");
+  EXPECT_EQ(library_.saveStructures("gone", *of.structures).error().code.str(), "NO_SUCH_CASE");
 }
 
 TEST_F(CaseLibraryTest, MendsRowsThatAreNotThoseOfTheStructures) {
@@ -345,7 +345,7 @@ TEST_F(CaseLibraryTest, SavesOtherTissuesOfACase) {
   ASSERT_TRUE(library_.saveTissues(record.id, Json::object()));
   EXPECT_EQ(library_.load(record.id)->tissues, Json::object());
   EXPECT_FALSE(fs::exists(record.folder / "tissues.json"));
-  EXPECT_EQ(library_.saveTissues("gone", {}).error().code, "NO_SUCH_CASE");
+  EXPECT_EQ(library_.saveTissues("gone", {}).error().code.str(), "NO_SUCH_CASE");
 }
 
 TEST_F(CaseLibraryTest, CancelledLeavesNothing) {
@@ -357,7 +357,7 @@ TEST_F(CaseLibraryTest, CancelledLeavesNothing) {
     asked = &progress;
     const auto result = library_.save(smallCase(), progress);
     ASSERT_FALSE(result) << step;
-    EXPECT_EQ(result.error().code, "CANCELLED") << step;
+    EXPECT_EQ(result.error().code.str(), "CANCELLED") << step;
     EXPECT_TRUE(library_.list().empty());
     EXPECT_EQ(entriesIn(storage() / ".parts"), 0u) << step;
     EXPECT_EQ(entriesIn(storage() / "private"), 0u) << step;
@@ -407,7 +407,7 @@ TEST_F(CaseLibraryTest, LeavesNothingWhereAFileCannotBeWrittenToItsEnd) {
     const test::FileSizeLimit limit(bytes);
     const auto result = library_.save(smallCase());
     ASSERT_FALSE(result);
-    EXPECT_EQ(result.error().code, "CANNOT_WRITE");
+    EXPECT_EQ(result.error().code.str(), "CANNOT_WRITE");
     EXPECT_EQ(result.error().where, storage().string());
     LabelMap map = *smallCase().structures;
     EXPECT_FALSE(bytes < 1000 && library_.saveStructures(before.id, map));
@@ -427,7 +427,7 @@ TEST_F(CaseLibraryTest, SaysHowMuchRoomACaseNeeds) {
   const case_folders::Folders folders(temporary_.path());
   const Status room = folders.roomFor(std::uint64_t(1) << 60);
   ASSERT_FALSE(room);
-  EXPECT_EQ(room.error().code, "CANNOT_WRITE");
+  EXPECT_EQ(room.error().code.str(), "CANNOT_WRITE");
   EXPECT_NE(room.error().what.find("it needs 1152921504607 MB"), std::string::npos)
       << room.error().what;
   EXPECT_TRUE(folders.roomFor(1));
@@ -447,7 +447,7 @@ int saveOnAFullDisk(const fs::path& disk) {
     std::ofstream(disk / "hog") << std::string(16 << 20, 'x');
   });
   const auto result = library.save(smallCase({64, 64, 128}), progress);
-  if (result || result.error().code != "CANNOT_WRITE") return 2;
+  if (result || result.error().code.str() != "CANNOT_WRITE") return 2;
   if (result.error().what.find("no room") == std::string::npos) return 3;
   if (entriesIn(disk / ".parts") != 0 || library.list().size() != 1) return 4;
   // Full from the start, it does not even begin.

@@ -159,7 +159,7 @@ TEST_F(CaseOfJaneDoe, AsItWasSavedBeforeLosesItsHashesAndIsKnownAllTheSame) {
     EXPECT_EQ(Json::parse(test::bytesOf(record.folder / "report.json"))["chosen"], "1");
     const SourceIds kept = library.load(record.id)->provenance->source_ids;
     EXPECT_TRUE(kept.standsFor(kept.study, plain.study));
-    EXPECT_TRUE(library.rename(record.id, "Jane Doe").error().code == "NAME_IS_IDENTITY")
+    EXPECT_TRUE(library.rename(record.id, "Jane Doe").error().code.str() == "NAME_IS_IDENTITY")
         << "its guard is the one that it had";
   }
 }
@@ -168,7 +168,8 @@ TEST_F(CaseOfJaneDoe, WhenACopyOfItIsDeletedKeepsWhatItMayNotBeCalled) {
   const CaseRecord record = saved();
   fs::copy(record.folder, storage() / "cases" / "copy", fs::copy_options::recursive);
   ASSERT_TRUE(CaseLibrary(storage()).remove("copy"));
-  EXPECT_EQ(CaseLibrary(storage()).rename(record.id, "Jane Doe").error().code, "NAME_IS_IDENTITY");
+  EXPECT_EQ(CaseLibrary(storage()).rename(record.id, "Jane Doe").error().code.str(),
+            "NAME_IS_IDENTITY");
 }
 
 TEST(HideNames, CallsSegmentsByTheirValuesWhereTheyTellWhoThePatientIs) {
@@ -200,7 +201,7 @@ TEST_F(CaseOfJaneDoe, CallsAStructureByItsLabelWhereItsNameTellsWhoSheIs) {
   const auto result = CaseLibrary(storage()).save(case_);
   ASSERT_TRUE(result);
   ASSERT_EQ(result->warnings.size(), 1u);
-  EXPECT_EQ(result->warnings[0].code, "RENAMED_STRUCTURE");
+  EXPECT_EQ(result->warnings[0].code.str(), "RENAMED_STRUCTURE");
   EXPECT_EQ(result->record.structures[0].name, "label 1");
   EXPECT_EQ(result->record.structures[1].name, "liver");
   // In later sessions a person is told which one.
@@ -210,7 +211,7 @@ TEST_F(CaseOfJaneDoe, CallsAStructureByItsLabelWhereItsNameTellsWhoSheIs) {
   map.structures[1].name = "JANE's liver";
   const auto refused = CaseLibrary(storage()).saveStructures(result->record.id, map);
   ASSERT_FALSE(refused);
-  EXPECT_EQ(refused.error().code, "NAME_IS_IDENTITY");
+  EXPECT_EQ(refused.error().code.str(), "NAME_IS_IDENTITY");
 }
 
 TEST_F(CaseOfJaneDoe, IsCalledAfterNothingOfHerNeitherNowNorLater) {
@@ -222,7 +223,7 @@ TEST_F(CaseOfJaneDoe, IsCalledAfterNothingOfHerNeitherNowNorLater) {
     named.name = name;
     const auto result = CaseLibrary(storage()).save(named);
     ASSERT_FALSE(result) << name;
-    EXPECT_EQ(result.error().code, "NAME_IS_IDENTITY") << name;
+    EXPECT_EQ(result.error().code.str(), "NAME_IS_IDENTITY") << name;
     EXPECT_EQ(inSmallLetters(result.error().sentence()).find("jane"), std::string::npos);
   }
   const CaseRecord record = saved();
@@ -231,7 +232,7 @@ TEST_F(CaseOfJaneDoe, IsCalledAfterNothingOfHerNeitherNowNorLater) {
   for (const std::string& name : refused) {
     const auto result = later.rename(record.id, name);
     ASSERT_FALSE(result) << name;
-    EXPECT_EQ(result.error().code, "NAME_IS_IDENTITY") << name;
+    EXPECT_EQ(result.error().code.str(), "NAME_IS_IDENTITY") << name;
   }
   const auto renamed = later.rename(record.id, " Skull  base, right ");
   ASSERT_TRUE(renamed) << renamed.error().sentence();
@@ -247,13 +248,13 @@ TEST_F(CaseOfJaneDoe, MayBeCalledAnythingElseThatNoOtherCaseIs) {
   ASSERT_TRUE(first) << first.error().sentence();
   EXPECT_EQ(first->record.name, "Leber Zürich");
   EXPECT_TRUE(first->record.id.starts_with("head-")) << "the folder is not called so";
-  EXPECT_EQ(CaseLibrary(storage()).save(named).error().code, "NAME_TAKEN");
+  EXPECT_EQ(CaseLibrary(storage()).save(named).error().code.str(), "NAME_TAKEN");
   const CaseRecord other = saved();
   CaseLibrary library(storage());
-  EXPECT_EQ(library.rename(other.id, "leber  ZÜRICH").error().code, "NAME_TAKEN");
+  EXPECT_EQ(library.rename(other.id, "leber  ZÜRICH").error().code.str(), "NAME_TAKEN");
   EXPECT_TRUE(library.rename(first->record.id, "LEBER Zürich")) << "its own name";
-  EXPECT_EQ(library.rename(other.id, "a\nb").error().code, "BAD_NAME");
-  EXPECT_EQ(library.rename("gone", "x").error().code, "NO_SUCH_CASE");
+  EXPECT_EQ(library.rename(other.id, "a\nb").error().code.str(), "BAD_NAME");
+  EXPECT_EQ(library.rename("gone", "x").error().code.str(), "NO_SUCH_CASE");
 }
 
 TEST_F(CaseOfJaneDoe, KeepsWhatItMayNotBeCalledForItsOwnerAlone) {
@@ -273,7 +274,7 @@ TEST_F(CaseOfJaneDoe, KeepsItsNameWhereAnotherCannotBeChecked) {
   CaseLibrary library(storage());
   const auto renamed = library.rename(record.id, "Anything");
   ASSERT_FALSE(renamed);
-  EXPECT_EQ(renamed.error().code, "NAME_UNCHECKED");
+  EXPECT_EQ(renamed.error().code.str(), "NAME_UNCHECKED");
   EXPECT_EQ(library.list()[0].record.name, record.name);
   EXPECT_TRUE(library.load(record.id));
 }
@@ -281,7 +282,8 @@ TEST_F(CaseOfJaneDoe, KeepsItsNameWhereAnotherCannotBeChecked) {
 TEST_F(CaseOfJaneDoe, IsStillGuardedWhenItsFolderIsRenamedUnderneath) {
   const CaseRecord record = saved();
   fs::rename(record.folder, record.folder.parent_path() / "exercise");
-  EXPECT_EQ(CaseLibrary(storage()).rename("exercise", "Jane").error().code, "NAME_IS_IDENTITY");
+  EXPECT_EQ(CaseLibrary(storage()).rename("exercise", "Jane").error().code.str(),
+            "NAME_IS_IDENTITY");
 }
 
 }  // namespace

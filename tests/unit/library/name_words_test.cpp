@@ -127,7 +127,7 @@ TEST(CaseName, IsOneVisibleLineOfAtMostEightyCharacters) {
                           "b"}) {
     const auto name = caseNameFrom(bad);
     ASSERT_FALSE(name) << bad;
-    EXPECT_EQ(name.error().code, "BAD_NAME");
+    EXPECT_EQ(name.error().code.str(), "BAD_NAME");
   }
 }
 
@@ -147,7 +147,7 @@ TEST(NameGuard, RefusesTheSameFromItsFileAsFromItsSource) {
   for (const char* name : {"jane_doe", "liver 4711 secret", "Clinic 3"}) {
     const Status told = back->check(name);
     ASSERT_FALSE(told) << name;
-    EXPECT_EQ(told.error().code, "NAME_IS_IDENTITY");
+    EXPECT_EQ(told.error().code.str(), "NAME_IS_IDENTITY");
     EXPECT_EQ(told.error().sentence().find(name), std::string::npos) << "it is not repeated";
   }
   EXPECT_EQ(back->check("Doe").error().what, "The name holds the patient's name, or a part of it");

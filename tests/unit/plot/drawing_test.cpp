@@ -373,7 +373,7 @@ TEST(Drawing, OfAnySizeKeepsItsTextsWithinAndWholeOrRefuses) {
         }
       } else {
         ++refused;
-        EXPECT_EQ(drawing.error().code, "BAD_ARGUMENT");
+        EXPECT_EQ(drawing.error().code.str(), "BAD_ARGUMENT");
         EXPECT_NE(drawing.error().what.find("no room"), std::string::npos);
       }
     }
@@ -465,7 +465,7 @@ TEST(Drawing, RefusesWhatIsNoPlot) {
     if (which == 14) plot.lines = {{{}, Tone::ink, 1.0, {5.0, 3.0, 2.0}}};
     const Result<Drawing> drawing = draw(plot);
     ASSERT_FALSE(drawing) << which;
-    EXPECT_EQ(drawing.error().code, "BAD_ARGUMENT") << which;
+    EXPECT_EQ(drawing.error().code.str(), "BAD_ARGUMENT") << which;
     EXPECT_NE(drawing.error().what.find(words[which]), std::string::npos) << which;
   }
 }

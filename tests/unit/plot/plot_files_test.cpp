@@ -47,7 +47,7 @@ TEST(PlotFiles, ThatCannotBeWrittenAreAnErrorAndLeaveNothing) {
 // Ends the child with 0 where the drawing did as `code` says; empty: it was drawn.
 [[noreturn]] void drawAndExit(const std::string& code) {
   const Result<Drawing> drawing = draw(plot());
-  const std::string got = drawing ? "" : drawing.error().code;
+  const std::string got = drawing ? "" : drawing.error().code.str();
   if (!drawing) std::fprintf(stderr, "%s\n", drawing.error().sentence().c_str());
   std::exit(got == code ? 0 : 1);
 }

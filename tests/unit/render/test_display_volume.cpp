@@ -94,7 +94,7 @@ TEST(SceneRenderer, WhatTheGraphicsCardRefusesIsSaidAndTheNextVolumeIsShown) {
   const Picture none = renderer.picture();
   EXPECT_EQ(none.width, kWidth);
   ASSERT_FALSE(renderer.refusal().ok());
-  EXPECT_EQ(renderer.refusal().error().code, "VOLUME_REFUSED");
+  EXPECT_EQ(renderer.refusal().error().code.str(), "VOLUME_REFUSED");
   EXPECT_TRUE(renderer.complete());
   UploadProbe::limitEdges(renderer, 0);
   renderer.setVolume(Grid(ball()));

@@ -14,7 +14,7 @@ TEST(SceneRenderer, WithoutADisplayItSaysSo) {
   const auto made = SceneRenderer::offscreen(64, 64);
   if (kept) ::setenv("DISPLAY", display.c_str(), 1);
   ASSERT_FALSE(made.ok());
-  EXPECT_EQ(made.error().code, "NO_DISPLAY");
+  EXPECT_EQ(made.error().code.str(), "NO_DISPLAY");
 }
 
 TEST(SceneRenderer, BeforeItIsAttachedItDrawsNothingAndDoesNotCrash) {

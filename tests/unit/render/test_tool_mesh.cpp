@@ -22,7 +22,7 @@ std::string codeOf(const std::filesystem::path& file) {
   if (status.ok()) return "";
   EXPECT_EQ(status.error().where, file.string());
   EXPECT_FALSE(status.error().next.empty());
-  return status.error().code;
+  return status.error().code.str();
 }
 
 }  // namespace

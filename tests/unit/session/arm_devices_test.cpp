@@ -32,7 +32,7 @@ Error errorWithDeviceFile(const std::function<void(Json&)>& change, double rate_
 TEST(Session, NamesFileFieldAndValueOfAWrongDeviceFile) {
   const Error error =
       errorWithDeviceFile([](Json& d) { d["arm"]["peak_force_N"]["value"] = 1e300; });
-  EXPECT_EQ(error.code, "BAD_DEVICE_CONFIG");
+  EXPECT_EQ(error.code.str(), "BAD_DEVICE_CONFIG");
   for (const char* part : {"device.json", "arm.peak_force_N.value", "1e+300"}) {
     EXPECT_NE(error.sentence().find(part), std::string::npos) << error.sentence();
   }
@@ -58,11 +58,11 @@ TEST(Session, RefusesADeviceFileNestedWithoutEndAndOneThatIsAPipe) {
 TEST(Session, RefusesARateThatTheDeviceCannotKeep) {
   const auto slow = [](Json& d) { d["arm"]["rate_hz"]["value"] = 500; };
   const Error error = errorWithDeviceFile(slow, 1000.0);
-  EXPECT_EQ(error.code, "BAD_SCENE");
+  EXPECT_EQ(error.code.str(), "BAD_SCENE");
   EXPECT_EQ(error.where, "rate_hz");
   EXPECT_NE(error.what.find("1000 Hz"), std::string::npos) << error.what;
   EXPECT_NE(error.what.find("at most 500 Hz"), std::string::npos) << error.what;
-  EXPECT_EQ(errorWithDeviceFile(slow, 500.0).code, "");
+  EXPECT_EQ(errorWithDeviceFile(slow, 500.0).code.str(), "");
 }
 
 TEST(Session, SaysWhenAPluginIsMissing) {
@@ -72,7 +72,7 @@ TEST(Session, SaysWhenAPluginIsMissing) {
   for (Rig::Arm& arm : options.rig.arms) arm.device.plugin = "nosuch";
   auto session = Session::create(test::placed(exercise, smallHead()), options);
   ASSERT_FALSE(session.ok());
-  EXPECT_EQ(session.error().code, "NO_PLUGIN");
+  EXPECT_EQ(session.error().code.str(), "NO_PLUGIN");
 }
 
 }  // namespace

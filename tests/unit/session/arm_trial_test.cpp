@@ -76,7 +76,7 @@ TEST_F(ArmTrialTest, OneWhoseCallDoesNotReturnIsLostAtOnceAndHoldsUpNobody) {
   EXPECT_LT(msSince(at), 500.0);
   const auto again = ArmTrial::start({FoundArm{"simulated", "simulated-2", "", "an arm", 2}});
   ASSERT_TRUE(again->problem(0));
-  EXPECT_EQ(again->problem(0)->code, "DEVICE_STUCK");
+  EXPECT_EQ(again->problem(0)->code.str(), "DEVICE_STUCK");
 }
 
 }  // namespace

@@ -22,7 +22,7 @@ TEST(Case, CanBeCancelledWhileItsLandmarksAreFound) {
   Exercise exercise = cranium();
   const auto placed = place(exercise, of, progress);
   ASSERT_FALSE(placed.ok());
-  EXPECT_EQ(placed.error().code, "CANCELLED");
+  EXPECT_EQ(placed.error().code.str(), "CANCELLED");
 }
 
 // Bone is label 7, and a strip of it in every 8 voxels has another label.
@@ -68,7 +68,7 @@ TEST(Session, CutsATissueOnlyWhereItsLabelIsAndReplaysWithThatLabelMapAlone) {
   for (const LabelMap* given : {static_cast<const LabelMap*>(nullptr), &std::as_const(other)}) {
     const auto refused = replay(*reader, smallHead(), given);
     ASSERT_FALSE(refused.ok());
-    EXPECT_EQ(refused.error().code, "WRONG_LABELS");
+    EXPECT_EQ(refused.error().code.str(), "WRONG_LABELS");
   }
 }
 
@@ -101,17 +101,17 @@ TEST(Case, FitsALabelMapToItsVoxels) {
   ASSERT_TRUE((*session)->freewheel(0.5).ok());
   EXPECT_TRUE(replay(**SessionReader::open(folder / "s.h5"), smallHead(), &turned)->identical);
   turned.geometry.origin_mm.x += 1000.0;
-  EXPECT_EQ(withLabels(head, file("elsewhere.mha")).error().code, "LABELS_ELSEWHERE");
+  EXPECT_EQ(withLabels(head, file("elsewhere.mha")).error().code.str(), "LABELS_ELSEWHERE");
 }
 
 TEST(Session, ATissueOfALabelWithoutALabelMapIsRefused) {
   const auto refused = Session::create(test::placed(craniumOfLabels(), smallHead()), {});
   ASSERT_FALSE(refused.ok());
-  EXPECT_EQ(refused.error().code, "NO_LABELS");
+  EXPECT_EQ(refused.error().code.str(), "NO_LABELS");
   EXPECT_NE(refused.error().what.find("'bone' is restricted to label 7"), std::string::npos);
 
   const auto session = *Session::create(test::placed(cranium(), smallHead()), {});
-  EXPECT_EQ(session->setTissues(craniumOfLabels().tissues).error().code, "NO_LABELS");
+  EXPECT_EQ(session->setTissues(craniumOfLabels().tissues).error().code.str(), "NO_LABELS");
 }
 
 TEST(Session, SaysWhenTheCaseDoesNotFitTheExercise) {
@@ -119,7 +119,7 @@ TEST(Session, SaysWhenTheCaseDoesNotFitTheExercise) {
   std::fill(air.hu.begin(), air.hu.end(), kAirHu);
   auto session = Session::create(test::placed(cranium(), air), {});
   ASSERT_FALSE(session.ok());
-  EXPECT_EQ(session.error().code, "TISSUE_NOT_FOUND");
+  EXPECT_EQ(session.error().code.str(), "TISSUE_NOT_FOUND");
 }
 
 // A column of bone beside the axis along which the vault is sought.
@@ -143,8 +143,8 @@ TEST(Case, ThatShowsAnotherAnatomyIsBegunAtItsSurfaceAndSaysSo) {
   const Placement of = *place(exercise, vaultless);
   ASSERT_FALSE(of.error) << of.error->sentence();
   ASSERT_EQ(of.warnings.size(), 2u);
-  EXPECT_EQ(of.warnings[0].code, "OTHER_ANATOMY");
-  EXPECT_EQ(of.warnings[1].code, "NO_LANDMARK");
+  EXPECT_EQ(of.warnings[0].code.str(), "OTHER_ANATOMY");
+  EXPECT_EQ(of.warnings[1].code.str(), "NO_LANDMARK");
   EXPECT_NE(of.warnings[1].text.find("does not meet the tissue 'bone'"), std::string::npos);
   // The ball's top, above its middle.
   ASSERT_EQ(of.landmarks.size(), 1u);
@@ -161,7 +161,7 @@ TEST(Case, WithoutTheLandmarksTissueIsNoDeadEndWhateverItShows) {
     const Placement placed = *place(exercise, of);
     ASSERT_FALSE(placed.error) << placed.error->sentence();
     ASSERT_EQ(placed.warnings.size(), 1u);
-    EXPECT_EQ(placed.warnings[0].code, "NO_LANDMARK");
+    EXPECT_EQ(placed.warnings[0].code.str(), "NO_LANDMARK");
     EXPECT_TRUE(Session::create(placed, scripted()).ok());
   }
 }
@@ -181,16 +181,16 @@ TEST(Case, ThatIsTooThinForTheLandmarksBallIsBegunAtItsSurface) {
   const Placement of = *place(exercise, caseOf(std::make_shared<const Volume>(std::move(thin))));
   ASSERT_FALSE(of.error) << of.error->sentence();
   ASSERT_EQ(of.warnings.size(), 2u);
-  EXPECT_EQ(of.warnings[0].code, "LACKS_STRUCTURE");
-  EXPECT_EQ(of.warnings[1].code, "NO_LANDMARK");
+  EXPECT_EQ(of.warnings[0].code.str(), "LACKS_STRUCTURE");
+  EXPECT_EQ(of.warnings[1].code.str(), "NO_LANDMARK");
   // In front, y towards the back.
   EXPECT_NEAR(of.landmarks[0].frame.position_mm.y, 39.0, 2.0);
   EXPECT_GT(-(of.landmarks[0].frame.rotation * Vec3(0, 0, 1)).y, 0.7);
 }
 
 TEST(Case, ThatIsMissingIsNamed) {
-  EXPECT_EQ(readCase("").error().code, "NO_CASE");
-  EXPECT_EQ(readCase("phantom:foot").error().code, "UNKNOWN_PHANTOM");
+  EXPECT_EQ(readCase("").error().code.str(), "NO_CASE");
+  EXPECT_EQ(readCase("phantom:foot").error().code.str(), "UNKNOWN_PHANTOM");
   const auto missing = readCase("/no/such/folder");
   ASSERT_FALSE(missing.ok());
   EXPECT_NE(missing.error().where.find("/no/such/folder"), std::string::npos);
@@ -201,13 +201,13 @@ TEST(Case, AMissingLabelMapIsNamedAndNoneIsNoError) {
   EXPECT_EQ(withLabels(head, "")->structures, nullptr);
   const auto missing = withLabels(head, "/no/such/seg.nii");
   ASSERT_FALSE(missing.ok());
-  EXPECT_EQ(missing.error().code, "MISSING_FILE");
+  EXPECT_EQ(missing.error().code.str(), "MISSING_FILE");
   EXPECT_NE(missing.error().where.find("/no/such/seg.nii"), std::string::npos);
   Exercise exercise = cranium();
   exercise.labels_file = "/no/such/seg.nii";
   const Placement of = *place(exercise, head);
   ASSERT_TRUE(of.error);
-  EXPECT_EQ(Session::create(of, {}).error().code, "MISSING_FILE");
+  EXPECT_EQ(Session::create(of, {}).error().code.str(), "MISSING_FILE");
 }
 
 TEST(Case, ABuiltInAbdomenBringsItsLabelMapAndAnotherReplacesIt) {

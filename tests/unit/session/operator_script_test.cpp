@@ -149,7 +149,7 @@ TEST(OperatorScript, ChangesNothingThatIsLocked) {
   EXPECT_TRUE(checkLocks(off, {}));
   EXPECT_TRUE(checkLocks(off, {Lock::tissues, Lock::rate}));
   ASSERT_FALSE(checkLocks(off, {Lock::controller}));
-  EXPECT_EQ(checkLocks(off, {Lock::controller}).error().code, "LOCKED");
+  EXPECT_EQ(checkLocks(off, {Lock::controller}).error().code.str(), "LOCKED");
   json["commands"] = Json::array(
       {{{"t", 0.5}, {"do", "tissues"}, {"tissues", {{"bone", {{"damping_Ns_per_m", 1}}}}}}});
   const auto softer = *parseOperatorScript(json, "script.json", exercise);

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "base/system.h"
+#include "case/codes.h"
 #include "case/placement.h"
 #include "exercise/exercise_structures.h"
 #include "session/session.h"
@@ -50,7 +51,7 @@ Codes warnings(const std::string& name, const Case& of, const std::string& sourc
   if (!session) return {"NOT_CREATED"};
   EXPECT_TRUE((*session)->freewheel(0.2).ok()) << name;
   Codes codes;
-  for (const Warning& warning : (*session)->report().warnings) codes.insert(warning.code);
+  for (const Warning& warning : (*session)->report().warnings) codes.insert(warning.code.str());
   return codes;
 }
 
@@ -79,7 +80,7 @@ TEST(OtherCases, EveryExerciseRunsOnARealAbdomen) {
   const Case of = *readCase(source);
   for (const std::string& name : placedOnes()) {
     const Codes said = warnings(name, of, source);
-    expectAmong(said, {"OTHER_ANATOMY", "NO_LANDMARK", "STARTS_IN_TISSUE", "LACKS_STRUCTURE"},
+    expectAmong(said, {code::kOtherAnatomy, "NO_LANDMARK", "STARTS_IN_TISSUE", "LACKS_STRUCTURE"},
                 name);
     EXPECT_EQ(said.contains("OTHER_ANATOMY"), exerciseOf(name).anatomy == "cranium") << name;
   }
@@ -109,7 +110,7 @@ TEST(OtherCases, NoScanIsADeadEndBeItOfAFewSlices) {
     for (const char* name : {"cranium", "liver"}) {
       expectAmong(
           warnings(name, of, source),
-          {"OTHER_ANATOMY", "NO_VAULT", "NO_LANDMARK", "STARTS_IN_TISSUE", "LACKS_STRUCTURE"},
+          {code::kOtherAnatomy, "NO_VAULT", "NO_LANDMARK", "STARTS_IN_TISSUE", "LACKS_STRUCTURE"},
           std::string(name) + " on " + folder);
     }
   }

@@ -529,7 +529,7 @@ TEST(Session, IsReplayedOnlyWhereThereIsMemoryForIt) {
     const test::DataLimit limit(200.0);
     const auto refused = replay(**reader, head);
     ASSERT_FALSE(refused.ok());
-    EXPECT_EQ(refused.error().code, "OUT_OF_MEMORY");
+    EXPECT_EQ(refused.error().code.str(), "OUT_OF_MEMORY");
     EXPECT_NE(refused.error().what.find("needs"), std::string::npos) << refused.error().what;
   }
   EXPECT_TRUE(replay(**reader, head)->identical);
@@ -650,7 +650,7 @@ TEST(FreshFile, OfAFolderThatCannotBeLookedIntoIsLeftToWhoWritesThere) {
   const auto made =
       Session::create(test::placed(cranium(), smallHead()), scripted(folder / "a.h5"));
   ASSERT_FALSE(made.ok());
-  EXPECT_EQ(made.error().code, "CANNOT_WRITE");
+  EXPECT_EQ(made.error().code.str(), "CANNOT_WRITE");
 }
 
 TEST(Session, AMissingTemporaryFolderIsAnErrorWhereOneIsNeeded) {
@@ -658,7 +658,7 @@ TEST(Session, AMissingTemporaryFolderIsAnErrorWhereOneIsNeeded) {
   const test::Environment missing("TMPDIR", (folder / "none").string());
   const auto unrecorded = Session::create(test::placed(cranium(), smallHead()), scripted());
   ASSERT_FALSE(unrecorded.ok());
-  EXPECT_EQ(unrecorded.error().code, "NO_TEMPORARY_FOLDER");
+  EXPECT_EQ(unrecorded.error().code.str(), "NO_TEMPORARY_FOLDER");
 
   // Beside a recording there is room for what does not fit into memory; a replay has no such place.
   auto recorded = Session::create(test::placed(cranium(), smallHead()), scripted(folder / "s.h5"));
@@ -668,7 +668,7 @@ TEST(Session, AMissingTemporaryFolderIsAnErrorWhereOneIsNeeded) {
   ASSERT_TRUE(reader.ok()) << reader.error().sentence();
   const auto replayed = replay(**reader, smallHead());
   ASSERT_FALSE(replayed.ok());
-  EXPECT_EQ(replayed.error().code, "NO_TEMPORARY_FOLDER");
+  EXPECT_EQ(replayed.error().code.str(), "NO_TEMPORARY_FOLDER");
 }
 
 }  // namespace

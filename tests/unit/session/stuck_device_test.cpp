@@ -50,14 +50,14 @@ TEST(StuckDevice, IsLeftBehindByStopAndNotOfferedAgain) {
   EXPECT_LT(took.count(), 2.0) << "stop answers while the call still blocks";
   std::printf("stop took %.3f s while a device blocked\n", took.count());
   ASSERT_TRUE(session->leftBehind());
-  EXPECT_EQ(session->leftBehind()->code, "DEVICE_STUCK");
+  EXPECT_EQ(session->leftBehind()->code.str(), "DEVICE_STUCK");
   EXPECT_NE(session->leftBehind()->what.find("'left'"), std::string::npos);
 
   SessionOptions without;
   without.rig = blocking(folder.path(), 0.0);
   const auto again = Session::create(test::placed(exercise, block()), without);
   ASSERT_FALSE(again.ok());
-  EXPECT_EQ(again.error().code, "DEVICE_STUCK");
+  EXPECT_EQ(again.error().code.str(), "DEVICE_STUCK");
   EXPECT_EQ(test::threadsNamed("haptic").size(), 1u) << "the call still blocks";
 
   const RunReport report = session->report();

@@ -52,7 +52,7 @@ TEST(Likeness, IsOfOneGridOnly) {
   const LabelMap a = boxOf({5, 5, 5}, {15, 15, 15}, 1);
   LabelMap moved = a;
   moved.geometry.origin_mm.x += 0.5;
-  EXPECT_EQ(likeness(a, 1, moved, 1).error().code, "OTHER_GRID");
+  EXPECT_EQ(likeness(a, 1, moved, 1).error().code.str(), "OTHER_GRID");
   moved.geometry.origin_mm.x = 1e-5;  // a file's float
   EXPECT_TRUE(likeness(a, 1, moved, 1));
 }
@@ -82,7 +82,7 @@ TEST(Likeness, IsOfPlacesInThePatientWhateverOrderAFileHasThem) {
   LabelMap shorter = turned(b);
   shorter.geometry.size[0] -= 1;
   shorter.labels.resize(shorter.geometry.voxelCount());
-  EXPECT_EQ(likeness(a, 1, shorter, 4).error().code, "OTHER_GRID");
+  EXPECT_EQ(likeness(a, 1, shorter, 4).error().code.str(), "OTHER_GRID");
 }
 
 }  // namespace

@@ -178,9 +178,9 @@ TEST(Brush, TakesVoxelsOfItsRangeAlone) {
       ASSERT_TRUE(volume.hu[n] >= 20 && volume.hu[n] <= 29);
     }
   }
-  EXPECT_EQ(brushEdit(map, 1, path, brush).error().code, "BAD_ARGUMENT");
+  EXPECT_EQ(brushEdit(map, 1, path, brush).error().code.str(), "BAD_ARGUMENT");
   volume.geometry.size[0] = 3;
-  EXPECT_EQ(brushEdit(map, 1, path, brush, &volume).error().code, "OTHER_GRID");
+  EXPECT_EQ(brushEdit(map, 1, path, brush, &volume).error().code.str(), "OTHER_GRID");
 }
 
 TEST(Brush, OfAnyStrokeHoldsTheVoxelUnderIt) {
@@ -207,7 +207,7 @@ TEST(Brush, RefusesWhatCannotBeMeant) {
     brush.radius_mm = radius_mm;
     brush.across = across;
     const auto edit = brushEdit(map, label, std::vector<Vec3>{at}, brush);
-    return edit ? std::string() : edit.error().code;
+    return edit ? std::string() : edit.error().code.str();
   };
   EXPECT_EQ(code(1, 5.0, 2, path[0]), "");
   EXPECT_EQ(code(0, 5.0, 2, path[0]), "BAD_ARGUMENT");
@@ -218,7 +218,7 @@ TEST(Brush, RefusesWhatCannotBeMeant) {
   EXPECT_EQ(code(1, 5.0, 2, Vec3(std::nan(""))), "BAD_ARGUMENT");
   LabelMap broken = map;
   broken.labels.pop_back();
-  EXPECT_EQ(brushEdit(broken, 1, path, Brush()).error().code, "BAD_ARGUMENT");
+  EXPECT_EQ(brushEdit(broken, 1, path, Brush()).error().code.str(), "BAD_ARGUMENT");
 }
 
 // A ball of label 1, 12 mm in radius, at the middle, with a hollow that a second structure fills in
@@ -318,9 +318,10 @@ TEST(Pieces, OneIsKeptOrRemovedByAClick) {
   EXPECT_EQ(countOf(without, 2), 1u);
   // Beside it is as good as on it, farther away is not.
   EXPECT_EQ(countOf(applied(map, keepPieceEdit(map, 1, g.toPatient_mm(Vec3(36, 32, 22)))), 1), 64u);
-  EXPECT_EQ(keepPieceEdit(map, 1, g.toPatient_mm(Vec3(45, 40, 5))).error().code, "NOTHING_THERE");
-  EXPECT_EQ(keepPieceEdit(map, 1, Vec3(1e9)).error().code, "NOTHING_THERE");
-  EXPECT_EQ(keepPieceEdit(map, 3, click).error().code, "NO_STRUCTURE");
+  EXPECT_EQ(keepPieceEdit(map, 1, g.toPatient_mm(Vec3(45, 40, 5))).error().code.str(),
+            "NOTHING_THERE");
+  EXPECT_EQ(keepPieceEdit(map, 1, Vec3(1e9)).error().code.str(), "NOTHING_THERE");
+  EXPECT_EQ(keepPieceEdit(map, 3, click).error().code.str(), "NO_STRUCTURE");
 }
 
 TEST(Shell, BecomesAStructureOfItsOwn) {
@@ -348,9 +349,9 @@ TEST(Shell, BecomesAStructureOfItsOwn) {
   }
   Progress stopped;
   stopped.cancel();
-  EXPECT_EQ(shellEdit(map, 1, 1.0, 2, stopped).error().code, "CANCELLED");
-  EXPECT_EQ(shellEdit(map, 1, 1.0, 1).error().code, "BAD_ARGUMENT");
-  EXPECT_EQ(shellEdit(map, 4, 1.0, 2).error().code, "NO_STRUCTURE");
+  EXPECT_EQ(shellEdit(map, 1, 1.0, 2, stopped).error().code.str(), "CANCELLED");
+  EXPECT_EQ(shellEdit(map, 1, 1.0, 1).error().code.str(), "BAD_ARGUMENT");
+  EXPECT_EQ(shellEdit(map, 4, 1.0, 2).error().code.str(), "NO_STRUCTURE");
 }
 
 TEST(Growing, AndShrinkingMoveTheSurfaceByMillimetres) {
@@ -391,19 +392,19 @@ TEST(Growing, AndShrinkingMoveTheSurfaceByMillimetres) {
 
 TEST(Tools, SayWhatTheyCannotDo) {
   const LabelMap map = hollowBall();
-  EXPECT_EQ(growEdit(map, 1, 0.0).error().code, "BAD_ARGUMENT");
-  EXPECT_EQ(shrinkEdit(map, 1, 21.0).error().code, "BAD_ARGUMENT");
-  EXPECT_EQ(smoothEdit(map, 1, std::nan("")).error().code, "BAD_ARGUMENT");
-  EXPECT_EQ(holesEdit(map, 1, 3).error().code, "BAD_ARGUMENT");
-  EXPECT_EQ(holesEdit(map, 77).error().code, "NO_STRUCTURE");
-  EXPECT_EQ(smoothEdit(map, 77, 2.0).error().code, "NO_STRUCTURE");
-  EXPECT_EQ(growEdit(map, 77, 2.0).error().code, "NO_STRUCTURE");
+  EXPECT_EQ(growEdit(map, 1, 0.0).error().code.str(), "BAD_ARGUMENT");
+  EXPECT_EQ(shrinkEdit(map, 1, 21.0).error().code.str(), "BAD_ARGUMENT");
+  EXPECT_EQ(smoothEdit(map, 1, std::nan("")).error().code.str(), "BAD_ARGUMENT");
+  EXPECT_EQ(holesEdit(map, 1, 3).error().code.str(), "BAD_ARGUMENT");
+  EXPECT_EQ(holesEdit(map, 77).error().code.str(), "NO_STRUCTURE");
+  EXPECT_EQ(smoothEdit(map, 77, 2.0).error().code.str(), "NO_STRUCTURE");
+  EXPECT_EQ(growEdit(map, 77, 2.0).error().code.str(), "NO_STRUCTURE");
   Progress stopped;
   stopped.cancel();
-  EXPECT_EQ(holesEdit(map, 1, std::nullopt, {}, stopped).error().code, "CANCELLED");
-  EXPECT_EQ(smoothEdit(map, 1, 2.0, {}, stopped).error().code, "CANCELLED");
-  EXPECT_EQ(growEdit(map, 1, 2.0, {}, stopped).error().code, "CANCELLED");
-  EXPECT_EQ(shrinkEdit(map, 1, 2.0, stopped).error().code, "CANCELLED");
+  EXPECT_EQ(holesEdit(map, 1, std::nullopt, {}, stopped).error().code.str(), "CANCELLED");
+  EXPECT_EQ(smoothEdit(map, 1, 2.0, {}, stopped).error().code.str(), "CANCELLED");
+  EXPECT_EQ(growEdit(map, 1, 2.0, {}, stopped).error().code.str(), "CANCELLED");
+  EXPECT_EQ(shrinkEdit(map, 1, 2.0, stopped).error().code.str(), "CANCELLED");
 }
 
 TEST(Tools, WorkOnScansThatAreHardlyAny) {

@@ -81,8 +81,8 @@ TEST(Skin, IsAtLeastWhatTouchesTheAirSoThatNoRayPasses) {
 
 TEST(Skin, OfScansWithoutBodyOrAirIsRefused) {
   Volume volume = smallHead();
-  EXPECT_EQ(skinOf(volume, 0.0).error().code, "BAD_ARGUMENT");
-  EXPECT_EQ(skinOf(volume, std::nan("")).error().code, "BAD_ARGUMENT");
+  EXPECT_EQ(skinOf(volume, 0.0).error().code.str(), "BAD_ARGUMENT");
+  EXPECT_EQ(skinOf(volume, std::nan("")).error().code.str(), "BAD_ARGUMENT");
   for (const std::string step : {"body", "air", "layer"}) {
     Progress* told = nullptr;
     Progress progress([&](double, const std::string& now) {
@@ -91,12 +91,12 @@ TEST(Skin, OfScansWithoutBodyOrAirIsRefused) {
     told = &progress;
     const auto skin = skinOf(volume, 2.0, progress);
     ASSERT_FALSE(skin) << step;
-    EXPECT_EQ(skin.error().code, "CANCELLED");
+    EXPECT_EQ(skin.error().code.str(), "CANCELLED");
   }
   std::fill(volume.hu.begin(), volume.hu.end(), std::int16_t(40));
-  EXPECT_EQ(skinOf(volume).error().code, "NO_BODY");
+  EXPECT_EQ(skinOf(volume).error().code.str(), "NO_BODY");
   std::fill(volume.hu.begin(), volume.hu.end(), std::int16_t(-1000));
-  EXPECT_EQ(skinOf(volume).error().code, "NO_BODY");
+  EXPECT_EQ(skinOf(volume).error().code.str(), "NO_BODY");
 }
 
 TEST(SkinInHead, CoversItAndStaysOutsideOfNoseAndSinuses) {

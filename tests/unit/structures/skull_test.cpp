@@ -103,7 +103,7 @@ TEST_F(SkullInHead, CanBeCancelledAtAnyStep) {
     told = &progress;
     const auto skull = skullOf(head().volume, progress);
     ASSERT_FALSE(skull) << step;
-    EXPECT_EQ(skull.error().code, "CANCELLED");
+    EXPECT_EQ(skull.error().code.str(), "CANCELLED");
   }
 }
 
@@ -111,7 +111,7 @@ TEST_F(SkullInHead, SaysWhereThereIsNoMemory) {
   const test::DataLimit limit(5.0);
   const auto skull = skullOf(head().volume);
   ASSERT_FALSE(skull);
-  EXPECT_EQ(skull.error().code, "OUT_OF_MEMORY");
+  EXPECT_EQ(skull.error().code.str(), "OUT_OF_MEMORY");
 }
 
 TEST(Skull, OfNoBoneIsRefused) {
@@ -120,10 +120,10 @@ TEST(Skull, OfNoBoneIsRefused) {
   volume.hu.assign(volume.geometry.voxelCount(), 40);
   const auto none = skullOf(volume);
   ASSERT_FALSE(none);
-  EXPECT_EQ(none.error().code, "NO_BONE");
+  EXPECT_EQ(none.error().code.str(), "NO_BONE");
   volume.geometry.size = {1, 1, 1};
   volume.hu.assign(1, 1000);
-  EXPECT_EQ(skullOf(volume).error().code, "NO_BONE");
+  EXPECT_EQ(skullOf(volume).error().code.str(), "NO_BONE");
 }
 
 // A block of bone with a canal right through it, and with a sheet of marrow that lies open on one

@@ -72,11 +72,13 @@ TEST(Surface, IsClosedWhereTheScanEnds) {
 
 TEST(Surface, NothingIsWrittenOfNothing) {
   const test::TemporaryFolder folder;
-  EXPECT_EQ(writeSurface(ball(15.0), 4, folder / "a.stl").error().code, "EMPTY_STRUCTURE");
-  EXPECT_EQ(writeSurface(ball(15.0), 3, folder / "none" / "a.stl").error().code, "CANNOT_WRITE");
+  EXPECT_EQ(writeSurface(ball(15.0), 4, folder / "a.stl").error().code.str(), "EMPTY_STRUCTURE");
+  EXPECT_EQ(writeSurface(ball(15.0), 3, folder / "none" / "a.stl").error().code.str(),
+            "CANNOT_WRITE");
   Progress progress;
   progress.cancel();
-  EXPECT_EQ(writeSurface(ball(15.0), 3, folder / "a.stl", progress).error().code, "CANCELLED");
+  EXPECT_EQ(writeSurface(ball(15.0), 3, folder / "a.stl", progress).error().code.str(),
+            "CANCELLED");
   EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
 }
 

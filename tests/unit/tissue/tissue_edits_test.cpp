@@ -129,7 +129,7 @@ TEST(NewTissue, TakesTheWidestFreeRangeUnderANameOfItsOwnAndTheSetStaysPossible)
   whole.tissues[1].hu_min = -1024;
   const Result<TissueSet> full = withNewTissue(whole);
   ASSERT_FALSE(full.ok());
-  EXPECT_EQ(full.error().code, "NO_ROOM");
+  EXPECT_EQ(full.error().code.str(), "NO_ROOM");
   EXPECT_NE(full.error().next, "");
 }
 
@@ -139,7 +139,7 @@ TEST(NewTissue, OneIsTakenAwayButNotTheLast) {
   ASSERT_TRUE(one.ok());
   ASSERT_EQ(one->tissues.size(), 1u);
   EXPECT_EQ(one->tissues[0].id, "soft");
-  EXPECT_EQ(withoutTissue(*one, 0).error().code, "LAST_TISSUE");
+  EXPECT_EQ(withoutTissue(*one, 0).error().code.str(), "LAST_TISSUE");
 }
 
 }  // namespace

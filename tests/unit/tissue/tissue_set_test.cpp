@@ -334,7 +334,7 @@ TEST(TissueFile, RefusesWholeNumbersThatWouldWrapRoundIntoValidOnes) {
 
 TEST(TissueFile, IsHeldToTheRulesOfTheSet) {
   const Error error = parseErrorAfter([](Json& j) { j["tissues"][1]["hu"] = {0, 299}; });
-  EXPECT_EQ(error.code, "BAD_TISSUE");
+  EXPECT_EQ(error.code.str(), "BAD_TISSUE");
   EXPECT_EQ(error.where, "t.json: tissues[1].hu");
   EXPECT_PART(error.what, "overlap");
 }
@@ -374,7 +374,7 @@ TEST(TissueFile, NamesANumberThatNoDoubleHoldsByFileFieldAndValue) {
 TEST(TissueFile, NamesAFileThatIsNotThere) {
   const Result<TissueSet> set = readTissueSet("none/such.json");
   ASSERT_FALSE(set.ok());
-  EXPECT_EQ(set.error().code, "MISSING_FILE");
+  EXPECT_EQ(set.error().code.str(), "MISSING_FILE");
   EXPECT_EQ(set.error().where, "none/such.json");
 }
 

@@ -60,7 +60,7 @@ void isForeignWhere(const char* dataset, const std::function<void(hid_t)>& chang
   H5Fclose(file);
   const auto reader = SessionReader::open(recording);
   ASSERT_FALSE(reader.ok());
-  EXPECT_EQ(reader.error().code, "BAD_RECORDING");
+  EXPECT_EQ(reader.error().code.str(), "BAD_RECORDING");
   EXPECT_NE(reader.error().what.find(dataset), std::string::npos) << reader.error().what;
   EXPECT_NE(reader.error().what.find("not in the file itself"), std::string::npos);
 }
@@ -95,7 +95,7 @@ TEST(ForeignRecording, WithAnExternalOrASoftLinkIsRefused) {
   const hid_t file = H5Fopen((elsewhere / "a.h5").c_str(), H5F_ACC_RDWR, H5P_DEFAULT);
   H5Lcreate_external((elsewhere / "pipe").c_str(), "/x", file, "arm1", H5P_DEFAULT, H5P_DEFAULT);
   H5Fclose(file);
-  EXPECT_EQ(SessionReader::open(elsewhere / "a.h5").error().code, "BAD_RECORDING");
+  EXPECT_EQ(SessionReader::open(elsewhere / "a.h5").error().code.str(), "BAD_RECORDING");
 }
 
 TEST(ForeignRecording, WhoseDataLieInAnotherFileIsRefused) {
@@ -196,7 +196,7 @@ TEST(ForeignRecording, WhoseExerciseNamesAFileOpensNone) {
     const auto result = replay(**reader, slab());
     if (result) return std::string();
     EXPECT_NE(result.error().what.find("names a file"), std::string::npos);
-    return result.error().code;
+    return result.error().code.str();
   };
   EXPECT_EQ(replayed([](Json&) {}), "");
   EXPECT_EQ(replayed([&](Json& s) { s["tissues"] = pipe; }), "BAD_FIELD");
@@ -218,7 +218,7 @@ TEST(Recording, WhoseEndIsDamagedIsNotTakenForOneThatWasCutShort) {
   takeOut("end", folder / "a.h5");
   const auto reader = SessionReader::open(folder / "a.h5");
   ASSERT_FALSE(reader.ok());
-  EXPECT_EQ(reader.error().code, "BAD_RECORDING");
+  EXPECT_EQ(reader.error().code.str(), "BAD_RECORDING");
   EXPECT_NE(reader.error().what.find("its end cannot be read"), std::string::npos);
 }
 
@@ -236,9 +236,9 @@ TEST(Recording, ThatIsDamagedIsNamedWithoutANoiseInAnyThread) {
 
 TEST(Recording, AFileThatIsMissingForeignOrCutShortIsNamed) {
   test::TemporaryFolder folder;
-  EXPECT_EQ(SessionReader::open(folder / "none.h5").error().code, "MISSING_FILE");
+  EXPECT_EQ(SessionReader::open(folder / "none.h5").error().code.str(), "MISSING_FILE");
   std::ofstream(folder / "text.h5") << "not a recording";
-  EXPECT_EQ(SessionReader::open(folder / "text.h5").error().code, "BAD_RECORDING");
+  EXPECT_EQ(SessionReader::open(folder / "text.h5").error().code.str(), "BAD_RECORDING");
   recordRun(folder / "a.h5", 3000);
   const auto size = std::filesystem::file_size(folder / "a.h5");
   for (double part : {0.001, 0.02, 0.3, 0.9}) {
@@ -248,7 +248,7 @@ TEST(Recording, AFileThatIsMissingForeignOrCutShortIsNamed) {
     std::filesystem::resize_file(cut, std::uintmax_t(double(size) * part));
     auto reader = SessionReader::open(cut);
     if (!reader.ok()) {
-      EXPECT_EQ(reader.error().code, "BAD_RECORDING");
+      EXPECT_EQ(reader.error().code.str(), "BAD_RECORDING");
       EXPECT_NE(reader.error().where.find("cut.h5"), std::string::npos);
       continue;
     }
@@ -271,10 +271,10 @@ std::string endOfReplay(const std::filesystem::path& file) {
   if (child == 0) {
     ::alarm(5);
     const auto reader = SessionReader::open(file);
-    std::string end = reader ? "" : reader.error().code;
+    std::string end = reader ? "" : reader.error().code.str();
     if (reader) {
       const auto result = replay(**reader, slab());
-      end = !result ? result.error().code : result->identical ? "identical" : "differs";
+      end = !result ? result.error().code.str() : result->identical ? "identical" : "differs";
     }
     static_cast<void>(!::write(ends[1], end.data(), end.size()));
     ::_exit(0);
@@ -317,7 +317,7 @@ TEST(Recording, AHeadOfWhichALetterChangedIsDamagedAndNotAnotherExercise) {
   std::ofstream(folder / "b.h5", std::ios::binary) << bytes;
   const auto reader = SessionReader::open(folder / "b.h5");
   ASSERT_FALSE(reader.ok());
-  EXPECT_EQ(reader.error().code, "BAD_RECORDING");
+  EXPECT_EQ(reader.error().code.str(), "BAD_RECORDING");
 }
 
 TEST(Recording, WhoseHeadIsNoLongerGuardedIsDamaged) {
@@ -442,7 +442,7 @@ TEST(Recording, OfAJournalThatCannotBeSaysSoAndAsksForNoSpace) {
                 [](auto& ticks) { ticks[700].journal = 255; });
   const auto result = replay(**SessionReader::open(folder / "a.h5"), slab());
   ASSERT_FALSE(result.ok());
-  EXPECT_EQ(result.error().code, "NOT_REPLAYABLE");
+  EXPECT_EQ(result.error().code.str(), "NOT_REPLAYABLE");
   const std::string sentence = result.error().sentence();
   EXPECT_NE(sentence.find("tick 700 "), std::string::npos) << sentence;
   EXPECT_NE(sentence.find("255"), std::string::npos) << sentence;
@@ -473,7 +473,7 @@ TEST(Recording, ThatIsDamagedInTheMiddleNamesTheTick) {
   file.close();
   const auto result = replay(**SessionReader::open(folder / "a.h5"), slab());
   ASSERT_FALSE(result.ok());
-  EXPECT_EQ(result.error().code, "BAD_RECORDING");
+  EXPECT_EQ(result.error().code.str(), "BAD_RECORDING");
   EXPECT_NE(result.error().what.find("from tick 1024 on"), std::string::npos)
       << result.error().what;
 }

@@ -107,7 +107,7 @@ TEST_F(RecordingFolder, GoesOnPastAFileThatTakesLongOrEndsItsReader) {
     const std::string code = name == "long.h5"  ? "TAKES_TOO_LONG"
                              : name == "bad.h5" ? "BAD_RECORDING"
                                                 : "";
-    EXPECT_EQ(row.problem ? row.problem->code : "", code) << name;
+    EXPECT_EQ(row.problem ? row.problem->code.str() : "", code) << name;
     if (code.empty()) {
       EXPECT_EQ(row.seconds, 1.5);
     }
@@ -126,14 +126,14 @@ TEST_F(RecordingFolder, IsCancelledWhileAFileTakesLong) {
   const auto rows = listRecordings(folder_.path(), progress, how);
   person.join();
   ASSERT_FALSE(rows);
-  EXPECT_EQ(rows.error().code, "CANCELLED");
+  EXPECT_EQ(rows.error().code.str(), "CANCELLED");
 }
 
 TEST_F(RecordingFolder, SaysThatTheReaderCannotWorkWhereItEndsWithoutAWordAgainAndAgain) {
   for (const char* name : {"a.h5", "b.h5", "c.h5", "d.h5"}) std::ofstream(folder_ / name) << "x";
   const auto rows = listRecordings(folder_.path(), Progress(), by("exit 1"));
   ASSERT_FALSE(rows);
-  EXPECT_EQ(rows.error().code, "CANNOT_RUN");
+  EXPECT_EQ(rows.error().code.str(), "CANNOT_RUN");
   // One such file is a row.
   const auto others = listed(by("case \"$f\" in *b.h5) exit 1;; esac\n" + std::string(kRow)));
   ASSERT_EQ(others.size(), 4u);
@@ -145,7 +145,7 @@ TEST_F(RecordingFolder, SaysThatTheReaderIsNotThere) {
   std::ofstream(folder_ / "a.h5") << "x";
   const auto rows = listRecordings(folder_.path(), Progress(), {folder_ / "none", 1.0});
   ASSERT_FALSE(rows);
-  EXPECT_EQ(rows.error().code, "CANNOT_RUN");
+  EXPECT_EQ(rows.error().code.str(), "CANNOT_RUN");
 }
 
 }  // namespace

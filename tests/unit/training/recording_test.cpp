@@ -127,7 +127,7 @@ TEST(Recording, RefusesAnotherCase) {
   recordRun(folder / "a.h5", 100);
   Volume other = slab();
   other.hu[5] += 1;
-  EXPECT_EQ(replay(**SessionReader::open(folder / "a.h5"), other).error().code, "WRONG_CASE");
+  EXPECT_EQ(replay(**SessionReader::open(folder / "a.h5"), other).error().code.str(), "WRONG_CASE");
 }
 
 // Label 5 where x < 0. A tissue change moves the tissue to the rest.
@@ -202,7 +202,7 @@ TEST(Recording, RefusesAnotherLabelMapAndOneTooMany) {
   EXPECT_EQ((*SessionReader::open(folder / "a.h5"))->header().labels_sha256, "");
   const auto too_many = replay(**SessionReader::open(folder / "a.h5"), slab(), halves().get());
   ASSERT_FALSE(too_many.ok());
-  EXPECT_EQ(too_many.error().code, "WRONG_LABELS");
+  EXPECT_EQ(too_many.error().code.str(), "WRONG_LABELS");
   EXPECT_NE(too_many.error().what.find("without a label map"), std::string::npos);
 }
 
@@ -217,7 +217,7 @@ TEST(Recording, OfAnOlderVersionIsRefusedByName) {
     if (number == kRecordingVersion) {
       EXPECT_TRUE(replay(**SessionReader::open(folder / "a.h5"), slab())->identical);
     } else {
-      EXPECT_EQ(SessionReader::open(folder / "a.h5").error().code, "OLDER_VERSION");
+      EXPECT_EQ(SessionReader::open(folder / "a.h5").error().code.str(), "OLDER_VERSION");
     }
   }
   H5Aclose(version);
@@ -314,7 +314,8 @@ TEST(Recording, KeepsWhichToolAnArmTookAndWhen) {
 TEST(Recording, RefusesToReplayWhatWasDropped) {
   test::TemporaryFolder folder;
   recordRun(folder / "a.h5", 100, true, 3);
-  EXPECT_EQ(replay(**SessionReader::open(folder / "a.h5"), slab()).error().code, "NOT_REPLAYABLE");
+  EXPECT_EQ(replay(**SessionReader::open(folder / "a.h5"), slab()).error().code.str(),
+            "NOT_REPLAYABLE");
 }
 
 TEST(Recording, IsNeverWrittenOverAnotherFile) {
@@ -322,7 +323,7 @@ TEST(Recording, IsNeverWrittenOverAnotherFile) {
   std::ofstream(folder / "a.h5") << "precious";
   auto recorder = SessionRecorder::create(folder / "a.h5", {Json::object(), "", {}, ""}, 1);
   ASSERT_FALSE(recorder.ok());
-  EXPECT_EQ(recorder.error().code, "CANNOT_WRITE");
+  EXPECT_EQ(recorder.error().code.str(), "CANNOT_WRITE");
   std::string text;
   std::ifstream(folder / "a.h5") >> text;
   EXPECT_EQ(text, "precious");
@@ -334,7 +335,7 @@ TEST(Recording, ThatCannotBeStartedLeavesNoFile) {
     const test::FileSizeLimit full(room);
     const auto recorder = SessionRecorder::create(folder / "a.h5", {Json::object(), "", {}, ""}, 1);
     ASSERT_FALSE(recorder.ok());
-    EXPECT_EQ(recorder.error().code, "CANNOT_WRITE");
+    EXPECT_EQ(recorder.error().code.str(), "CANNOT_WRITE");
     EXPECT_FALSE(std::filesystem::exists(folder / "a.h5")) << room;
   }
 }
@@ -348,7 +349,7 @@ TEST(Recording, ThatIsDeletedWhileItIsWrittenIsSaid) {
   (*recorder)->tick(TickRecord{});
   const Status status = (*recorder)->flush();
   ASSERT_FALSE(status);
-  EXPECT_EQ(status.error().code, "RECORDING_GONE");
+  EXPECT_EQ(status.error().code.str(), "RECORDING_GONE");
   EXPECT_FALSE((*recorder)->finish({}));
   EXPECT_FALSE(std::filesystem::exists(folder / "a.h5"));
 }
@@ -381,7 +382,7 @@ TEST(Recording, AFullDiskEndsTheRecordingAndKeepsWhatWasWritten) {
   }
   EXPECT_FALSE(status.ok());
   if (!status) {
-    EXPECT_EQ(status.error().code, "CANNOT_WRITE");
+    EXPECT_EQ(status.error().code.str(), "CANNOT_WRITE");
   }
   EXPECT_FALSE((*recorder)->finish({ticks, 0, 0, ""}).ok());
   full.reset();

@@ -66,7 +66,7 @@ TEST(TickTable, NamesTheCauseWhereItCannotBeWritten) {
   const auto reader = *SessionReader::open(recordTwoTicks(folder, "right"));
   const Status written = writeTickTable(*reader, folder / "none" / "t.csv");
   ASSERT_FALSE(written.ok());
-  EXPECT_EQ(written.error().code, "CANNOT_WRITE");
+  EXPECT_EQ(written.error().code.str(), "CANNOT_WRITE");
   EXPECT_NE(written.error().what.find("No such file"), std::string::npos) << written.error().what;
   EXPECT_EQ(written.error().sentence().find("space"), std::string::npos);
 }
@@ -79,7 +79,7 @@ TEST(TickTable, ForWhichTheDiskHasNoRoomSaysSoAndLeavesNothing) {
     return writeTickTable(*reader, folder / "t.csv");
   }();
   ASSERT_FALSE(written.ok());
-  EXPECT_EQ(written.error().code, "CANNOT_WRITE");
+  EXPECT_EQ(written.error().code.str(), "CANNOT_WRITE");
   EXPECT_NE(written.error().sentence().find("Free some space"), std::string::npos)
       << written.error().sentence();
   EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder.path()), {}), 1);

@@ -8,6 +8,7 @@
 #include <mutex>
 #include <stdexcept>
 
+#include "base/codes.h"
 #include "qt_support.h"
 #include "support.h"
 
@@ -69,9 +70,9 @@ TEST_F(BackgroundTaskTest, CancelReachesTheWork) {
   ASSERT_TRUE(task.run(
       [](const Progress& progress) -> Status {
         waitUntil([&] { return progress.cancelled(); });
-        return Error{"CANCELLED", "Cancelled", "", ""};
+        return Error{code::kCancelled, "Cancelled", "", ""};
       },
-      [&](Status status) { code = status.error().code; }));
+      [&](Status status) { code = status.error().code.str(); }));
   task.cancel();
   ASSERT_TRUE(waitFor([&] { return !code.empty(); }));
   EXPECT_EQ(code, "CANCELLED");
@@ -80,7 +81,7 @@ TEST_F(BackgroundTaskTest, CancelReachesTheWork) {
 TEST_F(BackgroundTaskTest, AnExceptionBecomesAnError) {
   BackgroundTask task;
   std::string code;
-  const auto deliver = [&](Result<int> result) { code = result.error().code; };
+  const auto deliver = [&](Result<int> result) { code = result.error().code.str(); };
   ASSERT_TRUE(task.run([](const Progress&) -> Result<int> { throw std::bad_alloc(); }, deliver));
   ASSERT_TRUE(waitFor([&] { return !code.empty(); }));
   EXPECT_EQ(code, "OUT_OF_MEMORY");

@@ -66,7 +66,8 @@ TEST(Words, EveryFaultIsSaidInASentence) {
 TEST(Words, AFindingSaysWhatWasSeenAndWhatWasDone) {
   SeriesReport series;
   EXPECT_TRUE(findingWords(series).isEmpty());
-  series.findings.push_back({"GAP", "repair", "A slice is missing", {}, "It was filled"});
+  series.findings.push_back(
+      {Code("GAP"), Severity::repair, "A slice is missing", {}, "It was filled"});
   EXPECT_EQ(findingWords(series), "A slice is missing. It was filled.");
 }
 

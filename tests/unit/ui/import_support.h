@@ -1,5 +1,6 @@
 #pragma once
 
+#include "imaging/codes.h"
 #include "imaging/importer.h"
 
 namespace trephine::test {
@@ -18,19 +19,20 @@ inline SeriesReport fakeSeries(const std::string& uid, Verdict verdict, int slic
 }
 
 inline Choice missingSlices() {
-  return {"MISSING_SLICES",
+  return {code::kMissingSlices,
           "Two slices are missing. Fill them?",
           {"refuse", "fill"},
           {"Do not use the series", "Fill them from their neighbours"}};
 }
 
 inline Choice couch() {
-  return {"COUCH", "Remove the couch?", {"keep", "remove"}, {"Keep it", "Make it air"}};
+  return {code::kCouch, "Remove the couch?", {"keep", "remove"}, {"Keep it", "Make it air"}};
 }
 
 inline SeriesReport askingSeries(const std::string& uid) {
   SeriesReport series = fakeSeries(uid, Verdict::refused);
-  series.findings.push_back({"MISSING_SLICES", "refusal", "Two slices are missing", {"3.0"}, ""});
+  series.findings.push_back(
+      {code::kMissingSlices, Severity::refusal, "Two slices are missing", {"3.0"}, ""});
   series.choices.push_back(missingSlices());
   return series;
 }

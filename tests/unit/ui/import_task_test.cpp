@@ -95,7 +95,7 @@ TEST_F(ImportTaskTest, WhatCouldBeReadButNotPractisedOnIsRefusedBeforeItIsRead) 
     const test::DataLimit limit(0.9 * promised_mb - kWindow_mb);
     task_.read(uid, {}, promised_mb - kWindow_mb);
     ASSERT_TRUE(waitFor([&] { return error_.has_value(); }));
-    EXPECT_EQ(error_->code, "OUT_OF_MEMORY");
+    EXPECT_EQ(error_->code.str(), "OUT_OF_MEMORY");
     EXPECT_NE(error_->what.find("practising"), std::string::npos) << error_->what;
     EXPECT_FALSE(task_.volume());
   }
@@ -157,7 +157,7 @@ TEST_F(ImportTaskTest, AFolderThatIsMissingLeavesTheOneBefore) {
   scan();
   task_.scan(path() / "nowhere");
   ASSERT_TRUE(waitFor([&] { return error_.has_value(); }));
-  EXPECT_EQ(error_->code, "MISSING_FOLDER");
+  EXPECT_EQ(error_->code.str(), "MISSING_FOLDER");
   EXPECT_EQ(stopped_, 1);
   EXPECT_EQ(task_.report().series.size(), 2u);
 }
@@ -207,7 +207,7 @@ TEST_F(ImportTaskTest, AfterARefusedImportTheDialogKeepsTheSizeThatWasChosen) {
     const test::DataLimit limit(200.0);
     import->click();
     ASSERT_TRUE(waitFor([&] { return error_.has_value(); }));
-    EXPECT_EQ(error_->code, "OUT_OF_MEMORY");
+    EXPECT_EQ(error_->code.str(), "OUT_OF_MEMORY");
   }
   EXPECT_TRUE(half->isChecked());
 }

@@ -9,6 +9,7 @@
 #include <QToolButton>
 #include <QWheelEvent>
 
+#include "imaging/codes.h"
 #include "import_support.h"
 #include "qt_support.h"
 #include "ui/cases/choice_panel.h"
@@ -17,6 +18,7 @@
 #include "ui/cases/size_panel.h"
 #include "ui/cases/state_mark.h"
 #include "ui/views/slice_preview.h"
+#include "volume/codes.h"
 #include "volume/reduce.h"
 
 namespace trephine {
@@ -57,7 +59,7 @@ TEST_F(ImportWidgetsTest, AStateIsSaidInAWordForThoseWhoDoNotSeeTheMark) {
   const auto spoken = [&] { return list.item(0)->data(Qt::AccessibleTextRole).toString(); };
   EXPECT_TRUE(spoken().contains("Has a question")) << spoken().toStdString();
   EXPECT_TRUE(spoken().contains("100 slices"));
-  list.updateSeries(askingSeries("1"), {{"MISSING_SLICES", "fill"}});
+  list.updateSeries(askingSeries("1"), {{code::kMissingSlices, "fill"}});
   EXPECT_TRUE(spoken().contains("As answered")) << spoken().toStdString();
 }
 
@@ -164,7 +166,7 @@ class ChoicePanelTest : public ImportWidgetsTest {
 };
 
 TEST_F(ChoicePanelTest, AnOptionShowsItsSliceAndWhatIsForTheScreenAlone) {
-  const Choice phases{"PHASES",
+  const Choice phases{code::kPhases,
                       "Which phase?",
                       {"refuse", "1", "2"},
                       {"None", "One", "Two"},
@@ -205,16 +207,16 @@ TEST_F(ChoicePanelTest, AnAnswerIsTheOptionsNameAndIsToldOnce) {
   EXPECT_FALSE(panel_.allAnswered());
   find<QRadioButton>(panel_, "choice_COUCH_keep").click();
   find<QRadioButton>(panel_, "choice_COUCH_remove").click();
-  EXPECT_EQ(panel_.answers(), (Answers{{"COUCH", "remove"}, {"MISSING_SLICES", "fill"}}));
+  EXPECT_EQ(panel_.answers(), (Answers{{code::kCouch, "remove"}, {code::kMissingSlices, "fill"}}));
   EXPECT_TRUE(panel_.allAnswered());
   EXPECT_EQ(told, 3);
 }
 
 TEST_F(ChoicePanelTest, WhatWasAnsweredBeforeIsShown) {
-  panel_.ask({test::missingSlices()}, {{"MISSING_SLICES", "fill"}, {"FACE", "keep"}});
+  panel_.ask({test::missingSlices()}, {{code::kMissingSlices, "fill"}, {code::kFace, "keep"}});
   EXPECT_TRUE(find<QRadioButton>(panel_, "choice_MISSING_SLICES_fill").isChecked());
   EXPECT_TRUE(panel_.allAnswered());
-  EXPECT_EQ(panel_.answers(), (Answers{{"MISSING_SLICES", "fill"}})) << "of what is asked only";
+  EXPECT_EQ(panel_.answers(), (Answers{{code::kMissingSlices, "fill"}})) << "of what is asked only";
   panel_.ask({}, {});
   EXPECT_TRUE(panel_.findChildren<QRadioButton*>().isEmpty());
 }
@@ -352,9 +354,9 @@ TEST_F(SlicePreviewTest, AWindowChangesThePictureAndNothingElse) {
 
 TEST_F(SlicePreviewTest, ASliceThatCannotBeReadSaysWhyInItsPlace) {
   preview_.showSlice(50, slice(4, 4, Vec3(1.0)));
-  preview_.showSlice(49, Error{"UNREADABLE", "The file is cut", "", ""});
+  preview_.showSlice(49, Error{code::kUnreadable, "The file is cut", "", ""});
   EXPECT_FALSE(preview_.canvas().image().isNull()) << "that slice is not the one wanted";
-  preview_.showSlice(50, Error{"UNREADABLE", "The file is cut", "", ""});
+  preview_.showSlice(50, Error{code::kUnreadable, "The file is cut", "", ""});
   EXPECT_TRUE(preview_.canvas().image().isNull());
 }
 

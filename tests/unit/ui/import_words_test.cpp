@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "imaging/codes.h"
 #include "import_support.h"
 #include "qt_support.h"
 #include "ui/views/slice_image.h"
@@ -20,13 +21,13 @@ class ImportWordsTest : public ::testing::Test {
 TEST_F(ImportWordsTest, ARefusalThatAQuestionStandsForIsOpenUntilAnswered) {
   const SeriesReport series = askingSeries("1");
   EXPECT_EQ(seriesState(series, {}), SeriesState::asks);
-  EXPECT_EQ(seriesState(series, {{"MISSING_SLICES", "refuse"}}), SeriesState::asks);
-  EXPECT_EQ(seriesState(series, {{"COUCH", "remove"}}), SeriesState::asks);
-  EXPECT_EQ(seriesState(series, {{"MISSING_SLICES", "fill"}}), SeriesState::answered);
+  EXPECT_EQ(seriesState(series, {{code::kMissingSlices, "refuse"}}), SeriesState::asks);
+  EXPECT_EQ(seriesState(series, {{code::kCouch, "remove"}}), SeriesState::asks);
+  EXPECT_EQ(seriesState(series, {{code::kMissingSlices, "fill"}}), SeriesState::answered);
   EXPECT_EQ(seriesState(fakeSeries("2", Verdict::refused), {}), SeriesState::refused);
   SeriesReport optional = fakeSeries("3", Verdict::refused);
   optional.choices = {test::couch()};
-  EXPECT_EQ(seriesState(optional, {{"COUCH", "remove"}}), SeriesState::refused)
+  EXPECT_EQ(seriesState(optional, {{code::kCouch, "remove"}}), SeriesState::refused)
       << "no answer about the couch makes a volume of it";
 }
 
@@ -47,8 +48,8 @@ TEST_F(ImportWordsTest, NoTwoStatesShareAWord) {
 TEST_F(ImportWordsTest, TheReportTellsEachFindingWithItsActionAndWhatItMeans) {
   SeriesReport series = fakeSeries("1", Verdict::repaired);
   series.findings = {
-      {"PADDING_TO_AIR", "notice", "12 voxels are padding", {}, "They became air"},
-      {"UNEVEN_SPACING", "repair", "Slices are uneven", {"3.0"}, "They were evened"}};
+      {code::kPaddingToAir, Severity::notice, "12 voxels are padding", {}, "They became air"},
+      {code::kUnevenSpacing, Severity::repair, "Slices are uneven", {"3.0"}, "They were evened"}};
   const QString html = reportHtml(series);
   for (const char* text : {"12 voxels are padding.", "They became air.", "Slices are uneven.",
                            "They were evened.", "Slices: 3.0.", "differs from the files"}) {
@@ -62,7 +63,7 @@ TEST_F(ImportWordsTest, TheReportTellsEachFindingWithItsActionAndWhatItMeans) {
 TEST_F(ImportWordsTest, MarkUpInAFileStaysText) {
   SeriesReport series = fakeSeries("1", Verdict::refused);
   series.body_part = "<i>HEAD</i>";
-  series.findings = {{"X", "refusal", "<img src=a>", {"<b>"}, "<a href=b>c</a>"}};
+  series.findings = {{Code("X"), Severity::refusal, "<img src=a>", {"<b>"}, "<a href=b>c</a>"}};
   const QString html = reportHtml(series);
   for (const char* tag : {"<i>", "<img", "<b>.", "<a "}) EXPECT_FALSE(html.contains(tag)) << tag;
   EXPECT_TRUE(html.contains("&lt;img src=a&gt;"));
@@ -108,8 +109,8 @@ TEST_F(ImportWordsTest, OnlyWhatIsNewAndUnansweredIsAskedAfterReading) {
   after.choices.push_back(test::couch());
   const std::vector<Choice> asked = newChoices(before, after, {});
   ASSERT_EQ(asked.size(), 1u);
-  EXPECT_EQ(asked[0].code, "COUCH");
-  EXPECT_TRUE(newChoices(before, after, {{"COUCH", "keep"}}).empty());
+  EXPECT_EQ(asked[0].code.str(), "COUCH");
+  EXPECT_TRUE(newChoices(before, after, {{code::kCouch, "keep"}}).empty());
 }
 
 TEST(HuWindow, GoesFromBlackToWhiteOverItsWidth) {

@@ -47,7 +47,8 @@ TEST_F(ReportFileTest, IsOneA4PageAsPdf) {
 TEST_F(ReportFileTest, IsPrintedSmallerBeforeItTakesASecondPage) {
   SeriesReport long_one = test::fakeSeries("1.2.5", Verdict::repaired);
   for (int i = 0; i < 45; ++i) {
-    long_one.findings.push_back({"X", "repair", "Something was found", {}, "It was put right"});
+    long_one.findings.push_back(
+        {Code("X"), Severity::repair, "Something was found", {}, "It was put right"});
   }
   report_.series = {long_one};
   EXPECT_TRUE(written("report.pdf").contains("/Count 1\n"));
@@ -56,7 +57,7 @@ TEST_F(ReportFileTest, IsPrintedSmallerBeforeItTakesASecondPage) {
 TEST_F(ReportFileTest, AFolderThatIsNotThereIsSaid) {
   const Status status = writeReport(report_, toPath(folder_.filePath("no/report.pdf")));
   ASSERT_FALSE(status.ok());
-  EXPECT_EQ(status.error().code, "CANNOT_WRITE");
+  EXPECT_EQ(status.error().code.str(), "CANNOT_WRITE");
 }
 
 }  // namespace

@@ -33,7 +33,7 @@ class Editor : public testing::Test {
     editor_.setCase(volume_, nullptr);
     QObject::connect(&editor_, &StructureEditor::said, [this](const QString& w) { said_ = w; });
     QObject::connect(&editor_, &StructureEditor::failed,
-                     [this](const Error& e) { failed_ = e.code; });
+                     [this](const Error& e) { failed_ = e.code.str(); });
   }
   void wait() {
     EXPECT_TRUE(test::waitFor([this] { return !editor_.busy(); }));
@@ -205,9 +205,10 @@ TEST_F(Editor, NamesAreItsOwnAndWhatIsDeletedComesBack) {
   EXPECT_EQ(editor_.map()->find(first)->name, "Leber \xe8\x82\x9d");
   editor_.setCurrent(0);
   stroke(middle_ + Vec3(20, 0, 0), middle_ + Vec3(20, 0, 0));
-  EXPECT_EQ(editor_.rename(editor_.current(), QString::fromUtf8("leber \xe8\x82\x9d")).error().code,
-            "BAD_NAME");
-  EXPECT_EQ(editor_.rename(editor_.current(), "  ").error().code, "BAD_NAME");
+  EXPECT_EQ(
+      editor_.rename(editor_.current(), QString::fromUtf8("leber \xe8\x82\x9d")).error().code.str(),
+      "BAD_NAME");
+  EXPECT_EQ(editor_.rename(editor_.current(), "  ").error().code.str(), "BAD_NAME");
   const double before = editor_.millilitres(first);
   editor_.remove(first);
   EXPECT_EQ(editor_.millilitres(first), 0.0);

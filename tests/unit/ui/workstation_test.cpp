@@ -68,7 +68,7 @@ class WorkstationTest : public ::testing::Test {
 TEST_F(WorkstationTest, ALabelMapBelongsToTheCaseThatIsOpen) {
   workstation_.useLabels(labels(7));
   ASSERT_TRUE(failed_);
-  EXPECT_EQ(failed_->code, "NO_CASE");
+  EXPECT_EQ(failed_->code.str(), "NO_CASE");
   failed_.reset();
 
   const auto ct = std::make_shared<const Volume>(ball());
@@ -85,7 +85,7 @@ TEST_F(WorkstationTest, ALabelMapBelongsToTheCaseThatIsOpen) {
   workstation_.useLabels(labels(-7));
   ASSERT_TRUE(wait());
   ASSERT_TRUE(failed_);
-  EXPECT_EQ(failed_->code, "NOT_LABELS");
+  EXPECT_EQ(failed_->code.str(), "NOT_LABELS");
   EXPECT_TRUE(workstation_.placed()->labels) << "the one before stays";
   workstation_.useExercise(workstation_.exerciseFile());
   ASSERT_TRUE(wait());
@@ -106,7 +106,7 @@ TEST_F(WorkstationTest, AnImportedCaseComesWithItsLabelMapOrWithoutOneAndASenten
   workstation_.openImported(caseOf(another), labels(-7));
   ASSERT_TRUE(wait());
   ASSERT_TRUE(failed_);
-  EXPECT_EQ(failed_->code, "NOT_LABELS");
+  EXPECT_EQ(failed_->code.str(), "NOT_LABELS");
   EXPECT_EQ(workstation_.currentCase()->volume, another) << "the case opens all the same";
   EXPECT_EQ(workstation_.placed()->labels, nullptr);
 }
@@ -150,7 +150,7 @@ TEST_F(WorkstationTest, AnExerciseTakesTheLabelMapAndWithoutItIsRefused) {
   };
   EXPECT_FALSE(started());
   ASSERT_TRUE(failed_);
-  EXPECT_EQ(failed_->code, "NO_LABELS");
+  EXPECT_EQ(failed_->code.str(), "NO_LABELS");
   failed_.reset();
 
   workstation_.useLabels(labels(7));
@@ -179,7 +179,7 @@ TEST_F(WorkstationTest, ARecordingThatFailsIsSaidOnceAtOnceAndTheExerciseGoesOn)
   });
   full.reset();
   ASSERT_TRUE(heard);
-  EXPECT_EQ(said.front().code, "CANNOT_WRITE");
+  EXPECT_EQ(said.front().code.str(), "CANNOT_WRITE");
   ASSERT_TRUE(workstation_.session());
   const std::uint64_t then = workstation_.session()->state().ticks;
   EXPECT_TRUE(waitFor([&] { return workstation_.session()->state().ticks > then + 100; }));
@@ -312,7 +312,7 @@ TEST_F(SavedVolumeTest, WhileAnExerciseStartsIsRefusedAndOneThatDoesNotStartIsSa
   workstation_.start(folder_ / "file" / "nowhere", {}, 1e9);
   workstation_.saveVolume(folder_ / "carved.mha");
   ASSERT_TRUE(failed_);
-  EXPECT_EQ(failed_->code, "BUSY");
+  EXPECT_EQ(failed_->code.str(), "BUSY");
   failed_.reset();
   ASSERT_TRUE(waitFor([&] { return workstation_.phase() == Workstation::Phase::ready; }));
   ASSERT_TRUE(failed_) << "there is no such folder";
@@ -325,7 +325,7 @@ TEST_F(SavedVolumeTest, AskedForTwiceIsWrittenOnceAndTheExerciseStandsStillMeanw
   workstation_.saveVolume(folder_ / "a.mha", [&] { saved.push_back("a"); });
   workstation_.saveVolume(folder_ / "b.mha", [&] { saved.push_back("b"); });
   ASSERT_TRUE(failed_) << "the second while the first waits";
-  EXPECT_EQ(failed_->code, "BUSY");
+  EXPECT_EQ(failed_->code.str(), "BUSY");
   ASSERT_TRUE(comes([&] { return saved == std::vector<std::string>{"a"}; }));
   EXPECT_FALSE(std::filesystem::exists(folder_ / "b.mha"));
   EXPECT_TRUE(comes([&] { return !workstation_.session()->state().paused; }));
@@ -442,7 +442,7 @@ TEST_F(WorkstationTest, NothingIsStartedFromAWindowThatCannotDraw) {
   window.startExercise();
   EXPECT_EQ(shown.phase(), Workstation::Phase::ready);
   ASSERT_TRUE(said);
-  EXPECT_EQ(said->code, "NO_OPENGL");
+  EXPECT_EQ(said->code.str(), "NO_OPENGL");
 }
 
 // A file of the trainee's own may change while it is open.
@@ -473,7 +473,7 @@ TEST_F(WorkstationTest, AExerciseThatIsEditedUnderneathBringsNothingThatIsLocked
   EXPECT_EQ(locked.exercise()->controller, ControllerKind::bounded);
   locked.useExercise(file);
   ASSERT_TRUE(said);
-  EXPECT_EQ(said->code, "LOCKED");
+  EXPECT_EQ(said->code.str(), "LOCKED");
   EXPECT_EQ(locked.exercise()->controller, ControllerKind::bounded);
 }
 

@@ -33,7 +33,7 @@ inline std::string codeOf(const std::filesystem::path& file) {
   EXPECT_FALSE(read.error().what.empty());
   EXPECT_EQ(read.error().where.rfind(file.parent_path().string(), 0), 0u) << "names the file";
   EXPECT_FALSE(read.error().next.empty());
-  return read.error().code;
+  return read.error().code.str();
 }
 
 inline std::string sentenceOf(const std::filesystem::path& file) {

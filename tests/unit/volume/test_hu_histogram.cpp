@@ -63,7 +63,7 @@ TEST(HuHistogram, OfNothingIsEmptyAndACancelledOneIsNone) {
   EXPECT_TRUE(histogramOf(Volume())->empty());
   Progress progress;
   progress.cancel();
-  EXPECT_EQ(histogramOf(ramp(10), nullptr, progress).error().code, "CANCELLED");
+  EXPECT_EQ(histogramOf(ramp(10), nullptr, progress).error().code.str(), "CANCELLED");
 }
 
 }  // namespace

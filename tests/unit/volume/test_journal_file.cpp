@@ -32,7 +32,7 @@ class JournalFileTest : public ::testing::Test {
 TEST_F(JournalFileTest, AFolderThatIsNotThereIsRefused) {
   const auto journal_file = JournalFile::create(folder / "none");
   ASSERT_FALSE(journal_file);
-  EXPECT_EQ(journal_file.error().code, "CANNOT_WRITE");
+  EXPECT_EQ(journal_file.error().code.str(), "CANNOT_WRITE");
   EXPECT_FALSE(journal_file.error().next.empty());
 }
 
@@ -110,7 +110,7 @@ TEST_F(JournalFileTest, AFullDiskIsSaidOnceAndEveryWayBackStillWorks) {
       const Status status = bench.journal_file->service(bench.journal);
       if (status.ok()) continue;
       ++errors;
-      EXPECT_EQ(status.error().code, "CANNOT_WRITE");
+      EXPECT_EQ(status.error().code.str(), "CANNOT_WRITE");
       EXPECT_EQ(status.error().where, folder.string());
       EXPECT_FALSE(status.error().next.empty());
     }
@@ -142,7 +142,7 @@ TEST_F(JournalFileTest, AReadThatFailsIsSaidOnceAndTriedAgain) {
   ASSERT_FALSE(bench.journal.canStep(10));
   const Status status = (*empty)->service(bench.journal);  // a file that lacks the entries
   ASSERT_FALSE(status.ok());
-  EXPECT_EQ(status.error().code, "CANNOT_READ");
+  EXPECT_EQ(status.error().code.str(), "CANNOT_READ");
   EXPECT_TRUE((*empty)->service(bench.journal).ok());
   EXPECT_FALSE(bench.journal.canStep(10));
   bench.finish(10);

@@ -71,7 +71,7 @@ TEST(LabelMap, IsWrittenAsBytesAndReadBackTheSame) {
           1e-3);
     }
   }
-  EXPECT_EQ(writeLabelMap(map, folder / "a.png").error().code, "UNKNOWN_FORMAT");
+  EXPECT_EQ(writeLabelMap(map, folder / "a.png").error().code.str(), "UNKNOWN_FORMAT");
 }
 
 TEST(LabelMap, ReadsTheLabelsOfEveryVolumeFile) {
@@ -98,7 +98,7 @@ TEST(LabelMap, RefusesAFileWhoseValuesAreNoLabelsAndNamesTheValue) {
     ASSERT_TRUE(writeVolume(volume, folder / "a.mha"));
     const Result<LabelMap> map = readLabelMap(folder / "a.mha");
     ASSERT_FALSE(map.ok()) << value;
-    EXPECT_EQ(map.error().code, "NOT_LABELS");
+    EXPECT_EQ(map.error().code.str(), "NOT_LABELS");
     EXPECT_NE(map.error().what.find(std::to_string(value)), std::string::npos);
   }
 }
@@ -118,11 +118,11 @@ TEST(LabelMap, RefusesVoxelsThatAreNoWholeNumbers) {
     if (map) {
       EXPECT_EQ(map->labels[3], 5);
     } else {
-      EXPECT_EQ(map.error().code, "NOT_LABELS");
+      EXPECT_EQ(map.error().code.str(), "NOT_LABELS");
       EXPECT_NE(map.error().what.find("1 of the voxels"), std::string::npos) << map.error().what;
     }
   }
-  EXPECT_EQ(readLabelMap(folder / "none.mha").error().code, "MISSING_FILE");
+  EXPECT_EQ(readLabelMap(folder / "none.mha").error().code.str(), "MISSING_FILE");
 }
 
 TEST(LabelMap, FitsExactlyWhateverTheOrderAndDirectionOfItsAxes) {
@@ -204,7 +204,7 @@ TEST(LabelMap, OfAnotherPlaceIsRefused) {
   map.geometry.origin_mm = ct.toPatient_mm({0, 0, 4});
   const Result<LabelMap> fitted = fitTo(map, ct);
   ASSERT_FALSE(fitted.ok());
-  EXPECT_EQ(fitted.error().code, "LABELS_ELSEWHERE");
+  EXPECT_EQ(fitted.error().code.str(), "LABELS_ELSEWHERE");
 }
 
 TEST(LabelMap, IsKnownByTheSha256OfItsLabels) {

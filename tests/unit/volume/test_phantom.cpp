@@ -80,8 +80,8 @@ TEST(Phantom, GeometryIsAsTheCasesAreDescribed) {
 }
 
 TEST(Phantom, AnUnknownNameIsRefusedByName) {
-  EXPECT_EQ(phantomTruth("knee").error().code, "UNKNOWN_PHANTOM");
-  EXPECT_EQ(phantomGeometry("").error().code, "UNKNOWN_PHANTOM");
+  EXPECT_EQ(phantomTruth("knee").error().code.str(), "UNKNOWN_PHANTOM");
+  EXPECT_EQ(phantomGeometry("").error().code.str(), "UNKNOWN_PHANTOM");
   const auto made = openPhantom("knee");
   ASSERT_FALSE(made);
   EXPECT_NE(made.error().what.find("knee"), std::string::npos);

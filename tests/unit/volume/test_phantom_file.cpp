@@ -44,14 +44,14 @@ TEST(PhantomFile, ReportsProgressAndCanBeCancelled) {
   EXPECT_EQ(last, 1.0);
   Progress cancelled;
   cancelled.cancel();
-  EXPECT_EQ(openPhantom("abdomen", cancelled).error().code, "CANCELLED");
+  EXPECT_EQ(openPhantom("abdomen", cancelled).error().code.str(), "CANCELLED");
 }
 
 TEST(PhantomFile, OneThatIsMissingIsSaid) {
   const test::TemporaryFolder folder;
   const auto read = readPhantomFile("cranium", folder.path() / "none.case");
   ASSERT_FALSE(read);
-  EXPECT_EQ(read.error().code, "CANNOT_READ");
+  EXPECT_EQ(read.error().code.str(), "CANNOT_READ");
   EXPECT_NE(read.error().sentence().find("none.case"), std::string::npos);
 }
 
@@ -71,7 +71,7 @@ TEST(PhantomFile, ASpoiltOneIsRefused) {
     ASSERT_TRUE(writeTextFile(file, spoilt));
     const auto read = readPhantomFile("abdomen", file);
     ASSERT_FALSE(read) << spoilt.size();
-    EXPECT_EQ(read.error().code, "DAMAGED");
+    EXPECT_EQ(read.error().code.str(), "DAMAGED");
   }
 }
 

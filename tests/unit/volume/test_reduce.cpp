@@ -63,8 +63,8 @@ TEST(Crop, ABoxThatIsEmptyOrReachesOutsideIsRefusedAndTheVolumeStays) {
   Volume whole = patternVolume({4, 5, 6});
   for (const VoxelBox& box : {VoxelBox{{2, 0, 0}, {2, 5, 6}}, VoxelBox{{-1, 0, 0}, {4, 5, 6}},
                               VoxelBox{{0, 0, 0}, {4, 6, 6}}, VoxelBox{{0, 0, 6}, {4, 5, 7}}}) {
-    EXPECT_EQ(crop(whole, box).error().code, "BAD_CROP");
-    EXPECT_EQ(crop(std::move(whole), box).error().code, "BAD_CROP");
+    EXPECT_EQ(crop(whole, box).error().code.str(), "BAD_CROP");
+    EXPECT_EQ(crop(std::move(whole), box).error().code.str(), "BAD_CROP");
   }
   EXPECT_EQ(whole.hu.size(), 4u * 5 * 6);
 }
@@ -125,9 +125,9 @@ TEST(Reduced, AVoxelLiesAtTheMiddleOfItsBlock) {
 
 TEST(Reduced, OtherFactorsAreRefused) {
   for (int factor : {-2, 0, 1, 3, 8}) {
-    EXPECT_EQ(reduced(patternVolume({8, 8, 8}), factor).error().code, "BAD_FACTOR");
+    EXPECT_EQ(reduced(patternVolume({8, 8, 8}), factor).error().code.str(), "BAD_FACTOR");
   }
-  EXPECT_EQ(reduced(Volume(), 2).error().code, "BAD_SIZE");
+  EXPECT_EQ(reduced(Volume(), 2).error().code.str(), "BAD_SIZE");
 }
 
 TEST(ReductionLoss, ALinearVolumeLosesNothingInside) {

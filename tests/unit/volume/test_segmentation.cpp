@@ -138,7 +138,7 @@ TEST(Segmentation, ADamagedFileOfSlicerIsRefused) {
   const auto codeOf = [&](const std::string& bytes) {
     writeBytes(folder / "bad.seg.nrrd", bytes);
     const auto of = readSegmentation(folder / "bad.seg.nrrd");
-    return of ? std::string("none") : of.error().code;
+    return of ? std::string("none") : of.error().code.str();
   };
   EXPECT_EQ(codeOf(slicer.bytes()), "none");
   EXPECT_EQ(codeOf(slicer.bytes("900 4 3 2")), "UNREADABLE");
@@ -147,7 +147,7 @@ TEST(Segmentation, ADamagedFileOfSlicerIsRefused) {
   EXPECT_EQ(codeOf(slicer.bytes("2 1073741825 3 2")), "UNREADABLE");
   slicer.voxels.resize(20);
   EXPECT_EQ(codeOf(slicer.bytes()), "UNREADABLE");
-  EXPECT_EQ(readVolumeFile(folder / "bad.seg.nrrd").error().code, "NOT_HU");
+  EXPECT_EQ(readVolumeFile(folder / "bad.seg.nrrd").error().code.str(), "NOT_HU");
 }
 
 TEST(Segmentation, IsWrittenWithItsNamesAndReadBackTheSame) {
@@ -252,17 +252,17 @@ TEST(Segmentation, ABadSidecarIsNamedWithItsField) {
     return of ? Error{"none", "", "", ""} : of.error();
   };
   const std::string start = R"({"format": "trephine.structures", "version": 1, "structures": [)";
-  EXPECT_EQ(error(start + R"({"label": 1, "name": "liver"}]})").code, "none");
-  EXPECT_EQ(error(start + R"({"label": 0, "name": "liver"}]})").code, "BAD_FIELD");
+  EXPECT_EQ(error(start + R"({"label": 1, "name": "liver"}]})").code.str(), "none");
+  EXPECT_EQ(error(start + R"({"label": 0, "name": "liver"}]})").code.str(), "BAD_FIELD");
   EXPECT_NE(error(start + R"({"label": 1, "name": "  "}]})").what.find("blank"), std::string::npos);
-  EXPECT_EQ(error(start + R"({"label": 1, "name": "a"}, {"label": 1, "name": "b"}]})").code,
+  EXPECT_EQ(error(start + R"({"label": 1, "name": "a"}, {"label": 1, "name": "b"}]})").code.str(),
             "BAD_FIELD");
   EXPECT_EQ(error(start + R"({"label": 1, "name": "Left Lung"},
                              {"label": 2, "name": "left_lung"}]})")
-                .code,
+                .code.str(),
             "BAD_FIELD");
   EXPECT_NE(error(start + R"({"label": 1}]})").where.find("structures[0].name"), std::string::npos);
-  EXPECT_EQ(error("{").code, "BAD_JSON");
+  EXPECT_EQ(error("{").code.str(), "BAD_JSON");
 }
 
 TEST(Segmentation, ThreeHundredStructuresAreRefusedInWords) {
@@ -278,7 +278,7 @@ TEST(Segmentation, ThreeHundredStructuresAreRefusedInWords) {
   writeBytes(folder / "many.seg.nrrd", slicer.bytes());
   const auto of = readSegmentation(folder / "many.seg.nrrd");
   ASSERT_FALSE(of);
-  EXPECT_EQ(of.error().code, "TOO_MANY_STRUCTURES");
+  EXPECT_EQ(of.error().code.str(), "TOO_MANY_STRUCTURES");
   EXPECT_NE(of.error().what.find("300"), std::string::npos);
 }
 
@@ -434,7 +434,7 @@ TEST(SegmentationNumbers, AboveWhatACaseCountsToAreGivenOthersAndNamedByWhatThey
   std::vector<double> many;
   for (int n = 0; n < 24; ++n) many.push_back(40000 + n);
   writeBytes(folder / "l.nii", niftiOf(many, 8, 32));
-  EXPECT_EQ(readSegmentation(folder / "l.nii").error().code, "NOT_LABELS");
+  EXPECT_EQ(readSegmentation(folder / "l.nii").error().code.str(), "NOT_LABELS");
 }
 
 TEST(SegmentationNumbers, ThatASlopeOrAFloatLeavesBesideAWholeNumberAreThatNumber) {
@@ -454,7 +454,7 @@ TEST(SegmentationNumbers, ThatASlopeOrAFloatLeavesBesideAWholeNumberAreThatNumbe
   }
   for (const double off : {0.5, 0.01, -0.3}) {
     writeBytes(folder / "l.nii", niftiOf(labelsOf({0, 5.0 + off}), 16, 32));
-    EXPECT_EQ(readSegmentation(folder / "l.nii").error().code, "NOT_LABELS") << off;
+    EXPECT_EQ(readSegmentation(folder / "l.nii").error().code.str(), "NOT_LABELS") << off;
   }
 }
 
@@ -501,15 +501,15 @@ TEST(SegmentationFolder, OfMasksIsOneSegmentation) {
     EXPECT_EQ(count, segment.name == "gallbladder" ? 0 : segment.name == "vessel" ? 12 : 6);
   }
   write("both", {0, 1, 2});
-  EXPECT_EQ(readSegmentation(masks).error().code, "NOT_LABELS");
+  EXPECT_EQ(readSegmentation(masks).error().code.str(), "NOT_LABELS");
   std::filesystem::remove(masks / "both.nii");
   std::string other = niftiOf(labelsOf({0, 1}), 2, 8);
   const float moved = 3.0f;
   std::memcpy(other.data() + 292, &moved, 4);
   writeBytes(masks / "other.nii", other);
-  EXPECT_EQ(readSegmentation(masks).error().code, "OTHER_GRID");
+  EXPECT_EQ(readSegmentation(masks).error().code.str(), "OTHER_GRID");
   std::filesystem::create_directory(folder / "none");
-  EXPECT_EQ(readSegmentation(folder / "none").error().code, "NOT_LABELS");
+  EXPECT_EQ(readSegmentation(folder / "none").error().code.str(), "NOT_LABELS");
 }
 
 }  // namespace

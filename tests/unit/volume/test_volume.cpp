@@ -56,10 +56,10 @@ TEST(Volume, ACopyHasEveryVoxel) {
 
 TEST(Volume, AnImpossibleSizeIsRefusedBeforeAnythingIsAllocated) {
   EXPECT_TRUE(checkSize({512, 512, 300}, "f"));
-  EXPECT_EQ(checkSize({0, 5, 5}, "f").error().code, "BAD_SIZE");
-  EXPECT_EQ(checkSize({5, -1, 5}, "f").error().code, "BAD_SIZE");
-  EXPECT_EQ(checkSize({2147483647, 2147483647, 2147483647}, "f").error().code, "TOO_LARGE");
-  EXPECT_EQ(checkSize({11, 10, 10}, "f", 1099).error().code, "TOO_LARGE");
+  EXPECT_EQ(checkSize({0, 5, 5}, "f").error().code.str(), "BAD_SIZE");
+  EXPECT_EQ(checkSize({5, -1, 5}, "f").error().code.str(), "BAD_SIZE");
+  EXPECT_EQ(checkSize({2147483647, 2147483647, 2147483647}, "f").error().code.str(), "TOO_LARGE");
+  EXPECT_EQ(checkSize({11, 10, 10}, "f", 1099).error().code.str(), "TOO_LARGE");
   EXPECT_TRUE(checkSize({11, 10, 10}, "f", 1100));
 }
 

@@ -189,7 +189,7 @@ TEST_F(GzippedVolumes, SayHowFarTheyAreAndCanBeCancelled) {
     self = &cancelled;
     const Status status = writeVolume(slabsOf(volume), folder / name, cancelled);
     ASSERT_FALSE(status) << name;
-    EXPECT_EQ(status.error().code, "CANCELLED");
+    EXPECT_EQ(status.error().code.str(), "CANCELLED");
     EXPECT_EQ(reports, 2) << name << ": it went on";
     EXPECT_TRUE(bytesOf(folder / name) == before) << name << ": what was there is still there";
     fs::remove(folder / name);
@@ -206,7 +206,7 @@ TEST_F(GzippedVolumes, NoticeAFullDiskAsItHappens) {
       return writeVolume(slabsOf(volume), folder / name, watched);
     }();
     ASSERT_FALSE(status) << name;
-    EXPECT_EQ(status.error().code, "CANNOT_WRITE");
+    EXPECT_EQ(status.error().code.str(), "CANNOT_WRITE");
     EXPECT_EQ(slabs, 1) << name << ": it went on";
     EXPECT_TRUE(fs::is_empty(folder.path())) << name;
   }

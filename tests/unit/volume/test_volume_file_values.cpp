@@ -56,7 +56,7 @@ TEST_F(VolumeFileValues, WhatIsNoNumberBecomesAirAndIsCounted) {
   EXPECT_EQ(reading->rounded + reading->clamped, 0u);
   EXPECT_EQ(reading->hu_min, 5.0) << "of those that are numbers";
   EXPECT_EQ(reading->hu_max, 6.0);
-  EXPECT_EQ(read(VoxelType::float32, {kNan, kInfinity}).error().code, "NOT_HU");
+  EXPECT_EQ(read(VoxelType::float32, {kNan, kInfinity}).error().code.str(), "NOT_HU");
 }
 
 TEST_F(VolumeFileValues, WhatSixteenBitsCannotHoldIsClampedAndCounted) {
@@ -78,7 +78,7 @@ TEST_F(VolumeFileValues, AnImageThatIsMostlyBeyondSixteenBitsIsNotHu) {
   EXPECT_TRUE(read(VoxelType::uint64, {1e18, 5, 1e18, 6}));
   const auto reading = read(VoxelType::uint64, {1e18, 5, 1e18, 1e18});
   ASSERT_FALSE(reading);
-  EXPECT_EQ(reading.error().code, "NOT_HU");
+  EXPECT_EQ(reading.error().code.str(), "NOT_HU");
 }
 
 TEST_F(VolumeFileValues, StoredValuesThatAreNoHuShowInTheRange) {
@@ -113,7 +113,7 @@ TEST_F(VolumeFileValues, ProgressRisesAndReadingCanBeCancelled) {
     self = &cancelled;
     const auto reading = readVolumeFile(folder / name, cancelled);
     ASSERT_FALSE(reading);
-    EXPECT_EQ(reading.error().code, "CANCELLED");
+    EXPECT_EQ(reading.error().code.str(), "CANCELLED");
     EXPECT_EQ(reports, 2);
   }
 }
@@ -137,7 +137,7 @@ TEST_F(VolumeFileValues, MemoryIsTakenAsVoxelsComeNotAsTheHeaderPromises) {
 TEST_F(VolumeFileValues, AHeaderIsReadWithoutItsVoxels) {
   // No volume can come of it, but what it is can be told.
   writeBytes(folder / "a.nii.gz", packed("not a header", Packing::gzip));
-  EXPECT_EQ(readVolumeFileHeader(folder / "a.nii.gz").error().code, "UNREADABLE");
+  EXPECT_EQ(readVolumeFileHeader(folder / "a.nii.gz").error().code.str(), "UNREADABLE");
   ASSERT_TRUE(writeVolume(patternVolume({100, 100, 100}), folder / "b.nii.gz"));
   std::string bytes = bytesOf(folder / "b.nii.gz");
   bytes.resize(bytes.size() / 2);
@@ -152,14 +152,14 @@ TEST_F(VolumeFileValues, AHeaderIsReadWithoutItsVoxels) {
 TEST_F(VolumeFileValues, AHeaderThatPromisesTooMuchIsRefusedBeforeVoxelsAreRead) {
   const std::string head = kNrrd + "type: short\nsizes: 100 100 100\n\n";
   writeBytes(folder / "a.nrrd", head + std::string(1999999, '\0'));
-  EXPECT_EQ(readVolumeFileHeader(folder / "a.nrrd").error().code, "UNREADABLE");
+  EXPECT_EQ(readVolumeFileHeader(folder / "a.nrrd").error().code.str(), "UNREADABLE");
   writeBytes(folder / "a.nrrd", head + std::string(2000000, '\0'));
   EXPECT_TRUE(readVolumeFileHeader(folder / "a.nrrd"));
   // 1,500 bytes cannot unpack to 2,000,000, whatever they are; 2,500 might.
   std::string gzip = head;
   gzip.replace(gzip.find("raw"), 3, "gzip");
   writeBytes(folder / "a.nrrd", gzip + std::string(1500, '\0'));
-  EXPECT_EQ(readVolumeFileHeader(folder / "a.nrrd").error().code, "UNREADABLE");
+  EXPECT_EQ(readVolumeFileHeader(folder / "a.nrrd").error().code.str(), "UNREADABLE");
   writeBytes(folder / "a.nrrd", gzip + std::string(2500, '\0'));
   EXPECT_TRUE(readVolumeFileHeader(folder / "a.nrrd"));
 }

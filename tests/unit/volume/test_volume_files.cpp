@@ -225,9 +225,9 @@ TEST(VolumeFiles, ACompressedMetaImageIsReadAndADamagedOneNoticed) {
   EXPECT_EQ(read->hu, (Voxels{1, 2, 3, 4, 5, 6, 7, 8}));
   file[header + 7] = char(file[header + 7] ^ 0x15);
   writeBytes(folder / "b.mha", file);
-  EXPECT_EQ(readVolume(folder / "b.mha").error().code, "UNREADABLE");
+  EXPECT_EQ(readVolume(folder / "b.mha").error().code.str(), "UNREADABLE");
   writeBytes(folder / "c.mha", file.substr(0, file.size() - 2));
-  EXPECT_EQ(readVolume(folder / "c.mha").error().code, "UNREADABLE");
+  EXPECT_EQ(readVolume(folder / "c.mha").error().code.str(), "UNREADABLE");
 }
 
 TEST(VolumeFiles, EndingsAreReadInEitherCase) {
@@ -241,7 +241,7 @@ TEST(VolumeFiles, EndingsAreReadInEitherCase) {
     const auto read = readVolume(folder / upper);
     ASSERT_TRUE(read) << read.error().sentence();
     EXPECT_EQ(read->hu, volume.hu);
-    EXPECT_EQ(writeVolume(volume, folder / upper).error().code, "UNKNOWN_FORMAT");
+    EXPECT_EQ(writeVolume(volume, folder / upper).error().code.str(), "UNKNOWN_FORMAT");
   }
 }
 
@@ -308,7 +308,7 @@ TEST(VolumeFiles, AFullDiskIsAnErrorAndLeavesTheOldFile) {
         return writeVolume(larger, file);
       }();
       ASSERT_FALSE(status) << name;
-      EXPECT_EQ(status.error().code, "CANNOT_WRITE") << name;
+      EXPECT_EQ(status.error().code.str(), "CANNOT_WRITE") << name;
       const auto read = readVolume(file);
       ASSERT_TRUE(read) << name;
       EXPECT_EQ(read->hu, old.hu) << name << ": what was there is still there";
@@ -323,7 +323,7 @@ TEST(VolumeFiles, AFolderThatIsNotThereIsAnError) {
   for (const char* name : {"no/such/a.mha", "no/such/a.nii", "no/such/a.nii.gz"}) {
     const Status status = writeVolume(patternVolume({4, 4, 4}), folder / name);
     ASSERT_FALSE(status) << name;
-    EXPECT_EQ(status.error().code, "CANNOT_WRITE");
+    EXPECT_EQ(status.error().code.str(), "CANNOT_WRITE");
     EXPECT_NE(status.error().where.find("a."), std::string::npos);
   }
 }
@@ -331,13 +331,13 @@ TEST(VolumeFiles, AFolderThatIsNotThereIsAnError) {
 TEST(VolumeFiles, WhatCannotBeWrittenIsRefused) {
   const TemporaryFolder folder;
   const Volume good = patternVolume({4, 4, 4});
-  EXPECT_EQ(writeVolume(good, folder / "a.dcm").error().code, "UNKNOWN_FORMAT");
-  EXPECT_EQ(writeVolume(good, folder / "a.mhd").error().code, "UNKNOWN_FORMAT");
+  EXPECT_EQ(writeVolume(good, folder / "a.dcm").error().code.str(), "UNKNOWN_FORMAT");
+  EXPECT_EQ(writeVolume(good, folder / "a.mhd").error().code.str(), "UNKNOWN_FORMAT");
   Volume flat = good;
   flat.geometry.spacing_mm.z = 0.0;
-  EXPECT_EQ(writeVolume(flat, folder / "a.mha").error().code, "BAD_GEOMETRY");
-  EXPECT_EQ(writeVolume(Volume{}, folder / "a.mha").error().code, "BAD_SIZE");
-  EXPECT_EQ(writeVolume(patternVolume({2, 32768, 1}), folder / "a.nii").error().code,
+  EXPECT_EQ(writeVolume(flat, folder / "a.mha").error().code.str(), "BAD_GEOMETRY");
+  EXPECT_EQ(writeVolume(Volume{}, folder / "a.mha").error().code.str(), "BAD_SIZE");
+  EXPECT_EQ(writeVolume(patternVolume({2, 32768, 1}), folder / "a.nii").error().code.str(),
             "CANNOT_WRITE");
   EXPECT_TRUE(fs::is_empty(folder.path()));
 }

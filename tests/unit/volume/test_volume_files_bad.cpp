@@ -173,7 +173,7 @@ TEST_F(BadVolumeFiles, ValuesBeyondSixteenBits) {
   EXPECT_EQ(codeOfNifti(112, 1000.0f), "NOT_HU") << "slope";
   EXPECT_EQ(codeOfNifti(116, std::numeric_limits<float>::quiet_NaN()), "ok") << "slope 0";
   EXPECT_EQ(codeOfNifti(112, std::array{1.0f, std::numeric_limits<float>::infinity()}), "NOT_HU");
-  EXPECT_EQ(readVolumeFileHeader(folder / "a.nii").error().code, "NOT_HU");
+  EXPECT_EQ(readVolumeFileHeader(folder / "a.nii").error().code.str(), "NOT_HU");
 }
 
 TEST_F(BadVolumeFiles, NiftiHeadersThatCannotBe) {

@@ -1,0 +1,12 @@
+// The codes of the errors, findings and choices that begin here.
+#pragma once
+
+#include "base/code.h"
+
+namespace trephine::code {
+
+inline constexpr Code kBadUse{"BAD_USE"};
+inline constexpr Code kInternal{"INTERNAL"};
+inline constexpr Code kNoStorage{"NO_STORAGE"};
+
+}  // namespace trephine::code
