@@ -9,10 +9,10 @@
 #include "base/log.h"
 #include "base/system.h"
 #include "base/utf8.h"
-#include "lab/commission/arm_checks.h"
-#include "lab/commission/commission.h"
-#include "lab/commission/start_check.h"
 #include "library/case_library.h"
+#include "machine/commission/arm_checks.h"
+#include "machine/commission/commission.h"
+#include "machine/commission/start_check.h"
 
 namespace trephine {
 

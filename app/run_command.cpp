@@ -14,7 +14,7 @@
 #include "exercise/codes.h"
 #include "exercise/exercise_fields.h"
 #include "exercise/names.h"
-#include "lab/exercise/exercise_picture.h"
+#include "machine/exercise/exercise_picture.h"
 #include "render/codes.h"
 #include "session/arm_devices.h"
 #include "session/session.h"

@@ -8,7 +8,7 @@
 
 #include "base/file.h"
 #include "base/system.h"
-#include "lab/commission/start_check.h"
+#include "machine/commission/start_check.h"
 #include "ui/common/pdf_page.h"
 #include "ui/common/placing.h"
 #include "ui/common/words.h"

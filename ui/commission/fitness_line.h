@@ -2,7 +2,7 @@
 // about it; each change with its next step in the tip.
 #pragma once
 
-#include "lab/commission/start_check.h"
+#include "machine/commission/start_check.h"
 #include "ui/common/background_task.h"
 #include "ui/common/placing.h"
 #include "ui/work/app_context.h"

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "lab/trades/trades_measurement.h"
+#include "machine/trades/trades_measurement.h"
 
 namespace trephine {
 

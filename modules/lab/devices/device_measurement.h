@@ -13,7 +13,7 @@
 #include "base/result.h"
 #include "device/device_bench.h"
 #include "haptics/arm_dynamics.h"
-#include "lab/common/spread.h"
+#include "machine/common/spread.h"
 
 namespace trephine {
 

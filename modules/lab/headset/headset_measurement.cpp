@@ -12,7 +12,7 @@
 #include "headset/packed_drawing.h"
 #include "headset/stereo_screen.h"
 #include "headset/test_runtime.h"
-#include "lab/common/exercise_view.h"
+#include "machine/common/exercise_view.h"
 #include "lab/headset/headset_geometry.h"
 #include "lab/headset/headset_rig.h"
 #include "render/gl_limits.h"

@@ -14,7 +14,7 @@
 #include "base/json.h"
 #include "base/progress.h"
 #include "base/result.h"
-#include "lab/common/spread.h"
+#include "machine/common/spread.h"
 
 namespace trephine {
 

@@ -8,7 +8,7 @@
 #include <cstdlib>
 #include <thread>
 
-#include "lab/common/exercise_view.h"
+#include "machine/common/exercise_view.h"
 #include "render/display_probe.h"
 #include "training/replay.h"
 

@@ -9,7 +9,7 @@
 
 #include "base/file.h"
 #include "base/locked_folder.h"
-#include "lab/common/spread.h"
+#include "machine/common/spread.h"
 
 namespace trephine {
 

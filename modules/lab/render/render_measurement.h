@@ -14,7 +14,7 @@
 #include "base/json.h"
 #include "base/progress.h"
 #include "base/result.h"
-#include "render/scene_renderer.h"
+#include "machine/drawing/drawing_parts.h"
 
 namespace trephine {
 
@@ -32,14 +32,10 @@ struct RenderRow {
   std::optional<double> psnr_dB, ssim;
   std::optional<double> psnr_to_stock_dB;  // of the picture with both off, without labels
 };
-constexpr double kEqual_dB = 100.0;
-constexpr double kReferenceDistance = 0.25;
 
-// Of a shell of bone whose normals are known: of the picture's normals, and of the Lambert shading
-// that they give with the light at the eye (rms of the mean).
 struct SurfaceRow {
   std::string mapper;
-  double normal_median_deg = 0.0, normal_p99_deg = 0.0, luminance_error_percent = 0.0;
+  ShellSurface of;
 };
 
 // Of the pixels in which truth or picture show a tissue, those that show another.
@@ -78,9 +74,9 @@ struct RenderOptions {
   int repeats = 3;  // of the first distance; one of the others
   double rotate_s = 4.0;
   double cut_s = 10.0;
-  int truth_edge = 232;  // of a picture whose tissues are counted; below where letters are drawn
-  int truth_step = 3;    // every so many pixels
-  int surface_edge = 480;
+  int truth_edge = kTruthEdge;
+  int truth_step = 3;  // every so many pixels
+  int surface_edge = kSurfaceEdge;
   std::array<int, 3> import_size{512, 512, 300};
 };
 

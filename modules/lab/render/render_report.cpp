@@ -4,8 +4,8 @@
 #include <locale>
 #include <sstream>
 
-#include "lab/common/spread.h"
 #include "lab/render/render_measurement.h"
+#include "machine/common/spread.h"
 
 namespace trephine {
 
@@ -74,9 +74,9 @@ std::vector<RenderBar> renderBars(const RenderMeasurement& m) {
   addStillBars(m, bars);
   for (const SurfaceRow& row : m.surface) {
     if (row.mapper != "trephine") continue;
-    bars.push_back({"shell: luminance error [%]", row.luminance_error_percent, 2.5, false});
-    bars.push_back({"shell: median error of normals [deg]", row.normal_median_deg, 2.5, false});
-    bars.push_back({"shell: p99 error of normals [deg]", row.normal_p99_deg, 7.0, false});
+    bars.push_back({"shell: luminance error [%]", row.of.luminance_error_percent, 2.5, false});
+    bars.push_back({"shell: median error of normals [deg]", row.of.normal_median_deg, 2.5, false});
+    bars.push_back({"shell: p99 error of normals [deg]", row.of.normal_p99_deg, 7.0, false});
   }
   for (const ClassRow& row : m.wrong_class) {
     if (row.mapper == "trephine") {
@@ -116,10 +116,10 @@ Json toJson(const RenderMeasurement& m) {
                     {"psnr_to_stock_db", orNull(row.psnr_to_stock_dB)}});
   }
   for (const SurfaceRow& row : m.surface) {
-    surface.push_back(
-        {{"mapper", row.mapper},
-         {"normal_error_deg", {{"median", row.normal_median_deg}, {"p99", row.normal_p99_deg}}},
-         {"luminance_error_percent", row.luminance_error_percent}});
+    surface.push_back({{"mapper", row.mapper},
+                       {"normal_error_deg",
+                        {{"median", row.of.normal_median_deg}, {"p99", row.of.normal_p99_deg}}},
+                       {"luminance_error_percent", row.of.luminance_error_percent}});
   }
   const auto classes = [](const std::vector<ClassRow>& of) {
     Json list = Json::array();
@@ -168,8 +168,8 @@ std::string toText(const RenderMeasurement& m) {
   for (const SurfaceRow& row : m.surface) {
     std::snprintf(line, sizeof line,
                   "shell, %-9s normals off by %.2f deg (median), %.2f (99 %%); luminance %.2f %%\n",
-                  row.mapper.c_str(), row.normal_median_deg, row.normal_p99_deg,
-                  row.luminance_error_percent);
+                  row.mapper.c_str(), row.of.normal_median_deg, row.of.normal_p99_deg,
+                  row.of.luminance_error_percent);
     text += line;
   }
   for (const auto& [of, title] : {std::pair(&m.wrong_class, "wrong class"),

@@ -1,4 +1,4 @@
-// Still pictures by both mappers, and cameras that turn.
+// Still pictures by both mappers.
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -10,6 +10,12 @@ namespace trephine {
 namespace {
 
 using Renderer = std::unique_ptr<SceneRenderer>;
+
+// Nothing of ours on, for a subject that is shown without labels: VTK's shader alone.
+void setStock(SceneRenderer& renderer, bool stock) {
+  UploadProbe::setLeaping(renderer, !stock);
+  renderer.setShading({false, false});
+}
 
 double dB(const Picture& a, const Picture& b) {
   return std::min(kEqual_dB, psnr_dB(a, b));
@@ -153,59 +159,6 @@ Status measureStills(const RenderSubject& subject, const RenderOptions& options,
     if (!written) return written;
   }
   measureLevels(subject, options, ours, result);
-  return {};
-}
-
-Status measureRotation(const RenderSubject& subject, const RenderOptions& options,
-                       const Progress& progress, RenderMeasurement& result) {
-  constexpr double kStep_deg = 3.0;
-  constexpr double kStrip_ms = 50.0;  // of a still picture in the window
-  constexpr int kSettling = 5;        // frames in which the level finds its place
-  Result<Renderer> made = SceneRenderer::offscreen(options.moving[0], options.moving[1]);
-  if (!made) return made.error();
-  SceneRenderer& renderer = **made;
-  const double distance = options.sample_distances.front();
-  renderer.setSampleDistance(distance);
-  show(subject, true, renderer);
-  for (int n = 0; n < 2; ++n) renderer.paint(0);  // the first one sends the volume
-
-  std::vector<double> ms, levels;
-  renderer.setMoving(true);
-  const auto begin = RenderClock::now();
-  while (msSince(begin) < 1000.0 * options.rotate_s || int(ms.size()) <= kSettling) {
-    if (progress.cancelled()) return renderCancelled();
-    progress.at(std::min(1.0, msSince(begin) / (1000.0 * options.rotate_s)), "turning");
-    renderer.orbit(kStep_deg, 0.0);
-    const auto start = RenderClock::now();
-    renderer.paint(0, kStrip_ms);
-    ms.push_back(msSince(start));
-    levels.push_back(UploadProbe::level(renderer));
-  }
-  const Picture moving = UploadProbe::painted(renderer);
-
-  renderer.setMoving(false);
-  const auto stopped = RenderClock::now();
-  RefineRow rest{subject.name, subject.preset, 0.0, 0.0};
-  // As the window does: a finer picture is made in strips between frames, and painted when whole.
-  const double coarse = UploadProbe::level(renderer);
-  while (!renderer.complete()) {
-    if (progress.cancelled()) return renderCancelled();
-    if (renderer.refine(kStrip_ms)) renderer.paint(0, kStrip_ms);
-    if (rest.first_ms == 0.0 && UploadProbe::level(renderer) < coarse) {
-      rest.first_ms = msSince(stopped);
-    }
-  }
-  rest.full_ms = msSince(stopped);
-  result.rests.push_back(rest);
-
-  renderer.setSampleDistance(kReferenceDistance);
-  const Picture reference = renderer.picture();
-  RenderRow row = rowOf(subject, options.moving, "rotate", "trephine", distance);
-  row.ms_median = medianOf({ms.begin() + kSettling, ms.end()});
-  row.level = medianOf({levels.begin() + kSettling, levels.end()});
-  row.psnr_dB = dB(reference, moving);
-  row.ssim = ssim(reference, moving);
-  result.rows.push_back(row);
   return {};
 }
 

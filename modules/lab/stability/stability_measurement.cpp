@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "base/file.h"
-#include "lab/common/on_all_processors.h"
+#include "machine/common/on_all_processors.h"
 
 namespace trephine {
 

@@ -5,7 +5,7 @@
 
 #include "base/range.h"
 #include "exercise/names.h"
-#include "lab/common/on_all_processors.h"
+#include "machine/common/on_all_processors.h"
 
 namespace trephine {
 

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "base/formatted.h"
-#include "lab/common/on_all_processors.h"
+#include "machine/common/on_all_processors.h"
 #include "lab/touch/placed_exercise.h"
 #include "lab/touch/rest_measurement.h"
 #include "case/case.h"

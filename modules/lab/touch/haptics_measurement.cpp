@@ -15,8 +15,8 @@
 
 #include "base/file.h"
 #include "haptics/haptic_core.h"
-#include "lab/common/quantile.h"
-#include "lab/common/shell_phantom.h"
+#include "machine/common/quantile.h"
+#include "machine/common/shell_phantom.h"
 #include "volume/journal_file.h"
 
 namespace trephine {
@@ -107,13 +107,6 @@ Pose strokePose_mm(const EllipsoidShell& shell, const HapticsRow& row, int arm, 
           Quat(std::cos(0.5 * lean), std::sin(0.5 * lean), 0.0, 0.0)};
 }
 
-// The middle of a box that holds every stroke and tool: the shell's own for a large one, near its
-// top for a small one.
-Vec3 boxCentre_mm(const EllipsoidShell& shell, double box_mm) {
-  const double top_mm = shell.half_axes_mm.z;
-  return {0.0, 0.0, std::max(0.0, top_mm + 22.6 - 0.5 * box_mm)};
-}
-
 Error cancelled() {
   return {"CANCELLED", "The measurement was cancelled", "measure haptics", ""};
 }
@@ -145,7 +138,7 @@ Status measureBox(const HapticsOptions& options, double box_mm,
                   HapticsMeasurement& out) {
   std::vector<std::unique_ptr<Grid>> grids;
   for (int size : options.grids) {
-    grids.push_back(std::make_unique<Grid>(hapticsVolume(size, box_mm)));
+    grids.push_back(std::make_unique<Grid>(shellTop(size, box_mm)));
     if (progress.cancelled()) return cancelled();
   }
   const std::size_t rows =
@@ -214,11 +207,6 @@ bool isOfItsPhase(const HapticsRow& row) {
   if (row.phase == TouchPhase::free) return row.touched == 0 && row.removed_mm3_per_s == 0.0;
   if (row.phase == TouchPhase::removal) return row.removed_mm3_per_s > 0.0;
   return row.touched == row.ran && row.ran > 0 && row.removed_mm3_per_s == 0.0;
-}
-
-Volume hapticsVolume(int grid, double box_mm) {
-  const EllipsoidShell shell;
-  return sharpShell(shell, cubeGeometry(grid, box_mm, boxCentre_mm(shell, box_mm)));
 }
 
 Result<HapticsRow> measureHapticsRow(HapticsRow row, Grid& grid, int ticks,

@@ -33,9 +33,6 @@ struct HapticsRow {
 // Nothing touched while free, always while in contact, something taken in removal.
 bool isOfItsPhase(const HapticsRow& row);
 
-// The grid of a row: the shell's top and all that its strokes reach lie in it.
-Volume hapticsVolume(int grid, double box_mm);
-
 // Every tool moves over the top of one shell of bone, the same way in every grid, at 10 to 20 mm/s:
 // the laws viscous, coulomb and elastic over all its points, `bounded`, removal by work.
 struct HapticsOptions {

@@ -7,7 +7,7 @@
 
 #include "base/formatted.h"
 #include "haptics/unseen_energy.h"
-#include "lab/common/on_all_processors.h"
+#include "machine/common/on_all_processors.h"
 #include "lab/touch/rest_places.h"
 
 namespace trephine {

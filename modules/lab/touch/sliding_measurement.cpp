@@ -4,8 +4,8 @@
 #include <numbers>
 
 #include "haptics/haptic_core.h"
-#include "lab/common/quantile.h"
-#include "lab/common/shell_phantom.h"
+#include "machine/common/quantile.h"
+#include "machine/common/shell_phantom.h"
 
 namespace trephine {
 

@@ -7,7 +7,7 @@
 
 #include "base/progress.h"
 #include "base/result.h"
-#include "lab/trades/trades_measurement.h"
+#include "machine/trades/trades_measurement.h"
 #include "plot/plot.h"
 
 namespace trephine {

@@ -8,7 +8,7 @@
 
 #include "base/system.h"
 #include "gui_support.h"
-#include "lab/commission/start_check.h"
+#include "machine/commission/start_check.h"
 #include "ui/commission/commission_page.h"
 #include "ui/commission/fitness_line.h"
 

@@ -7,6 +7,7 @@
 #include <numeric>
 #include <set>
 
+#include "machine/common/shell_phantom.h"
 #include "support.h"
 
 namespace trephine {
@@ -100,7 +101,7 @@ TEST(HapticsBars, OfRowsThatWereNotMeasuredAreLeftOut) {
 
 TEST(HapticsRow, OfRemovalLeavesTheGridAsItWasThoughItTookVoxels) {
   const test::TemporaryFolder folder;
-  Grid grid(hapticsVolume(128, 49.2));
+  Grid grid(shellTop(128, 49.2));
   const std::string before = volumeSha256(grid.snapshot());
   HapticsRow asked = row("burr6", 128, 49.2, TouchPhase::removal, 0.0);
   asked.touched = 0;
@@ -116,7 +117,7 @@ TEST(HapticsRow, OfRemovalLeavesTheGridAsItWasThoughItTookVoxels) {
 
 TEST(HapticsRow, ThatIsCancelledIsNoRow) {
   const test::TemporaryFolder folder;
-  Grid grid(hapticsVolume(32, 49.2));
+  Grid grid(shellTop(32, 49.2));
   Progress progress;
   progress.cancel();
   const Result<HapticsRow> measured = measureHapticsRow(

@@ -8,7 +8,7 @@
 
 #include "plot/drawing.h"
 #include "support.h"
-#include "trade_rows.h"
+#include "unit/machine/trade_rows.h"
 #include "unit/plot/plots.h"
 
 namespace trephine {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "lab/common/sphere_normals.h"
+#include "machine/common/sphere_normals.h"
 #include "scenes.h"
 
 using namespace trephine;
