@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "base/progress.h"
-#include "lab/import/import_measurement.h"
 #include "exercise/policy.h"
 
 namespace trephine {
@@ -24,23 +23,6 @@ struct RunArguments {
   std::string csv;  // empty: none
   std::string out;
   bool realtime = false;
-};
-
-struct StabilityArguments {
-  std::string grid;  // empty: the full grid
-  std::string sets;  // "grid,long"; empty: all, or only `grid` where a grid is given
-  std::optional<double> seconds;  // empty: as each set has it
-  std::string out;
-};
-
-struct DeviceArguments {
-  double seconds = 60.0;
-  int trials = 20;
-  std::vector<std::string> benches;  // libraries; empty: what is plugged in
-  // One trial alone, which this program asks of itself.
-  std::string one;  // "unplugged", "blocked", or empty
-  double wait_s = 1.0;
-  std::string recording;
 };
 
 struct ImportArguments {
@@ -117,29 +99,9 @@ int replayCommand(const std::string& file, const std::string& case_source,
 // A row for each file as soon as it is read. 1 where one cannot be replayed.
 int recordingsCommand(const std::vector<std::string>& files, bool json, const Progress&);
 int explainCommand(const std::string& exercise, const Policy& policy, bool json, const Progress&);
-int measureUploadCommand(bool json, const Progress&);
-int measureStabilityCommand(const StabilityArguments& arguments, bool json, const Progress&);
-int measureExtremesCommand(const std::string& case_source, const std::string& out, bool json,
-                           const Progress&);
-int measureHapticsCommand(const std::string& out, bool json, const Progress&);
-int measureRenderCommand(const std::string& case_source, const std::string& out, bool json,
-                         const Progress&);
-int measureTradesCommand(const std::string& out, bool json, const Progress&);
-constexpr const char* kOtherPrograms =
-    "Other programs and compressed series are measured by bench_import, which is built with the "
-    "tests (tests/bench/import)";
-int measureImportCommand(const ImportOptions& options, const std::string& out, bool json,
-                         const Progress&);
-int measureReadCommand(const std::string& path, bool json, const Progress&);
-int measureDevicesCommand(const DeviceArguments& arguments, const std::string& out, bool json,
-                          const Progress&);
-struct HeadsetArguments {
-  double seconds = 20.0;
-  int toggles = 50, losses = 20;
-  bool no_pictures = false;
-};
-int measureHeadsetCommand(const HeadsetArguments& arguments, const std::string& out, bool json,
-                          const Progress& progress);
-int measureJitterCommand(double seconds, const std::string& out, bool json, const Progress&);
+// `measure ...` is a program of its own, which this one becomes; `words` are argv from "measure" on.
+// Returns where it is not installed, and says so.
+int startMeasurements(char** words, bool json);
+int tradesCommand(const std::string& out, bool json, const Progress&);
 
 }  // namespace trephine

@@ -1,18 +1,17 @@
 // trephine-lab: the workstation's work without a window.
 #include <CLI/CLI.hpp>
-#include <algorithm>
 #include <cstdio>
+#include <string_view>
 
 #include "app/answer.h"
+#include "app/command_line.h"
 #include "app/lab_commands.h"
 #include "app/signals.h"
-#include "base/codes.h"
 #include "base/crash_report.h"
 #include "base/log.h"
 #include "base/purpose.h"
 #include "base/system.h"
 #include "base/time_left.h"
-#include "base/utf8.h"
 #include "exercise/exercise_fields.h"
 
 namespace {
@@ -26,13 +25,6 @@ int run(int argc, char** argv) {
   app.require_subcommand(1);
   app.set_version_flag("--version", buildName());
   bool json = false;
-
-  // An empty name is no choice: with it an option would do what it does when it is not given.
-  const CLI::Validator named(
-      [](const std::string& name) {
-        return name.empty() ? std::string("needs a name, not nothing") : std::string();
-      },
-      "");
 
   std::string phantom, out, file, case_source, labels;
   RunArguments arguments;
@@ -81,14 +73,14 @@ int run(int argc, char** argv) {
                             shape.row.meaning);
   }
   run_command->add_option("--save-volume", arguments.save_volume, "Save the carved volume")
-      ->check(named);
+      ->check(named());
   run_command
       ->add_option("--csv", arguments.csv,
                    "Save position, velocity, forces and the controller's energy, tick by tick")
-      ->check(named);
+      ->check(named());
   run_command->add_option("--out", arguments.out, "Folder for recording and picture")
       ->required()
-      ->check(named);
+      ->check(named());
 
   auto* replay_command = with_json(app.add_subcommand("replay", "Run a recording again and compare"));
   replay_command->add_option("file", file, "A session file")->required();
@@ -134,14 +126,14 @@ int run(int argc, char** argv) {
       "share", "Give a folder to several accounts of this machine; as root"));
   share_storage_command->add_option("folder", file, "The folder, made where it is missing")
       ->required()
-      ->check(named);
+      ->check(named());
 
   CommissionArguments commissioning;
   auto* commission_command = with_json(app.add_subcommand(
       "commission", "Whether this machine is fit: each check with its limit and the next step"));
   commission_command->add_option("--out", commissioning.out, "Folder for the page and its figures")
       ->required()
-      ->check(named);
+      ->check(named());
   commission_command->add_option("--storage", commissioning.storage,
                                  "Instead of the workstation's storage");
   commission_command
@@ -172,7 +164,7 @@ int run(int argc, char** argv) {
                            "Radius of the ball that has room in all of it, mm; 7 unless given");
   grow_command->add_option("--box", growing.box,
                            "X0,X1,Y0,Y1,Z0,Z1: nothing outside of it, mm, LPS");
-  grow_command->add_option("--name", growing.name, "What it is called")->required()->check(named);
+  grow_command->add_option("--name", growing.name, "What it is called")->required()->check(named());
   grow_command->add_option("--write", growing.write, "The label map: .nii, .nii.gz, .mha or .nrrd")
       ->required();
   StructureImportArguments structures;
@@ -222,126 +214,14 @@ int run(int argc, char** argv) {
   compare_command->add_option("a", file, "A label map")->required();
   compare_command->add_option("b", other, "Another")->required();
 
-  auto* measure_command = app.add_subcommand("measure", "Measurements");
-  measure_command->require_subcommand(1);
-  auto* upload_command =
-      with_json(measure_command->add_subcommand("upload", "Partial against full upload"));
-  auto* stability_command = with_json(measure_command->add_subcommand(
-      "stability", "Every controller over a grid of arms, hands and tissues"));
-  StabilityArguments stability;
-  stability_command->add_option("--grid", stability.grid,
-                                "A grid of your own (JSON); the full grid unless given");
-  stability_command
-      ->add_option("--sets", stability.sets,
-                   "Which of grid,long,moving,hands,claims,rest; all unless given, of a "
-                   "grid of your own only grid")
-      ->check(named);
-  stability_command->add_option("--seconds", stability.seconds,
-                                "How long a cell runs; 2, long 30, moving 5, rest 60 unless given");
-  stability_command->add_option("--out", stability.out, "Folder for the table and the maps")
-      ->required();
-  auto* extremes_command = with_json(measure_command->add_subcommand(
-      "extremes",
-      "Values at the edge of what can be given, through the real loop, and tools that "
-      "press, rest and come back"));
-  extremes_command->add_option("--case", case_source, "A real skull for the barrier as well");
-  extremes_command->add_option("--out", out, "Folder for the table")->required();
-  auto* haptics_command = with_json(measure_command->add_subcommand(
-      "haptics", "What a tick costs, and how true the push of elastic tissue is"));
-  haptics_command->add_option("--out", out, "Folder for the table")->required();
-  auto* render_command = with_json(measure_command->add_subcommand(
-      "render", "What a picture costs and how true it is, beside VTK's own ray caster"));
-  render_command->add_option("--case", case_source, "Bone in a case of your own as well");
-  render_command->add_option("--out", out, "Folder for the table and the pictures")->required();
-  auto* trades_command = with_json(measure_command->add_subcommand(
+  auto* trades_command = with_json(app.add_subcommand(
       "trades", "Speed against accuracy for every knob of touch, and what is recommended here"));
-  trades_command->add_option("--out", out, "Folder for tables and charts")->required();
-  auto* measure_import_command = with_json(
-      measure_command->add_subcommand("import", "How fast CT is read, against a plain read"));
-  ImportOptions import_options;
-  int edge = import_options.series.size[0];
-  measure_import_command->footer(kOtherPrograms);
-  measure_import_command->add_flag_callback(
-      "--peers", [] { throw CLI::ValidationError("--peers", kOtherPrograms); },
-      "Other programs too: moved to bench_import");
-  measure_import_command->add_option("--series", import_options.series.names,
-                                     "Only int16 or u12; both unless given");
-  measure_import_command->add_option("--size", edge, "Rows and columns")->capture_default_str();
-  measure_import_command->add_option("--slices", import_options.series.size[2], "Of each series")
-      ->capture_default_str();
-  measure_import_command->add_option("--repetitions", import_options.repetitions)
-      ->capture_default_str();
-  measure_import_command
-      ->add_option("--scan-series", import_options.series.scan_series,
-                   "Series in the folder whose headers are read")
-      ->capture_default_str();
-  measure_import_command
-      ->add_option("--scan-slices", import_options.series.scan_slices, "Slices of each of them")
-      ->capture_default_str();
-  measure_import_command->add_option("--out", out, "Folder for the table")->required();
-  auto* read_command = with_json(
-      measure_command->add_subcommand("read", "Read every byte of a folder's files, and no more"));
-  read_command->add_option("path", file, "A folder")->required();
-  auto* devices_command = with_json(measure_command->add_subcommand(
-      "devices", "Arms that are plugged in, or emulated, in a closed loop and in trouble"));
-  DeviceArguments devices;
-  devices_command->add_option("--seconds", devices.seconds, "Of the closed loop")
-      ->capture_default_str();
-  devices_command->add_option("--bench", devices.benches,
-                              "A library that emulates devices, and can take them out");
-  devices_command->add_option("--trials", devices.trials, "Of each trouble, with a bench")
-      ->capture_default_str();
-  devices_command->add_option("--out", out, "Folder for the table")->required();
-  devices_command->add_option("--one", devices.one)->group(kHidden);
-  devices_command->add_option("--wait", devices.wait_s)->group(kHidden);
-  devices_command->add_option("--recording", devices.recording)->group(kHidden);
-  auto* headset_command = with_json(measure_command->add_subcommand(
-      "headset", "Pictures for two eyes beside an exercise, and a headset that goes and comes"));
-  HeadsetArguments headset;
-  headset_command
-      ->add_option("--seconds", headset.seconds, "Of the exercise, with and without, 2 to 600")
-      ->capture_default_str();
-  headset_command
-      ->add_option("--toggles", headset.toggles,
-                   "How often it is switched on and off, at most 1000")
-      ->capture_default_str();
-  headset_command->add_option("--losses", headset.losses, "Of each of five kinds, at most 1000")
-      ->capture_default_str();
-  headset_command->add_flag("--no-pictures", headset.no_pictures,
-                            "No pictures of both eyes for each scene");
-  headset_command->add_option("--out", out, "Folder for the recording and pictures")
-      ->required()
-      ->check(named);
-  auto* jitter_command = with_json(
-      measure_command->add_subcommand("jitter", "How late the haptic thread wakes on this machine"));
-  double seconds = 5.0;
-  jitter_command->add_option("--seconds", seconds, "For each row")->capture_default_str();
-  jitter_command->add_option("--out", out, "Folder for the table")->required();
+  trades_command->add_option("--out", out, "Folder for the tables")->required();
+  // For the help: main() has started that program instead.
+  app.add_subcommand("measure", "Measurements for researchers: the program trephine-measure, of the "
+                                "package trephine-researcher");
 
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    // The flag itself may stand behind what could not be parsed.
-    if (error.get_exit_code() == 0) return app.exit(error);
-    // Of a word that is no command the parser says only that a command is missing.
-    const CLI::App& of = *measure_command      ? *measure_command
-                         : *structures_command ? *structures_command
-                         : *exercise_command   ? *exercise_command
-                         : *storage_command    ? *storage_command
-                                               : app;
-    const bool missing = of.get_subcommands().empty();
-    const std::vector<std::string> words = app.remaining(true);
-    const auto word = std::find_if(words.begin(), words.end(),
-                                   [](const std::string& w) { return !w.starts_with('-'); });
-    const bool misnamed = missing && word != words.end();
-    const std::string what = cleanUtf8(
-        misnamed ? "There is no command '" + *word + "'" : std::string(error.what()));
-    if (!wantsJson(argc, argv)) {
-      sayError("%s\nRun with --help for more information.\n", what.c_str());
-      return 1;
-    }
-    return printError("usage", {code::kBadArgument, what, "the command line", "See --help"}, true);
-  }
+  if (const auto code = parsed(app, argc, argv)) return *code;
   setUpLog(json);
   if (const auto crashes = stateFolder()) (void)reportCrashesTo(*crashes);
   if (policy.problem) spdlog::warn("{}", policy.problem->sentence());
@@ -367,26 +247,16 @@ int run(int argc, char** argv) {
   if (*export_structures_command) return exportStructuresCommand(exported, json, progress);
   if (*compare_command) return compareCommand(file, other, json, progress);
   if (*explain_command) return explainCommand(file, policy, json, progress);
-  if (*upload_command) return measureUploadCommand(json, progress);
-  if (*stability_command) return measureStabilityCommand(stability, json, progress);
-  if (*extremes_command) return measureExtremesCommand(case_source, out, json, progress);
-  if (*haptics_command) return measureHapticsCommand(out, json, progress);
-  if (*render_command) return measureRenderCommand(case_source, out, json, progress);
-  if (*trades_command) return measureTradesCommand(out, json, progress);
-  if (*measure_import_command) {
-    import_options.series.size[0] = import_options.series.size[1] = edge;
-    return measureImportCommand(import_options, out, json, progress);
-  }
-  if (*read_command) return measureReadCommand(file, json, progress);
-  if (*devices_command) return measureDevicesCommand(devices, out, json, progress);
-  if (*headset_command) return measureHeadsetCommand(headset, out, json, progress);
-  if (*jitter_command) return measureJitterCommand(seconds, out, json, progress);
+  if (*trades_command) return tradesCommand(out, json, progress);
   return 1;
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
+  if (argc > 1 && std::string_view(argv[1]) == "measure") {
+    return trephine::startMeasurements(argv + 1, trephine::wantsJson(argc, argv));
+  }
   trephine::keepMemoryPrivate();
   trephine::cancelOnSignals(progress);
   return trephine::guarded("trephine-lab", trephine::wantsJson(argc, argv),

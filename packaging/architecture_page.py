@@ -66,7 +66,7 @@ def lines_of(source, declared):
             libraries = ", ".join(sorted(u for u in uses if u))
             yield f"| `{folders[name]}` | {job_of(source / folders[name])} | {libraries} |"
     yield ""
-    yield "Above the rooms are `app` (the two programs) and beside them `plugins` (one device each, on the"
+    yield "Above the rooms are `app` (the programs) and beside them `plugins` (one device each, on the"
     yield "device interface alone). What is touched to add to a room stands in its README."
 
 

@@ -65,6 +65,10 @@ std::filesystem::path labProgram() {
   return programs() / "trephine-lab";
 }
 
+std::filesystem::path measureProgram() {
+  return programs() / "trephine-measure";
+}
+
 std::optional<std::filesystem::path> configFolder() {
   return ofThisPerson("XDG_CONFIG_HOME", ".config");
 }

@@ -18,8 +18,10 @@ std::filesystem::path resourceFolder();
 std::filesystem::path pluginFolder();
 // Where the build put the built-in cases, ../lib/trephine/cases.
 std::filesystem::path builtInFolder();
-// trephine-lab, beside this program.
+// trephine-lab and trephine-measure, beside this program. The second is of a package of its own and
+// may not be there.
 std::filesystem::path labProgram();
+std::filesystem::path measureProgram();
 // Of this person on this machine: what is chosen, what is made, and what happened here. By
 // XDG_CONFIG_HOME, XDG_DATA_HOME and XDG_STATE_HOME, else ~/.config/trephine,
 // ~/.local/share/trephine and ~/.local/state/trephine; nothing where neither is given from the

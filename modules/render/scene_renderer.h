@@ -92,7 +92,7 @@ class SceneRenderer {
   void setLight(const Vec3& from);
   void setShading(const ShadingOptions& options);
   // Distance of the samples of a ray at full quality, in the smallest edge of a voxel.
-  // `measure trades` recommends the default, and ShadingOptions's.
+  // `trephine-lab trades` recommends the default, and ShadingOptions's.
   static constexpr double kSampleDistance = 0.5;
   void setSampleDistance(double voxels);
   // Takes what is new in the mirror; the boxes are sent at the next paint. True when there is

@@ -7,6 +7,8 @@ if("$ENV{SOURCE_DATE_EPOCH}" STREQUAL "")
                   OUTPUT_VARIABLE released OUTPUT_STRIP_TRAILING_WHITESPACE COMMAND_ERROR_IS_FATAL ANY)
   set(ENV{SOURCE_DATE_EPOCH} ${released})
 endif()
+# Of one build: what it measures with is not told by a version of its own.
+set(CPACK_DEBIAN_RESEARCHER_PACKAGE_DEPENDS "trephine (= ${CPACK_PACKAGE_VERSION})")
 if(CPACK_GENERATOR STREQUAL "TGZ")
   set(CPACK_PACKAGE_FILE_NAME "trephine-${CPACK_PACKAGE_VERSION}-linux-${CMAKE_SYSTEM_PROCESSOR}")
 endif()

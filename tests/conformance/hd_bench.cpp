@@ -1,4 +1,4 @@
-// A bench for `trephine-lab measure devices`: the two arms of our own libHD.so, which the program
+// A bench for `trephine-measure devices`: the two arms of our own libHD.so, which the program
 // has to find (LD_LIBRARY_PATH).
 #include <dlfcn.h>
 

@@ -1,4 +1,4 @@
-// A bench for `trephine-lab measure devices`: two emulated WoodenHaptics boards in hands that swing
+// A bench for `trephine-measure devices`: two emulated WoodenHaptics boards in hands that swing
 // them. The program has to run under umockdev-wrapper.
 #include <array>
 #include <cmath>

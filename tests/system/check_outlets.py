@@ -45,6 +45,7 @@ OUTLETS = {
         ("modules", "ui", "app", "plugins"),
         {
             "modules/base/child_process.cpp": "a program's path and its words, no shell",
+            "app/lab_commands.cpp": "becomes trephine-measure with its own words, no shell",
             "ui/commission/commission_page.cpp": "trephine-lab, no shell",
             "ui/commission/commission_page.h": "the same",
         }),

@@ -56,7 +56,7 @@ class Signals(EndingTest):
             "measure stability": ("measure", "stability", "--out", out / "stability"),
             "measure extremes": ("measure", "extremes", "--out", out / "extremes"),
             "measure haptics": ("measure", "haptics", "--out", out / "haptics"),
-            "measure trades": ("measure", "trades", "--out", out / "trades"),
+            "trades": ("trades", "--out", out / "trades"),
             "measure import": ("measure", "import", "--size", 64, "--repetitions", 100, "--out",
                                out / "import"),
             "measure jitter": ("measure", "jitter", "--seconds", 600, "--out", out / "jitter"),

@@ -528,6 +528,18 @@ class BadInput(LabTest):
         answer = lab("run", SCENES / "cranium.json", "--seconds", "-1", "--out", self.folder, expect=1)
         self.assert_error(answer, "BAD_ARGUMENT")
 
+    def test_measuring_says_where_its_program_is_to_be_had(self):
+        alone = shutil.copy(LAB, self.folder / "trephine-lab")
+        for arguments in (["measure"], ["measure", "jitter", "--help"]):
+            done = subprocess.run([alone, *arguments, "--json"], capture_output=True, text=True)
+            self.assertEqual(done.returncode, 1)
+            self.assert_error(json.loads(done.stdout), "NOT_INSTALLED", "trephine-measure",
+                              "trephine-researcher")
+            done = subprocess.run([alone, *arguments], capture_output=True, text=True)
+            self.assertEqual((done.returncode, done.stdout), (1, ""))
+            self.assertEqual(len(done.stderr.splitlines()), 1)
+            self.assertIn("trephine-researcher", done.stderr)
+
     def test_measuring_without_a_display_says_so(self):
         answer = lab("measure", "upload", expect=1, environment=without_display())
         self.assert_error(answer, "NO_DISPLAY")

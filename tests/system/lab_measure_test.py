@@ -248,6 +248,8 @@ class BadInput(LabTest):
         for what in ("haptics", "trades"):
             answer = lab("measure", what, "--out", self.folder / "file", expect=1)
             self.assert_error(answer, "CANNOT_WRITE", "file")
+        answer = lab("trades", "--out", self.folder / "file", expect=1)
+        self.assert_error(answer, "CANNOT_WRITE", "file")
 
 
 if __name__ == "__main__":

@@ -17,6 +17,7 @@ from check_runpath import faults
 from lab_support import LAB, SOURCE, WINDOW, main
 
 BUILD = Path(LAB).parents[1]
+MEASURE = Path(LAB).with_name("trephine-measure")
 
 
 def output(*command, **options):
@@ -27,7 +28,7 @@ def output(*command, **options):
 def packed(kind, folder, *options):
     output("cpack", "-G", kind, "--config", BUILD / "CPackConfig.cmake", "-B", folder, *options,
            cwd=folder)
-    return next(Path(folder).glob("*.deb" if kind == "DEB" else "*.tar.gz"))
+    return next(Path(folder).glob("trephine_*.deb" if kind == "DEB" else "*.tar.gz"))
 
 
 class Package(unittest.TestCase):
@@ -35,12 +36,14 @@ class Package(unittest.TestCase):
     def setUpClass(cls):
         cls.temporary = tempfile.TemporaryDirectory()
         cls.folder = Path(cls.temporary.name)
-        for name in ("a", "b", "tar", "root"):
+        for name in ("a", "b", "tar", "root", "researcher"):
             (cls.folder / name).mkdir()
         os.environ.pop("SOURCE_DATE_EPOCH", None)
         cls.deb = packed("DEB", cls.folder / "a")
         output("dpkg-deb", "-x", cls.deb, cls.folder / "root")
         cls.root = cls.folder / "root"
+        cls.researcher = next((cls.folder / "a").glob("trephine-researcher_*.deb"))
+        output("dpkg-deb", "-x", cls.researcher, cls.folder / "researcher")
         print(f"{cls.deb.name}: {cls.deb.stat().st_size / 1e6:.1f} MB")
 
     @classmethod
@@ -76,13 +79,34 @@ class Package(unittest.TestCase):
         self.assertNotIn("-dev", depends)
         self.assertIn("xvfb", output("dpkg-deb", "-f", self.deb, "Recommends"))
 
+    def test_leaves_what_researchers_measure_with_to_a_package_of_its_own(self):
+        def files(root):
+            return {str(path.relative_to(root)) for path in root.rglob("*") if path.is_file()}
+        own = files(self.folder / "researcher")
+        self.assertEqual(own, {"usr/bin/trephine-measure",
+                               "usr/share/man/man1/trephine-measure.1.gz",
+                               "usr/share/lintian/overrides/trephine-researcher",
+                               "usr/share/doc/trephine-researcher/changelog.gz",
+                               "usr/share/doc/trephine-researcher/copyright"})
+        self.assertEqual(own & files(self.root), set())
+        depends = output("dpkg-deb", "-f", self.researcher, "Depends")
+        version = output("dpkg-deb", "-f", self.deb, "Version").strip()
+        self.assertIn(f"trephine (= {version})", depends)
+        self.assertNotIn("trephine-researcher", output("dpkg-deb", "-f", self.deb, "Depends"))
+        for control in ("postinst", "postrm", "conffiles"):
+            self.assertNotIn(control, output("dpkg-deb", "-I", self.researcher))
+        for program in ("trephine", "trephine-lab"):  # none of its code
+            self.assertNotIn(b"full upload %.2f ms", (self.root / "usr/bin" / program).read_bytes())
+        self.assertIn(b"full upload %.2f ms",
+                      (self.folder / "researcher/usr/bin/trephine-measure").read_bytes())
+
     def test_looks_for_libraries_nowhere_but_where_the_system_does(self):
-        found, count = faults([self.root])
+        found, count = faults([self.root, self.folder / "researcher"])
         self.assertEqual(found, [])
-        self.assertGreaterEqual(count, 6)
+        self.assertGreaterEqual(count, 7)
 
     def test_tells_nobody_where_it_was_built(self):
-        for path in self.root.rglob("*"):
+        for path in [*self.root.rglob("*"), *(self.folder / "researcher").rglob("*")]:
             if path.is_file():
                 data = path.read_bytes()
                 if path.suffix == ".gz":
@@ -91,14 +115,17 @@ class Package(unittest.TestCase):
 
     def test_is_the_same_file_each_time(self):
         again = packed("DEB", self.folder / "b")
-        digest = [hashlib.sha256(file.read_bytes()).hexdigest() for file in (self.deb, again)]
-        self.assertEqual(digest[0], digest[1])
+        for first, second in ((self.deb, again), (self.researcher,
+                                                  again.with_name(self.researcher.name))):
+            digest = [hashlib.sha256(file.read_bytes()).hexdigest() for file in (first, second)]
+            self.assertEqual(digest[0], digest[1])
 
     def test_satisfies_those_who_look_at_packages(self):
         for tool in ("lintian", "appstreamcli", "desktop-file-validate"):
             if not shutil.which(tool):
                 self.skipTest(f"{tool} is not installed")
-        said = subprocess.run(["lintian", "--no-tag-display-limit", "--allow-root", str(self.deb)],
+        said = subprocess.run(["lintian", "--no-tag-display-limit", "--allow-root", str(self.deb),
+                               str(self.researcher)],
                               capture_output=True, text=True).stdout
         errors = [line for line in said.splitlines() if line.startswith("E:")]
         self.assertEqual(errors, [], said)
@@ -118,23 +145,29 @@ class Package(unittest.TestCase):
         self.assertGreater(len(bill["files"]), 50)
 
     def test_its_manual_names_every_command_and_option(self):
-        pages = {name: gzip.decompress((self.root / f"usr/share/man/man1/{name}.1.gz").read_bytes())
-                 .decode().replace("\\-", "-") for name in ("trephine", "trephine-lab")}
+        pages = {name: gzip.decompress((root / f"usr/share/man/man1/{name}.1.gz").read_bytes())
+                 .decode().replace("\\-", "-")
+                 for name, root in (("trephine", self.root), ("trephine-lab", self.root),
+                                    ("trephine-measure", self.folder / "researcher"))}
         options = re.findall(r"--[a-z]+", output(WINDOW, "--help"))
         self.assertIn("--exercise", options)
         for option in options:
             self.assertIn(option, pages["trephine"])
 
-        def commands(*words):
-            text = output(LAB, *words, "--help")
+        def commands(program, *words):
+            text = output(program, *words, "--help")
             listed = text.split("Subcommands:")[1] if "Subcommands:" in text else ""
             return re.findall(r"^  ([a-z]+)  ", listed, re.MULTILINE)
-        named = commands()
+        named = commands(LAB)
         self.assertIn("import", named)
         for command in named:
-            inner = commands(command)
+            inner = [] if command == "measure" else commands(LAB, command)
             for name in [f"{command} {each}" for each in inner] or [command]:
                 self.assertRegex(pages["trephine-lab"], rf'(?m)(^\.B {name}$|"{name}")')
+        measurements = commands(MEASURE)
+        self.assertIn("stability", measurements)
+        for name in measurements:
+            self.assertRegex(pages["trephine-measure"], rf"(?m)^\.B {name}$")
 
     def test_runs_from_any_folder(self):
         archive = packed("TGZ", self.folder / "tar")

@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "base/child_process.h"
-#include "base/codes.h"
 #include "base/file.h"
 #include "base/locked_folder.h"
 #include "base/log.h"
@@ -13,7 +12,6 @@
 #include "machine/ticks/law_costs.h"
 #include "machine/trades/recommended.h"
 #include "machine/trades/trades_measurement.h"
-#include "lab/codes.h"
 #include "render/tool_mesh.h"
 #include "render/tool_view.h"
 #include "ui/common/colours.h"
@@ -74,7 +72,7 @@ void ArmsTab::measureCosts() {
       [this](Result<LawCosts> costs) {
         tools_->showMeasuring({});
         if (!costs) {
-          if (costs.error().code != code::kCancelled) app_.report(costs.error());
+          if (costs.error().code != "CANCELLED") app_.report(costs.error());
           return;
         }
         ToolsPanel::Costs words;
@@ -137,16 +135,16 @@ void ArmsTab::measureTrades() {
         if (!out) return out.error();
         progress.at(0.0, "Measuring, some minutes");
         constexpr double kLongest_s = 1200.0;
-        const Result<ChildRun> run = runChild(
-            {{labProgram().string(), "measure", "trades", "--out", out->path().string(), "--json"},
-             out->path() / "answer.json",
-             out->path(),
-             kLongest_s},
-            progress);
+        const Result<ChildRun> run =
+            runChild({{labProgram().string(), "trades", "--out", out->path().string(), "--json"},
+                      out->path() / "answer.json",
+                      out->path(),
+                      kLongest_s},
+                     progress);
         if (!run) return run.error();
         if (run->exit_code != 0) {
-          return Error{code::kNotMeasured, "The measurement did not come to its end",
-                       "trephine-lab", "Run 'trephine-lab measure trades --out DIR' to see why"};
+          return Error{"NOT_MEASURED", "The measurement did not come to its end", "trephine-lab",
+                       "Run 'trephine-lab trades --out DIR' to see why"};
         }
         if (Status made = makeFolder(to); !made) return made;
         for (const char* file : {"trades.json", "recommended.json"}) {

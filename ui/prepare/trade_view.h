@@ -1,5 +1,5 @@
 // What a setting costs and what it gets wrong, beside the setting itself: the rows of a knob of
-// `measure trades`, with the recommended one marked and the one in use in bold.
+// `trephine-lab trades`, with the recommended one marked and the one in use in bold.
 #pragma once
 
 #include <QLabel>

@@ -318,7 +318,7 @@ Result<DeviceTrial> trialOf(const TrialOptions& options, const fs::path& out,
   const fs::path answer = out / kTrialAnswer, said_file = out / "trial.txt";
   fs::remove(answer, ec);
   const Result<ChildRun> run = runChild(
-      {{labProgram().string(), "measure", "devices", "--json", "--bench", options.bench.string(),
+      {{measureProgram().string(), "devices", "--json", "--bench", options.bench.string(),
         "--out", out.string(), "--one", options.unplug ? "unplugged" : "blocked", "--wait",
         plainNumber(options.wait_s), "--recording", recording.string()},
        said_file,

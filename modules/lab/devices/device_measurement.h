@@ -74,7 +74,7 @@ struct TrialOptions {
   bool unplug = true;   // or a call that blocks for a second
   double wait_s = 1.0;  // from the exercise's start
 };
-// The file of its --out folder in which trephine-lab tells what came of one trial.
+// The file of its --out folder in which trephine-measure tells what came of one trial.
 inline constexpr const char* kTrialAnswer = "trial.json";
 // In a program of its own, since a device that blocked is left behind. Errors: NO_BENCH, NO_DEVICE,
 // those of sessions.

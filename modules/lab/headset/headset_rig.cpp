@@ -23,7 +23,7 @@ constexpr double kAhead_m = 0.4, kAbove_m = -0.2;
 
 QGuiApplication* application() {
   static int count = 1;
-  static char name[] = "trephine-lab";
+  static char name[] = "trephine-measure";
   static char* arguments[] = {name, nullptr};
   // GLX: what the window uses.
   ::setenv("QT_QPA_PLATFORM", "xcb", 1);

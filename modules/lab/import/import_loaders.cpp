@@ -20,10 +20,9 @@ struct OwnRun {
 };
 
 Result<OwnRun> runOurs(const OwnProgram& program, const LoaderTask& task,
-                       const std::vector<std::string>& words) {
+                       std::vector<std::string> words) {
   ChildCommand command;
-  command.words = {program.file.string()};
-  command.words.insert(command.words.end(), words.begin(), words.end());
+  command.words = std::move(words);
   command.output = task.empty / "answer.json";
   command.home = task.empty;
   command.limit_s = program.limit_s;
@@ -47,7 +46,7 @@ Result<OwnRun> runOurs(const OwnProgram& program, const LoaderTask& task,
 
 // The report of `trephine-lab import` of a folder.
 Result<OwnRun> runImport(const OwnProgram& program, const LoaderTask& task) {
-  return runOurs(program, task, {"import", task.folder.string(), "--json"});
+  return runOurs(program, task, {program.file.string(), "import", task.folder.string(), "--json"});
 }
 
 // A number of the report, 0 where it has none.
@@ -96,7 +95,7 @@ Loader floorLoader(const OwnProgram& program) {
   loader.names = {"floor", "floor kept"};
   loader.run = [program](const LoaderTask& task) -> Result<LoaderRun> {
     Result<OwnRun> ours =
-        runOurs(program, task, {"measure", "read", task.folder.string(), "--json"});
+        runOurs(program, task, {program.measure.string(), "read", task.folder.string(), "--json"});
     if (!ours) return ours.error();
     if (!ours->problem.empty()) return failedRun(ours->problem);
     LoaderRun run;

@@ -10,6 +10,7 @@
 
 #include "base/progress.h"
 #include "base/result.h"
+#include "base/system.h"
 #include "lab/import/import_series.h"
 
 namespace trephine {
@@ -43,8 +44,9 @@ struct Loader {
 };
 
 struct OwnProgram {
-  std::filesystem::path file;  // trephine-lab
-  double limit_s = 120.0;      // for one run
+  std::filesystem::path file = labProgram();         // whose import it is
+  std::filesystem::path measure = measureProgram();  // whose plain read it is
+  double limit_s = 120.0;                            // for one run
 };
 
 // "trephine" (scan + read as `import --json` says), "trephine command" (its wall time without the

@@ -1,4 +1,4 @@
-// The figures of `measure render` for programs, people and tables, and its bars.
+// The figures of `trephine-measure render` for programs, people and tables, and its bars.
 #include <algorithm>
 #include <cstdio>
 #include <locale>

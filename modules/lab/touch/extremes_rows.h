@@ -1,4 +1,4 @@
-// The rows of `measure extremes` that run in extremes_rig.h: what they share, and their groups,
+// The rows of `trephine-measure extremes` that run in extremes_rig.h: what they share, and their groups,
 // each a file with its functions beside its table.
 #pragma once
 

@@ -1,4 +1,4 @@
-// Rows of `measure extremes` on touch that holds: a tool that cannot cut stays out of bone, rests,
+// Rows of `trephine-measure extremes` on touch that holds: a tool that cannot cut stays out of bone, rests,
 // keeps its stiffness and gets its force back. Real tools of the shipped exercises on TouchRig.
 #pragma once
 

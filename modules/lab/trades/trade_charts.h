@@ -1,4 +1,4 @@
-// The rows of `measure trades` as charts: error over cost, one picture a knob.
+// The rows of `trephine-measure trades` as charts: error over cost, one picture a knob.
 #pragma once
 
 #include <filesystem>

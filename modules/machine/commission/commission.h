@@ -28,7 +28,7 @@ struct Commissioning {
   std::string when;     // "2026-11-24 09:30", by the clock
   std::string build;    // of this program
   std::string machine;  // processors and system, without the name of the host
-  // The best settings of touch that this machine keeps; not what rays take, which `measure trades`
+  // The best settings of touch that this machine keeps; not what rays take, which `trades`
   // finds in minutes.
   std::vector<RecommendedSetting> recommended;
 };

@@ -30,7 +30,7 @@ Result<Json> explainExercise(Exercise exercise, const std::vector<RecommendedSet
 // `locks` [names], `refused` (a sentence or null).
 std::string explanationText(const Json& explained);
 
-// The knobs of `measure trades` that an exercise sets or is drawn with, each once: knob and
+// The knobs of the trades that an exercise sets or is drawn with, each once: knob and
 // setting.
 std::vector<std::pair<std::string, std::string>> exerciseSettings(const Exercise& exercise);
 

@@ -1,5 +1,5 @@
 // bench_import: how fast CT is read, in eight transfer syntaxes, against a plain read of the bytes
-// and against other programs. `trephine-lab measure import` is its short form.
+// and against other programs. `trephine-measure import` is its short form.
 #include <CLI/CLI.hpp>
 #include <cstdio>
 
@@ -38,7 +38,8 @@ int run(int argc, char** argv) {
   app.add_option("--out", out, "Folder for the table; takes up to 1.5 GB while it runs")
       ->required();
   app.add_option("--lab", lab,
-                 "The trephine-lab to measure; the one beside this program unless given");
+                 "The trephine-lab to measure, trephine-measure beside it; those beside this "
+                 "program unless given");
   app.add_flag("--json", json, "Answer as JSON on stdout; logs go to stderr");
   try {
     app.parse(argc, argv);
@@ -49,11 +50,11 @@ int run(int argc, char** argv) {
   }
   setUpLog(json);
   options.series.size[0] = options.series.size[1] = edge;
-  std::error_code error;
-  program.file =
-      lab.empty()
-          ? std::filesystem::read_symlink("/proc/self/exe", error).replace_filename("trephine-lab")
-          : std::filesystem::absolute(lab, error);
+  if (!lab.empty()) {
+    std::error_code error;
+    program.file = std::filesystem::absolute(lab, error);
+    program.measure = std::filesystem::path(program.file).replace_filename("trephine-measure");
+  }
   ImportSubjects subjects = ownSubjects(program);
   subjects.names = bench::seriesNames();
   subjects.write = bench::writeScannerSeries;

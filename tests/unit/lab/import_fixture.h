@@ -1,4 +1,4 @@
-// Measures series of nothing with a script in trephine-lab's place.
+// Measures series of nothing with scripts in the places of trephine-lab and trephine-measure.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -27,7 +27,7 @@ inline ImportRow row(const std::string& series, const std::string& loader,
 
 class Measured : public ::testing::Test {
  protected:
-  Measured() : subjects_(ownSubjects({folder_ / "trephine-lab"})) {
+  Measured() : subjects_(ownSubjects({folder_ / "trephine-lab", folder_ / "trephine-measure"})) {
     options_.series.scan_series = 2;
     options_.series.scan_slices = 3;
     options_.repetitions = 2;
@@ -49,8 +49,8 @@ class Measured : public ::testing::Test {
             "  import*) echo '" +
                 report("known") +
                 "';;\n"
-                "  *) echo '{\"seconds\": 0.1, \"kept_seconds\": 0.2}';;\n"
                 "esac");
+    program("trephine-measure", "echo '{\"seconds\": 0.1, \"kept_seconds\": 0.2}'");
   }
 
   static std::string report(const Json& sha256, const Json& other_sha256 = nullptr,

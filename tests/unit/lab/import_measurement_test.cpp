@@ -130,11 +130,12 @@ TEST_F(Measured, TheLoadersTakeTurnsAndTheFirstRunOfEachDoesNotCount) {
   program("trephine-lab", "echo $1 >> " + log + "\n" + "if [ -e " + log + ".warm ]; then echo '" +
                               report("known") + "'\n" + "else : > " + log + ".warm; echo '" +
                               report("known", nullptr, 0.1) + "'; fi");
+  program("trephine-measure", "echo $1 >> " + log + "\n" + "echo '{}'");
   EXPECT_EQ(find(measure(), "u12", "trephine").seconds_median, 0.75);
   std::ifstream in(log);
   const std::vector<std::string> ran(std::istream_iterator<std::string>{in}, {});
-  EXPECT_EQ(ran, (std::vector<std::string>{"import", "measure", "measure", "import",  // the series
-                                           "import", "import"}));                     // the scan
+  EXPECT_EQ(ran, (std::vector<std::string>{"import", "read", "read", "import",  // the series
+                                           "import", "import"}));               // the scan
 }
 
 TEST_F(Measured, NothingStaysWhenItIsCancelled) {

@@ -1,4 +1,4 @@
-// All of `measure render`: pictures of a few pixels, seconds of each exercise.
+// All of `trephine-measure render`: pictures of a few pixels, seconds of each exercise.
 #include <gtest/gtest.h>
 
 #include <algorithm>
