@@ -8,8 +8,8 @@
 #include "base/memory.h"
 #include "imaging/codes.h"
 #include "imaging/common/source_ids.h"
-#include "imaging/series/scan.h"
-#include "imaging/series/series.h"
+#include "imaging/series/detail/scan.h"
+#include "imaging/series/detail/series.h"
 
 namespace trephine {
 

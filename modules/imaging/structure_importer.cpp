@@ -5,9 +5,9 @@
 #include <optional>
 #include <utility>
 
+#include "imaging/common/detail/text.h"
 #include "base/codes.h"
 #include "imaging/codes.h"
-#include "imaging/common/text.h"
 #include "imaging/dicom/seg_reader.h"
 #include "imaging/report/answers.h"
 #include "volume/codes.h"

@@ -1,4 +1,4 @@
-#include "imaging/common/cielab.h"
+#include "imaging/common/detail/cielab.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,10 +1,10 @@
-#include "imaging/common/hu_sanity_check.h"
+#include "imaging/common/detail/hu_sanity_check.h"
 
 #include <algorithm>
 #include <cstdlib>
 #include <limits>
 
-#include "imaging/common/stored_values.h"
+#include "imaging/common/detail/stored_values.h"
 #include "volume/volume.h"
 
 namespace trephine {

@@ -1,4 +1,4 @@
-#include "imaging/common/source_watch.h"
+#include "imaging/common/detail/source_watch.h"
 
 #include <fcntl.h>
 #include <unistd.h>

@@ -1,9 +1,9 @@
-#include "imaging/common/stored_values.h"
+#include "imaging/common/detail/stored_values.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "imaging/common/hu_sanity_check.h"
+#include "imaging/common/detail/hu_sanity_check.h"
 
 namespace trephine {
 

@@ -1,4 +1,4 @@
-#include "imaging/common/text.h"
+#include "imaging/common/detail/text.h"
 
 #include <charconv>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "imaging/dicom/codecs.h"
+#include "imaging/dicom/detail/codecs.h"
 
 #include <dcmtk/dcmdata/dcpixel.h>
 #include <dcmtk/dcmdata/dcpixseq.h>
@@ -9,9 +9,9 @@
 #include <optional>
 #include <vector>
 
-#include "imaging/dicom/dicom_values.h"
+#include "imaging/dicom/detail/dicom_values.h"
+#include "imaging/dicom/detail/pixel_error.h"
 #include "imaging/dicom/jpeg2000.h"
-#include "imaging/dicom/pixel_error.h"
 
 namespace trephine {
 

@@ -11,8 +11,8 @@
 
 #include "base/codes.h"
 #include "base/purpose.h"
-#include "imaging/common/text.h"
-#include "imaging/dicom/written_values.h"
+#include "imaging/common/detail/text.h"
+#include "imaging/dicom/detail/written_values.h"
 
 namespace trephine {
 

@@ -1,4 +1,4 @@
-#include "imaging/dicom/dicom_file.h"
+#include "imaging/dicom/detail/dicom_file.h"
 
 #include <algorithm>
 #include <cctype>
@@ -7,13 +7,13 @@
 #include <mutex>
 #include <shared_mutex>
 
+#include "imaging/dicom/detail/codecs.h"
+#include "imaging/dicom/detail/dicom_names.h"
+#include "imaging/dicom/detail/dicom_pixels.h"
+#include "imaging/dicom/detail/dicom_stream.h"
+#include "imaging/dicom/detail/dicom_values.h"
+#include "imaging/dicom/detail/transfer_syntax.h"
 #include "imaging/codes.h"
-#include "imaging/dicom/codecs.h"
-#include "imaging/dicom/dicom_names.h"
-#include "imaging/dicom/dicom_pixels.h"
-#include "imaging/dicom/dicom_stream.h"
-#include "imaging/dicom/dicom_values.h"
-#include "imaging/dicom/transfer_syntax.h"
 
 namespace trephine {
 

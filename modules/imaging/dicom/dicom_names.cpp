@@ -1,9 +1,9 @@
-#include "imaging/dicom/dicom_names.h"
+#include "imaging/dicom/detail/dicom_names.h"
 
 #include <random>
 
 #include "base/sha256.h"
-#include "imaging/common/text.h"
+#include "imaging/common/detail/text.h"
 
 namespace trephine {
 

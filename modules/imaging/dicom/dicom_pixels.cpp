@@ -1,4 +1,4 @@
-#include "imaging/dicom/dicom_pixels.h"
+#include "imaging/dicom/detail/dicom_pixels.h"
 
 #include <dcmtk/config/osconfig.h>
 #include <dcmtk/dcmdata/dctk.h>
@@ -12,10 +12,10 @@
 
 #include "base/descriptor.h"
 #include "imaging/common/workers.h"
-#include "imaging/dicom/codecs.h"
-#include "imaging/dicom/dicom_stream.h"
-#include "imaging/dicom/pixel_error.h"
-#include "imaging/dicom/transfer_syntax.h"
+#include "imaging/dicom/detail/codecs.h"
+#include "imaging/dicom/detail/dicom_stream.h"
+#include "imaging/dicom/detail/pixel_error.h"
+#include "imaging/dicom/detail/transfer_syntax.h"
 
 namespace trephine {
 

@@ -1,4 +1,4 @@
-#include "imaging/dicom/dicom_stream.h"
+#include "imaging/dicom/detail/dicom_stream.h"
 
 #include <dcmtk/dcmdata/dcistrmf.h>
 #include <fcntl.h>

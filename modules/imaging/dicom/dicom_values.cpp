@@ -1,4 +1,4 @@
-#include "imaging/dicom/dicom_values.h"
+#include "imaging/dicom/detail/dicom_values.h"
 
 #include <dcmtk/dcmdata/dcrledrg.h>
 #include <dcmtk/dcmdata/dcspchrs.h>
@@ -9,7 +9,7 @@
 
 #include <mutex>
 
-#include "imaging/dicom/dicom_stream.h"
+#include "imaging/dicom/detail/dicom_stream.h"
 
 namespace trephine {
 

@@ -1,4 +1,4 @@
-#include "imaging/dicom/dicomdir.h"
+#include "imaging/dicom/detail/dicomdir.h"
 
 #include <cctype>
 #include <fstream>
@@ -7,8 +7,8 @@
 #include <string>
 
 #include "imaging/common/workers.h"
-#include "imaging/dicom/dicom_stream.h"
-#include "imaging/dicom/dicom_values.h"
+#include "imaging/dicom/detail/dicom_stream.h"
+#include "imaging/dicom/detail/dicom_values.h"
 
 namespace trephine {
 

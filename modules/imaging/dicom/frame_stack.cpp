@@ -1,12 +1,12 @@
-#include "imaging/dicom/frame_stack.h"
+#include "imaging/dicom/detail/frame_stack.h"
 
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 
+#include "imaging/common/detail/text.h"
 #include "base/codes.h"
 #include "imaging/codes.h"
-#include "imaging/common/text.h"
 
 namespace trephine {
 

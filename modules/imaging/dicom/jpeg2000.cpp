@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "imaging/dicom/pixel_error.h"
+#include "imaging/dicom/detail/pixel_error.h"
 
 namespace trephine {
 

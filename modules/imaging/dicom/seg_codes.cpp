@@ -1,4 +1,4 @@
-#include "imaging/dicom/seg_codes.h"
+#include "imaging/dicom/detail/seg_codes.h"
 
 #include <algorithm>
 #include <string_view>

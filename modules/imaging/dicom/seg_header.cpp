@@ -1,4 +1,4 @@
-#include "imaging/dicom/seg_header.h"
+#include "imaging/dicom/detail/seg_header.h"
 
 #include <dcmtk/config/osconfig.h>
 #include <dcmtk/dcmdata/dctk.h>
@@ -16,13 +16,13 @@
 
 #include "base/codes.h"
 #include "base/memory.h"
-#include "imaging/codes.h"
-#include "imaging/common/cielab.h"
-#include "imaging/dicom/dicom_pixels.h"
-#include "imaging/dicom/dicom_stream.h"
-#include "imaging/dicom/dicom_values.h"
+#include "imaging/common/detail/cielab.h"
+#include "imaging/dicom/detail/dicom_pixels.h"
+#include "imaging/dicom/detail/dicom_stream.h"
+#include "imaging/dicom/detail/dicom_values.h"
+#include "imaging/dicom/detail/transfer_syntax.h"
 #include "imaging/dicom/seg_reader.h"
-#include "imaging/dicom/transfer_syntax.h"
+#include "imaging/codes.h"
 #include "volume/codes.h"
 
 namespace trephine {

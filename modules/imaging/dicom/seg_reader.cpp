@@ -11,16 +11,16 @@
 
 #include "base/codes.h"
 #include "base/memory.h"
+#include "imaging/common/detail/text.h"
 #include "imaging/codes.h"
-#include "imaging/common/text.h"
 #include "imaging/common/workers.h"
-#include "imaging/dicom/dicom_file.h"
-#include "imaging/dicom/dicom_pixels.h"
-#include "imaging/dicom/dicom_stream.h"
-#include "imaging/dicom/dicom_values.h"
-#include "imaging/dicom/frame_stack.h"
-#include "imaging/dicom/seg_header.h"
-#include "imaging/dicom/transfer_syntax.h"
+#include "imaging/dicom/detail/dicom_file.h"
+#include "imaging/dicom/detail/dicom_pixels.h"
+#include "imaging/dicom/detail/dicom_stream.h"
+#include "imaging/dicom/detail/dicom_values.h"
+#include "imaging/dicom/detail/frame_stack.h"
+#include "imaging/dicom/detail/seg_header.h"
+#include "imaging/dicom/detail/transfer_syntax.h"
 
 namespace trephine {
 

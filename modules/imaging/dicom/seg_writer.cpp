@@ -21,12 +21,13 @@
 #include "base/memory.h"
 #include "base/purpose.h"
 #include "base/system.h"
+#include "imaging/common/detail/cielab.h"
+#include "imaging/common/detail/text.h"
+#include "imaging/dicom/detail/dicom_values.h"
+#include "imaging/dicom/detail/seg_codes.h"
+#include "imaging/dicom/detail/written_values.h"
 #include "imaging/codes.h"
-#include "imaging/common/cielab.h"
-#include "imaging/common/text.h"
-#include "imaging/dicom/dicom_values.h"
 #include "imaging/dicom/seg_codes.h"
-#include "imaging/dicom/written_values.h"
 #include "volume/codes.h"
 
 namespace trephine {

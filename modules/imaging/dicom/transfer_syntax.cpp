@@ -1,4 +1,4 @@
-#include "imaging/dicom/transfer_syntax.h"
+#include "imaging/dicom/detail/transfer_syntax.h"
 
 #include <dcmtk/config/osconfig.h>
 #include <dcmtk/dcmdata/dcxfer.h>

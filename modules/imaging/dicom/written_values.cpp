@@ -1,4 +1,4 @@
-#include "imaging/dicom/written_values.h"
+#include "imaging/dicom/detail/written_values.h"
 
 #include <charconv>
 

@@ -1,4 +1,4 @@
-#include "imaging/files/archive.h"
+#include "imaging/files/detail/archive.h"
 
 #include <archive.h>
 #include <archive_entry.h>

@@ -1,16 +1,16 @@
-#include "imaging/files/file_series.h"
+#include "imaging/files/detail/file_series.h"
 
 #include <algorithm>
 #include <cctype>
 #include <cstdio>
 
+#include "imaging/common/detail/stored_values.h"
+#include "imaging/common/detail/text.h"
 #include "imaging/codes.h"
-#include "imaging/common/stored_values.h"
-#include "imaging/common/text.h"
 #include "imaging/report/answers.h"
-#include "imaging/series/hu_checks.h"
-#include "imaging/series/series.h"
-#include "imaging/series/series_geometry.h"
+#include "imaging/series/detail/hu_checks.h"
+#include "imaging/series/detail/series.h"
+#include "imaging/series/detail/series_geometry.h"
 #include "volume/case_memory.h"
 #include "volume/codes.h"
 

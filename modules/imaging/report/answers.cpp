@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <set>
 
+#include "imaging/common/detail/text.h"
 #include "imaging/codes.h"
-#include "imaging/common/text.h"
 #include "volume/codes.h"
 
 namespace trephine {

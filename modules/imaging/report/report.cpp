@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "imaging/common/text.h"
+#include "imaging/common/detail/text.h"
 #include "imaging/report/provenance.h"
 #include "volume/case_memory.h"
 #include "volume/reduce.h"

@@ -5,8 +5,8 @@
 #include "base/html.h"
 #include "base/purpose.h"
 #include "base/system.h"
-#include "imaging/common/text.h"
-#include "imaging/dicom/transfer_syntax.h"
+#include "imaging/common/detail/text.h"
+#include "imaging/dicom/detail/transfer_syntax.h"
 
 namespace trephine {
 

@@ -5,8 +5,8 @@
 #include <set>
 #include <string_view>
 
+#include "imaging/common/detail/text.h"
 #include "imaging/codes.h"
-#include "imaging/common/text.h"
 
 namespace trephine {
 

@@ -1,4 +1,4 @@
-#include "imaging/segmentation/structure_hu.h"
+#include "imaging/segmentation/detail/structure_hu.h"
 
 #include <algorithm>
 #include <cctype>

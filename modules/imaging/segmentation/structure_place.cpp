@@ -1,4 +1,4 @@
-#include "imaging/segmentation/structure_place.h"
+#include "imaging/segmentation/detail/structure_place.h"
 
 #include <algorithm>
 #include <array>

@@ -1,4 +1,4 @@
-#include "imaging/series/assembly.h"
+#include "imaging/series/detail/assembly.h"
 
 #include <algorithm>
 #include <mutex>
@@ -6,11 +6,11 @@
 
 #include "base/codes.h"
 #include "base/memory.h"
-#include "imaging/common/source_watch.h"
-#include "imaging/common/text.h"
+#include "imaging/common/detail/source_watch.h"
+#include "imaging/common/detail/text.h"
 #include "imaging/common/workers.h"
-#include "imaging/dicom/dicom_pixels.h"
-#include "imaging/series/slice_mixing.h"
+#include "imaging/dicom/detail/dicom_pixels.h"
+#include "imaging/series/detail/slice_mixing.h"
 
 namespace trephine {
 

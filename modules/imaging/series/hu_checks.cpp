@@ -1,10 +1,10 @@
-#include "imaging/series/hu_checks.h"
+#include "imaging/series/detail/hu_checks.h"
 
 #include <algorithm>
 
+#include "imaging/common/detail/text.h"
+#include "imaging/series/detail/series_geometry.h"
 #include "imaging/codes.h"
-#include "imaging/common/text.h"
-#include "imaging/series/series_geometry.h"
 
 namespace trephine {
 

@@ -1,4 +1,4 @@
-#include "imaging/series/scan.h"
+#include "imaging/series/detail/scan.h"
 
 #include <sys/stat.h>
 
@@ -14,12 +14,12 @@
 
 #include "base/codes.h"
 #include "base/file.h"
+#include "imaging/common/detail/source_watch.h"
+#include "imaging/common/detail/text.h"
 #include "imaging/codes.h"
-#include "imaging/common/source_watch.h"
-#include "imaging/common/text.h"
 #include "imaging/common/workers.h"
-#include "imaging/dicom/dicom_values.h"
-#include "imaging/dicom/dicomdir.h"
+#include "imaging/dicom/detail/dicom_values.h"
+#include "imaging/dicom/detail/dicomdir.h"
 #include "volume/volume_files.h"
 
 namespace trephine {

@@ -1,4 +1,4 @@
-#include "imaging/series/series.h"
+#include "imaging/series/detail/series.h"
 
 #include <algorithm>
 #include <array>
@@ -9,9 +9,9 @@
 #include <tuple>
 #include <utility>
 
+#include "imaging/common/detail/text.h"
+#include "imaging/series/detail/series_repeats.h"
 #include "imaging/codes.h"
-#include "imaging/common/text.h"
-#include "imaging/series/series_repeats.h"
 
 namespace trephine {
 

@@ -1,4 +1,4 @@
-#include "imaging/series/series_agreement.h"
+#include "imaging/series/detail/series_agreement.h"
 
 #include <algorithm>
 #include <cmath>

@@ -8,18 +8,18 @@
 #include <set>
 #include <tuple>
 
+#include "imaging/common/detail/text.h"
+#include "imaging/dicom/detail/transfer_syntax.h"
 #include "base/codes.h"
 #include "imaging/codes.h"
-#include "imaging/common/text.h"
-#include "imaging/dicom/transfer_syntax.h"
 #include "imaging/report/answers.h"
-#include "imaging/series/findings.h"
-#include "imaging/series/series.h"
-#include "imaging/series/series_agreement.h"
-#include "imaging/series/series_geometry.h"
-#include "imaging/series/series_kind.h"
-#include "imaging/series/series_repeats.h"
-#include "imaging/series/series_steps.h"
+#include "imaging/series/detail/findings.h"
+#include "imaging/series/detail/series.h"
+#include "imaging/series/detail/series_agreement.h"
+#include "imaging/series/detail/series_geometry.h"
+#include "imaging/series/detail/series_kind.h"
+#include "imaging/series/detail/series_repeats.h"
+#include "imaging/series/detail/series_steps.h"
 #include "volume/case_memory.h"
 #include "volume/codes.h"
 

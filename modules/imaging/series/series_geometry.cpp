@@ -1,13 +1,13 @@
-#include "imaging/series/series_geometry.h"
+#include "imaging/series/detail/series_geometry.h"
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <numeric>
 
+#include "imaging/common/detail/text.h"
+#include "imaging/series/detail/series_steps.h"
 #include "imaging/codes.h"
-#include "imaging/common/text.h"
-#include "imaging/series/series_steps.h"
 
 namespace trephine {
 

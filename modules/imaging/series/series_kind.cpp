@@ -1,13 +1,13 @@
-#include "imaging/series/series_kind.h"
+#include "imaging/series/detail/series_kind.h"
 
 #include <cctype>
 #include <cmath>
 #include <map>
 
+#include "imaging/common/detail/text.h"
+#include "imaging/series/detail/findings.h"
+#include "imaging/series/detail/series_geometry.h"
 #include "imaging/codes.h"
-#include "imaging/common/text.h"
-#include "imaging/series/findings.h"
-#include "imaging/series/series_geometry.h"
 #include "volume/codes.h"
 
 namespace trephine {

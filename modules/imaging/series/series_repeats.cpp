@@ -1,4 +1,4 @@
-#include "imaging/series/series_repeats.h"
+#include "imaging/series/detail/series_repeats.h"
 
 #include <algorithm>
 #include <cmath>
@@ -11,11 +11,11 @@
 
 #include "base/range.h"
 #include "base/sha256.h"
+#include "imaging/common/detail/text.h"
 #include "imaging/codes.h"
-#include "imaging/common/text.h"
 #include "imaging/common/workers.h"
-#include "imaging/dicom/dicom_pixels.h"
-#include "imaging/series/series_geometry.h"
+#include "imaging/dicom/detail/dicom_pixels.h"
+#include "imaging/series/detail/series_geometry.h"
 
 namespace trephine {
 

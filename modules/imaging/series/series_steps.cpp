@@ -1,11 +1,11 @@
-#include "imaging/series/series_steps.h"
+#include "imaging/series/detail/series_steps.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
+#include "imaging/common/detail/text.h"
 #include "imaging/codes.h"
-#include "imaging/common/text.h"
 
 namespace trephine {
 

@@ -1,10 +1,10 @@
-#include "imaging/series/slice_mixing.h"
+#include "imaging/series/detail/slice_mixing.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
 
-#include "imaging/common/stored_values.h"
+#include "imaging/common/detail/stored_values.h"
 
 namespace trephine {
 

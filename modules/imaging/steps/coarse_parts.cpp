@@ -1,4 +1,4 @@
-#include "imaging/steps/coarse_parts.h"
+#include "imaging/steps/detail/coarse_parts.h"
 
 #include <algorithm>
 

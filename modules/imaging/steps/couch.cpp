@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "imaging/steps/couch_kinds.h"
+#include "imaging/steps/detail/couch_kinds.h"
 
 namespace trephine {
 

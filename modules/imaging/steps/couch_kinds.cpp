@@ -1,4 +1,4 @@
-#include "imaging/steps/couch_kinds.h"
+#include "imaging/steps/detail/couch_kinds.h"
 
 #include <algorithm>
 #include <cmath>

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "imaging/steps/coarse_parts.h"
+#include "imaging/steps/detail/coarse_parts.h"
 #include "volume/two_threads.h"
 
 namespace trephine {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "imaging/steps/coarse_parts.h"
+#include "imaging/steps/detail/coarse_parts.h"
 #include "imaging/steps/face.h"
 
 namespace trephine {

@@ -1,11 +1,11 @@
-#include "imaging/steps/volume_steps.h"
+#include "imaging/steps/detail/volume_steps.h"
 
 #include <algorithm>
 
+#include "imaging/common/detail/text.h"
+#include "imaging/series/detail/series_geometry.h"
 #include "base/codes.h"
 #include "imaging/codes.h"
-#include "imaging/common/text.h"
-#include "imaging/series/series_geometry.h"
 #include "imaging/steps/coarse_grid.h"
 #include "imaging/steps/couch.h"
 #include "imaging/steps/face.h"

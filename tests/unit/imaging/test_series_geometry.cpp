@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <random>
 
-#include "imaging/series/series_geometry.h"
+#include "imaging/series/detail/series_geometry.h"
 
 namespace trephine {
 

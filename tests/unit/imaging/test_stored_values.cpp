@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "imaging/common/stored_values.h"
+#include "imaging/common/detail/stored_values.h"
 #include "volume/volume.h"
 
 namespace trephine {

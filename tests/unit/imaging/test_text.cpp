@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "imaging/common/text.h"
+#include "imaging/common/detail/text.h"
 
 namespace trephine {
 

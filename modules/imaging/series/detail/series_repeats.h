@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "imaging/series/series.h"
+#include "imaging/series/detail/series.h"
 
 namespace trephine {
 

@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-#include "imaging/common/text.h"
+#include "imaging/common/detail/text.h"
 
 namespace trephine {
 

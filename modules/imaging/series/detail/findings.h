@@ -6,8 +6,8 @@
 #include <utility>
 #include <vector>
 
-#include "imaging/common/text.h"
-#include "imaging/series/series.h"
+#include "imaging/common/detail/text.h"
+#include "imaging/series/detail/series.h"
 
 namespace trephine {
 

@@ -1,7 +1,7 @@
 // The first sorting of a coarse grid's cells, before anything is taken for a couch.
 #pragma once
 
-#include "imaging/steps/coarse_parts.h"
+#include "imaging/steps/detail/coarse_parts.h"
 
 namespace trephine {
 

@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "base/progress.h"
-#include "imaging/dicom/dicom_file.h"
+#include "imaging/dicom/detail/dicom_file.h"
 #include "imaging/report/report.h"
-#include "imaging/series/series_geometry.h"
+#include "imaging/series/detail/series_geometry.h"
 
 namespace trephine {
 

@@ -11,7 +11,7 @@
 
 #include "base/progress.h"
 #include "base/result.h"
-#include "imaging/dicom/dicom_file.h"
+#include "imaging/dicom/detail/dicom_file.h"
 #include "imaging/report/scan_guide.h"
 
 namespace trephine {

@@ -6,8 +6,8 @@
 #include <span>
 
 #include "base/result.h"
-#include "imaging/dicom/dicom_file.h"
-#include "imaging/dicom/transfer_syntax.h"
+#include "imaging/dicom/detail/dicom_file.h"
+#include "imaging/dicom/detail/transfer_syntax.h"
 
 namespace trephine {
 

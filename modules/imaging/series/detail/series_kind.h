@@ -1,7 +1,7 @@
 // What kind of image the slices of a CT series say they are.
 #pragma once
 
-#include "imaging/series/series.h"
+#include "imaging/series/detail/series.h"
 
 namespace trephine {
 

@@ -13,7 +13,7 @@
 
 #include "base/descriptor.h"
 #include "base/progress.h"
-#include "imaging/dicom/stream_bounds.h"
+#include "imaging/dicom/detail/stream_bounds.h"
 
 namespace trephine {
 

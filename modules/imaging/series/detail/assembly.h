@@ -6,9 +6,9 @@
 
 #include "base/progress.h"
 #include "base/result.h"
-#include "imaging/common/hu_sanity_check.h"
-#include "imaging/common/stored_values.h"
-#include "imaging/series/series.h"
+#include "imaging/common/detail/hu_sanity_check.h"
+#include "imaging/common/detail/stored_values.h"
+#include "imaging/series/detail/series.h"
 #include "volume/volume.h"
 
 namespace trephine {

@@ -13,7 +13,7 @@
 #include "base/progress.h"
 #include "base/result.h"
 #include "imaging/common/source_identity.h"
-#include "imaging/common/stored_values.h"
+#include "imaging/common/detail/stored_values.h"
 
 namespace trephine {
 

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "imaging/common/source_identity.h"
-#include "imaging/dicom/dicom_values.h"
+#include "imaging/dicom/detail/dicom_values.h"
 
 namespace trephine {
 

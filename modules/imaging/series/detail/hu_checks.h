@@ -1,8 +1,8 @@
 // What a look at the voxels says of a series, whatever kind of file it comes from.
 #pragma once
 
-#include "imaging/common/hu_sanity_check.h"
-#include "imaging/common/stored_values.h"
+#include "imaging/common/detail/hu_sanity_check.h"
+#include "imaging/common/detail/stored_values.h"
 #include "imaging/report/report.h"
 
 namespace trephine {

@@ -4,8 +4,8 @@
 
 #include <vector>
 
-#include "imaging/series/findings.h"
-#include "imaging/series/series_geometry.h"
+#include "imaging/series/detail/findings.h"
+#include "imaging/series/detail/series_geometry.h"
 
 namespace trephine {
 

@@ -7,8 +7,8 @@
 
 #include "base/progress.h"
 #include "base/result.h"
-#include "imaging/common/hu_sanity_check.h"
-#include "imaging/common/stored_values.h"
+#include "imaging/common/detail/hu_sanity_check.h"
+#include "imaging/common/detail/stored_values.h"
 #include "imaging/report/report.h"
 #include "volume/volume_files.h"
 

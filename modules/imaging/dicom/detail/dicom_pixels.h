@@ -11,8 +11,8 @@
 
 #include "base/progress.h"
 #include "base/result.h"
-#include "imaging/dicom/dicom_file.h"
-#include "imaging/dicom/stream_bounds.h"
+#include "imaging/dicom/detail/dicom_file.h"
+#include "imaging/dicom/detail/stream_bounds.h"
 
 namespace trephine {
 

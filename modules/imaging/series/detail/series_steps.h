@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "imaging/series/series_geometry.h"
+#include "imaging/series/detail/series_geometry.h"
 
 namespace trephine {
 

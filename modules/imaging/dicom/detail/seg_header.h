@@ -8,8 +8,8 @@
 
 #include "base/progress.h"
 #include "base/result.h"
-#include "imaging/dicom/dicom_file.h"
-#include "imaging/dicom/frame_stack.h"
+#include "imaging/dicom/detail/dicom_file.h"
+#include "imaging/dicom/detail/frame_stack.h"
 
 namespace trephine {
 
