@@ -24,9 +24,6 @@ Result<fs::path> storageOf(const std::string& given, const Policy& policy) {
 
 namespace {
 
-constexpr const char* kLeftDevicesOut =
-    "The exercise named devices and how they are set; those of this workstation are used instead.";
-
 std::string listed(const char* title, const std::vector<std::string>& files) {
   std::string text;
   for (const std::string& file : files)
@@ -61,11 +58,9 @@ int importExerciseCommand(const std::string& folder, const std::string& storage,
     printAnswer("exercise-import", {{"scene", imported->exercise.string()},
                                     {"verified", check.verified()},
                                     {"missing", check.missing},
-                                    {"changed", check.changed},
-                                    {"left_devices_out", imported->left_devices_out}});
+                                    {"changed", check.changed}});
   } else if (check.verified()) {
     say("%s\n", cleanUtf8(imported->exercise.string()).c_str());
-    if (imported->left_devices_out) sayError("%s\n", kLeftDevicesOut);
   } else {
     sayError("It is not the exercise that was exported; nothing was written.\n%s%s",
              listed("missing", check.missing).c_str(), listed("changed", check.changed).c_str());

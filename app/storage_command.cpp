@@ -52,7 +52,6 @@ int listStorageCommand(const std::string& storage, bool open, const Policy& poli
         json);
   }
   CaseLibrary library(*at);
-  library.bringUpToDate(progress);
   const std::vector<ListedCase> all = library.list();
   Json cases = Json::array();
   std::size_t bad = 0;

@@ -110,8 +110,6 @@ class Exporter {
       case NamedFile::mesh:
         name = own("tools/", id, ".stl");
         return to_.copyMesh(file, name.get<std::string>());
-      case NamedFile::device:
-        return {};  // the workstation's
       case NamedFile::operatorScript: {
         const Result<OperatorScript> script = readOperatorScript(file, exercise_);
         if (!script) return script.error();
@@ -221,7 +219,6 @@ Result<ExportedExercise> exportExercise(const fs::path& exercise_file,
   const Result<Exercise> exercise = parseExercise(*json, exercise_file);
   if (!exercise) return exercise.error();
   if (Status free = checkFreeFolder(folder); !free) return free.error();
-  for (Json& arm : (*json)["arms"]) arm.erase("device");
   Result<PartFolder> part = PartFolder::make(folder);
   if (!part) return part.error();
   Exporter exporter(exercise_file, *exercise, *part);

@@ -72,11 +72,8 @@ Result<ExerciseCheck> checkExercise(const std::filesystem::path& folder,
 struct ImportedExercise {
   std::filesystem::path exercise;  // in the storage, for `run`; empty where it was not verified
   ExerciseCheck check;
-  // Its exercise named devices and how they are set, which are the workstation's: they were left
-  // out.
-  bool left_devices_out = false;
 };
-// Copies a verified folder to `storage`/exercises, whole or not at all, without devices; what is
+// Copies a verified folder to `storage`/exercises, whole or not at all; what is
 // there already in the same words is taken as it is. Case, structures and script are read to their
 // end from the copy, which holds nothing but the parts. Nothing is kept of one that is not verified
 // or cannot be read. Errors: those of checkExercise, readExercise, readCase and withLabels;

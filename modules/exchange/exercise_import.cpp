@@ -52,9 +52,8 @@ bool liesBeside(const fs::path& folder, const fs::path& part, const fs::path& na
 // Everything that the exercise and its files name is among the parts, and nothing else is. Each
 // file of JSON is read once, however often it is named.
 Status namesPartsAlone(const fs::path& folder, const ExerciseCheck& check, Json& exercise,
-                       const std::set<fs::path>& left_out, const Progress& progress) {
-  std::set<fs::path> parts, read, named = left_out, volumes;
-  named.insert(check.exercise);
+                       const Progress& progress) {
+  std::set<fs::path> parts, read, named{check.exercise}, volumes;
   for (const ExercisePart& part : check.parts) parts.insert(part.file);
   const auto isPart = [&](const std::string& by, const std::string& name) {
     const fs::path file = (fs::path(by).parent_path() / name).lexically_normal();
@@ -113,30 +112,6 @@ Status readWhole(const fs::path& exercise_file, const Progress& progress) {
   const Result<Case> labelled =
       withLabels(*of, exercise->labels_file, Progress(progress, 0.8, 1.0));
   return labelled ? Status() : Status(labelled.error());
-}
-
-// Takes out of an exercise what the workstation chooses itself, as export does.
-struct LeftOut {
-  bool any = false;
-  std::set<fs::path> files;  // that described devices, and are named by nothing else
-};
-LeftOut leaveDevicesOut(Json& exercise) {
-  LeftOut out;
-  (void)eachNamedFile(exercise, [&](NamedFile kind, const std::string&, Json& name) {
-    if (kind == NamedFile::device) {
-      out.files.insert(fs::path(name.get<std::string>()).lexically_normal());
-    }
-    return Status();
-  });
-  const auto arms = exercise.find("arms");
-  if (arms == exercise.end() || !arms->is_array()) return out;
-  for (Json& arm : *arms) out.any = (arm.is_object() && arm.erase("device") > 0) || out.any;
-  (void)eachNamedFile(exercise, [&](NamedFile, const std::string&, Json& name) {
-    out.files.erase(fs::path(name.get<std::string>()).lexically_normal());
-    return Status();
-  });
-  std::erase_if(out.files, [](const fs::path& file) { return !staysWithin(file); });
-  return out;
 }
 
 // The same exercise, in the same words, from an earlier import.
@@ -245,16 +220,12 @@ Result<ImportedExercise> importExercise(const fs::path& folder, const fs::path& 
   if (Status read = verify(folder, *check, Progress(progress, 0.0, 0.3)); !read) {
     return read.error();
   }
-  ImportedExercise imported{{}, *std::move(check), false};
+  ImportedExercise imported{{}, *std::move(check)};
   if (!imported.check.verified()) return imported;
   Result<Json> exercise =
       readJsonFile(folder / imported.check.exercise, progress, kMostWrittenBytes);
   if (!exercise) return exercise.error();
-  const Json as_it_was = *exercise;
-  const LeftOut devices = leaveDevicesOut(*exercise);
-  imported.left_devices_out = devices.any;
-  if (Status names = namesPartsAlone(folder, imported.check, *exercise, devices.files, progress);
-      !names) {
+  if (Status names = namesPartsAlone(folder, imported.check, *exercise, progress); !names) {
     return names.error();
   }
   const Result<Exercise> parsed = parseExercise(*exercise, folder / imported.check.exercise);
@@ -272,20 +243,11 @@ Result<ImportedExercise> importExercise(const fs::path& folder, const fs::path& 
   // The stick may have gone bad, or changed, on the way.
   Result<ExerciseCheck> copy = checkExercise(part->path(), Progress(progress, 0.5, 0.7));
   if (!copy) return copy.error();
-  if (!copy->verified()) return ImportedExercise{{}, *std::move(copy), false};
+  if (!copy->verified()) return ImportedExercise{{}, *std::move(copy)};
   const Result<Json> copied = readJsonFile(part->path() / imported.check.exercise);
-  if (!copied || *copied != as_it_was) {
+  if (!copied || *copied != *exercise) {
     imported.check.changed.push_back(imported.check.exercise);
-    return ImportedExercise{{}, std::move(imported.check), false};
-  }
-  if (imported.left_devices_out) {
-    std::error_code ec;
-    fs::remove(part->path() / kListFile, ec);
-    for (const fs::path& file : devices.files) fs::remove(part->path() / file, ec);
-    const Status written = part->writeText(imported.check.exercise, exercise->dump(1) + '\n');
-    if (!written) return written.error();
-    const auto listed = part->writeList(imported.check.exercise, Progress(progress, 0.7, 0.75));
-    if (!listed) return listed.error();
+    return ImportedExercise{{}, std::move(imported.check)};
   }
   // In a folder that holds its parts alone: a file beside them is read by nobody.
   const Status whole =

@@ -45,13 +45,6 @@ Status eachNamedFile(Json& exercise, const OnNamedFile& on) {
       if (Status done = one(NamedFile::mesh, id, meshOf(tool)); !done) return done;
     }
   }
-  if (exercise.contains("arms") && exercise["arms"].is_array()) {
-    for (Json& arm : exercise["arms"]) {
-      if (!arm.is_object() || !arm.contains("device")) continue;
-      Json* config = textOf(arm["device"], "config");
-      if (Status done = one(NamedFile::device, idOf(arm, "name"), config); !done) return done;
-    }
-  }
   return one(NamedFile::operatorScript, "", textOf(exercise, "operator"));
 }
 

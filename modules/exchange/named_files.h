@@ -9,10 +9,10 @@
 
 namespace trephine {
 
-enum class NamedFile { caseVolume, labels, tissues, tool, mesh, device, operatorScript };
+enum class NamedFile { caseVolume, labels, tissues, tool, mesh, operatorScript };
 
-// Called with each text of the exercise that names a file, which may be changed; `id` is the tool's
-// or arm's. A built-in case is none.
+// Called with each text of the exercise that names a file, which may be changed; `id` is the
+// tool's. A built-in case is none.
 using OnNamedFile = std::function<Status(NamedFile kind, const std::string& id, Json& name)>;
 Status eachNamedFile(Json& exercise, const OnNamedFile& on);
 

@@ -1,10 +1,6 @@
 #include "library/case_library.h"
 
-#include <sys/stat.h>
-#include <unistd.h>
-
 #include <algorithm>
-#include <cerrno>
 #include <new>
 #include <tuple>
 #include <utility>
@@ -32,7 +28,6 @@ using namespace case_folders;
 
 namespace {
 
-constexpr const char* kOldIds = "source_ids";  // in provenance.json, before they were kept by a key
 constexpr std::uint64_t kRoomForTheRest = 4 << 20;  // bytes: report, picture, JSON, folders
 
 Error noSuchCase(const std::string& id) {
@@ -143,31 +138,6 @@ Error ofStorage(Error error, const Folders& folders, std::uint64_t needed) {
   if (Status room = folders.roomFor(needed); !room) return room.error();
   error.where = folders.storage().string();
   return error;
-}
-
-// A report of before names its series by hashes of their UIDs: now by their numbers.
-void numberSeries(Json& report) {
-  if (!report.is_object() || !report.contains("series") || !report["series"].is_array()) return;
-  std::size_t number = 0;
-  for (Json& series : report["series"]) {
-    const std::string name = std::to_string(++number);
-    if (!series.is_object() || !series.contains("uid")) continue;
-    if (report.contains("chosen") && report["chosen"] == series["uid"]) report["chosen"] = name;
-    series["uid"] = name;
-  }
-  if (report.contains("provenance") && report["provenance"].is_object()) {
-    report["provenance"].erase(kOldIds);
-  }
-}
-
-// The row of a report's page that did the same.
-std::string withoutKnownAs(std::string page) {
-  constexpr std::string_view kRow = "<tr><td><b>Known as</b></td>", kEnd = "</tr>\n";
-  for (std::size_t at; (at = page.find(kRow)) != page.npos;) {
-    const std::size_t end = page.find(kEnd, at);
-    page.erase(at, end == page.npos ? page.npos : end + kEnd.size() - at);
-  }
-  return page;
 }
 
 Error savingCancelled() {
@@ -439,11 +409,7 @@ Result<LoadedCase> CaseLibrary::load(const std::string& id, const Progress& prog
     Result<Provenance> provenance = provenanceFrom(*json, id + "/" + file);
     if (!provenance) return provenance.error();
     loaded.provenance = *std::move(provenance);
-    if (json->contains(kOldIds)) {
-      (void)takeIdsOut(id);
-    } else {
-      loaded.provenance->source_ids = idsOf(loaded.record, *loaded.provenance);
-    }
+    loaded.provenance->source_ids = idsOf(loaded.record, *loaded.provenance);
   }
   loaded.volume = std::make_shared<const Volume>(*std::move(volume));
   const std::vector<CaseStructure> listed =
@@ -458,21 +424,6 @@ Result<LoadedCase> CaseLibrary::load(const std::string& id, const Progress& prog
   return outOfMemory("for the case", id);
 }
 
-namespace {
-
-enum class Keeper { we, another, nobody };
-
-// Who has, or would have, what a case keeps for its importer.
-Keeper keeperOf(const CaseRecord& record, const Folders& folders) {
-  const fs::path file =
-      record.names_key.empty() ? record.folder / kCaseFile : folders.privateFile(record.names_key);
-  struct stat of {};
-  if (::stat(file.c_str(), &of) != 0) return errno == ENOENT ? Keeper::nobody : Keeper::another;
-  return of.st_uid == ::geteuid() ? Keeper::we : Keeper::another;
-}
-
-}  // namespace
-
 // Which CT a case is of, as far as this account may know.
 SourceIds CaseLibrary::idsOf(const CaseRecord& record, const Provenance& provenance) const {
   if (record.names_key.empty()) return {};
@@ -481,74 +432,6 @@ SourceIds CaseLibrary::idsOf(const CaseRecord& record, const Provenance& provena
   SourceIds unknown;
   unknown.unreadable = provenance.source == "DICOM";
   return unknown;
-}
-
-// First what is to stay is kept by a key; a program that ends in between begins again.
-Status CaseLibrary::takeIdsOut(const std::string& id) const {
-  // Whoever imported the case keeps which CT it is of; of others nothing is made for nothing.
-  const Result<CaseRecord> seen = record(id);
-  if (!seen) return seen.error();
-  const Keeper keeper = keeperOf(*seen, folders_);
-  if (keeper == Keeper::another) {
-    return Error{code::kCannotRead, "Another account keeps which CT the case is of", id,
-                 "That account changes it when it lists its cases"};
-  }
-  Result<Part> part = Part::make(folders_, Part::Of::someFiles);
-  if (!part) return part.error();
-  const Result<FileLock> list_lock = folders_.lock();
-  if (!list_lock) return list_lock.error();
-  Result<CaseRecord> now = record(id);
-  if (!now) return now.error();
-  Result<Json> json = readJsonFile(now->folder / kProvenanceFile);
-  if (!json) return json.error();
-  const Result<Provenance> provenance = provenanceFrom(*json, id + "/" + kProvenanceFile);
-  if (!provenance) return provenance.error();
-
-  // Of a copy whose guard is not here nobody can keep them any more: they go.
-  const bool first = now->names_key.empty();
-  if (!provenance->source_ids.empty() && keeper == Keeper::we) {
-    Result<NameGuard> guard =
-        first ? NameGuard::of({}) : NameGuard::read(folders_.privateFile(now->names_key));
-    if (!guard) return guard.error();
-    const Result<std::string> key = randomHex(8);
-    if (first && !key) return key.error();
-    if (first) now->names_key = *key;
-    Status kept = guard->setSource(provenance->source_ids);
-    if (kept) kept = writeRecord(*now, *part);
-    if (kept) kept = part->writePrivate(now->names_key, pretty(guard->toJson()));
-    if (kept && first) kept = part->replace(kCaseFile, now->folder);
-    if (!kept) return kept;
-  }
-  const auto replace = [&](const char* file, const std::string& text) {
-    const Status written = writeTextFile(*part / file, text);
-    return written ? part->replace(file, now->folder) : written;
-  };
-  constexpr std::size_t kMostBytes = std::size_t{16} << 20;
-  if (Result<Json> report = readJsonFile(now->folder / kReportFile)) {
-    numberSeries(*report);
-    if (Status done = replace(kReportFile, pretty(*report)); !done) return done;
-  }
-  if (Result<std::string> page = readWholeFile(now->folder / kReportPage, kMostBytes)) {
-    if (Status done = replace(kReportPage, withoutKnownAs(*std::move(page))); !done) return done;
-  }
-  json->erase(kOldIds);
-  return replace(kProvenanceFile, pretty(*json));  // last: it says that there is something to do
-}
-
-void CaseLibrary::bringUpToDate(const Progress& progress) const {
-  std::vector<std::string> old;
-  std::error_code ec;
-  for (fs::directory_iterator it(folders_.cases(), ec), end; !ec && it != end; it.increment(ec)) {
-    if (progress.cancelled()) return;
-    constexpr std::size_t kMostBytes = std::size_t{1} << 20;
-    const Result<std::string> text = readWholeFile(it->path() / kProvenanceFile, kMostBytes);
-    const std::string id = it->path().filename().string();
-    if (text && text->find(kOldIds) != text->npos && isFolderName(id)) old.push_back(id);
-  }
-  for (const std::string& id : old) {
-    if (progress.cancelled()) return;
-    (void)takeIdsOut(id);
-  }
 }
 
 // A program that ended between the structures and their rows in case.json left old ones. The list

@@ -72,11 +72,6 @@ class CaseLibrary {
   // each and looks which files are there.
   std::vector<ListedCase> list() const;
 
-  // Cases of before say by hashes without a key which CT they are of, in provenance.json and the
-  // report: takes them out, and keeps them by a key where this account may. What cannot be changed
-  // stays as it is. A folder without such cases is read alone.
-  void bringUpToDate(const Progress& progress = Progress()) const;
-
   // Whole or not at all. Errors: CANNOT_WRITE (with the room that it needs where that is short),
   // BAD_NAME, NAME_TAKEN, NAME_IS_IDENTITY, WRONG_GRID (structures of another grid), CANCELLED,
   // OUT_OF_MEMORY.
@@ -84,7 +79,7 @@ class CaseLibrary {
 
   // Voxels and grid are compared with what was saved. A case whose tissues or
   // structures cannot be read opens without them. Errors: NO_SUCH_CASE, CASE_PART_MISSING,
-  // CASE_CHANGED, those of list() and of readVolume, CANCELLED.
+  // CASE_CHANGED, OLDER_VERSION, those of list() and of readVolume, CANCELLED.
   Result<LoadedCase> load(const std::string& id, const Progress& progress = Progress());
 
   // Its folder keeps its name. The new one may be that which a case gets by itself. Errors:
@@ -105,7 +100,6 @@ class CaseLibrary {
   Status writeRecord(const CaseRecord& record, const case_folders::Part& part) const;
   void mendRows(const CaseRecord& of) const;
   SourceIds idsOf(const CaseRecord& record, const Provenance& provenance) const;
-  Status takeIdsOut(const std::string& id) const;
   // Folded, of all cases but that one.
   std::set<std::string> namesBeside(const std::string& id) const;
 

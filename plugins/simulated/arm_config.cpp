@@ -9,8 +9,6 @@ namespace {
 using namespace plugin;
 
 constexpr double kMinEncoderStep_m = 1e-9;
-// What files of before say of an arm; the host computes its own bound.
-constexpr const char* kNoLongerRead[] = {"max_stiffness_N_per_m", "max_damping_Ns_per_m"};
 
 // {"value": ..., "source": text, "verified": true or false} -> its value.
 const Json& sourced(const Json& arm, const char* key, const std::string& parent) {
@@ -45,7 +43,6 @@ void readNumber(const Json& arm, const ArmNumber& number, const std::string& par
 ArmConfig parseArm(const Json& arm, const std::string& field) {
   std::vector<std::string_view> keys;
   for (const ArmNumber& number : kArmNumbers) keys.push_back(number.key);
-  for (const char* key : kNoLongerRead) keys.push_back(key);
   checkObject(arm, field, keys);
   ArmConfig config;
   TrephineCapabilities& c = config.capabilities;

@@ -113,8 +113,7 @@ QImage pictureIn(const std::filesystem::path& file) {
   return reader.read();
 }
 
-std::vector<CaseEntry> listCases(const CaseLibrary& library, const Progress& progress) {
-  library.bringUpToDate(progress);
+std::vector<CaseEntry> listCases(const CaseLibrary& library) {
   std::vector<CaseEntry> entries;
   for (const ListedCase& listed : library.list()) {
     CaseEntry entry;

@@ -33,6 +33,6 @@ QString caseWords(const Case& of);
 
 // All that there is to practise on: the library's, the newest first, then the built-in ones. Takes
 // some hundredths of a second a case. Any thread.
-std::vector<CaseEntry> listCases(const CaseLibrary& library, const Progress& progress = Progress());
+std::vector<CaseEntry> listCases(const CaseLibrary& library);
 
 }  // namespace trephine

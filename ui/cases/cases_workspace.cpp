@@ -174,8 +174,8 @@ void CasesWorkspace::open(const std::filesystem::path& path) {
 
 void CasesWorkspace::list() {
   const bool begun = listing_.run(
-      [library = app_.library()](const Progress& progress) -> Result<std::vector<CaseEntry>> {
-        return listCases(*library, progress);
+      [library = app_.library()](const Progress&) -> Result<std::vector<CaseEntry>> {
+        return listCases(*library);
       },
       [this](Result<std::vector<CaseEntry>> entries) {
         if (!entries) return;

@@ -290,24 +290,17 @@ void ExerciseTab::importIt() {
   dialog->setOption(QFileDialog::ShowDirsOnly);
   connect(dialog, &QFileDialog::fileSelected, this, [this](const QString& folder) {
     auto exercise = std::make_shared<std::filesystem::path>();
-    auto without_devices = std::make_shared<bool>(false);
     workstation_.save(
         tr("The exercise is imported."),
-        [from = toPath(folder), storage = app_.storage(), exercise,
-         without_devices](const Progress& progress) -> Status {
+        [from = toPath(folder), storage = app_.storage(),
+         exercise](const Progress& progress) -> Status {
           const auto imported = trephine::importExercise(from, storage, progress);
           if (!imported) return imported.error();
           if (!imported->check.verified()) return notVerified(imported->check);
           *exercise = imported->exercise;
-          *without_devices = imported->left_devices_out;
           return {};
         },
-        [this, exercise, without_devices] {
-          if (*without_devices) {
-            app_.say(
-                tr("The exercise is imported. It named devices and how they are set: those "
-                   "of this workstation are used instead."));
-          }
+        [this, exercise] {
           app_.tellExercises();
           app_.unlessLost({AppContext::UnsavedWork::structures, AppContext::UnsavedWork::cuts,
                            AppContext::UnsavedWork::tissues},

@@ -100,10 +100,9 @@ Result<Provenance> provenanceFrom(const Json& json, const std::string& file) {
   }
   provenance.volume_sha256 = reader.text("volume_sha256");
   if (reader.has("source_ids")) {
-    JsonReader ids = reader.object("source_ids");
-    provenance.source_ids.study = ids.text("study");
-    provenance.source_ids.series = ids.text("series");
-    provenance.source_ids.frame_of_reference = ids.text("frame_of_reference");
+    return Error{"OLDER_VERSION",
+                 "It was written by a Trephine that kept which CT it is of where all may read it",
+                 file, "Import the CT again, and delete what was made of it before"};
   }
   provenance.build = reader.text("build");
   if (Status status = reader.finish(); !status) return status.error();

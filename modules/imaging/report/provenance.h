@@ -13,8 +13,8 @@ namespace trephine {
 
 Json toJson(const Provenance& provenance);
 
-// The same back; `file` is named in errors. Files of before say source_ids, which are taken.
-// Errors: BAD_FIELD.
+// The same back; `file` is named in errors. Errors: BAD_FIELD, OLDER_VERSION (source_ids are in
+// it).
 Result<Provenance> provenanceFrom(const Json& json, const std::string& file);
 
 // "head.nii.gz.provenance.json" for "head.nii.gz".

@@ -61,14 +61,6 @@ TEST(DeviceConfig, WarmthAndLatencyMayBeStatedAndAreNothingElse) {
   EXPECT_EQ(bench.device->capabilities(0).latency_s, 0.0012);
 }
 
-TEST(DeviceConfig, AFileOfBeforeMayHoldTheMakersStiffnessAndDamping) {
-  Json json = omni();
-  for (const char* key : {"max_stiffness_N_per_m", "max_damping_Ns_per_m"}) {
-    json["arm"][key] = {{"value", 700.0}, {"source", "a maker"}, {"verified", false}};
-  }
-  EXPECT_TRUE(test::Bench(json).device);
-}
-
 TEST(DeviceConfig, EveryNumberOfTheOmniSaysWhereItComesFrom) {
   const Json json = omni();
   ASSERT_TRUE(json.contains("arm"));

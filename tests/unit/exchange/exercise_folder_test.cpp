@@ -221,22 +221,17 @@ void listAnew(const fs::path& folder) {
   ASSERT_TRUE(writeTextFile(folder / "exercise.json", list.dump()));
 }
 
-TEST_F(ExerciseFolder, DevicesOfAnotherWorkstationAreLeftOutOfAnImportAndThatIsSaid) {
+TEST_F(ExerciseFolder, OneThatNamesDevicesIsRefusedAndNothingIsWritten) {
   exported(shipped("liver"));
-  EXPECT_FALSE(imported().left_devices_out);
   const fs::path stick = folder_ / "stick";
   Json exercise = *readJsonFile(stick / "scene.json");
-  exercise["arms"][0]["device"] = {{"plugin", "woodenhaptics"}, {"config", "tools/arm.json"}};
+  exercise["arms"][0]["device"] = {{"plugin", "woodenhaptics"}, {"arm", 0}};
   ASSERT_TRUE(writeTextFile(stick / "scene.json", exercise.dump()));
-  ASSERT_TRUE(writeTextFile(stick / "tools/arm.json", R"({"gravity_N": 40})"));
   listAnew(stick);
-  const ImportedExercise there = imported();
-  ASSERT_TRUE(there.check.verified());
-  EXPECT_TRUE(there.left_devices_out);
-  EXPECT_FALSE((*readJsonFile(there.exercise))["arms"][0].contains("device"));
-  EXPECT_FALSE(fs::exists(there.exercise.parent_path() / "tools/arm.json"));
-  EXPECT_TRUE(checkExercise(there.exercise.parent_path())->verified());
-  EXPECT_EQ(imported().exercise, there.exercise) << "the same again is taken as it is";
+  const auto refused = importExercise(stick, folder_ / "there");
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().code, "BAD_FIELD");
+  EXPECT_NE(refused.error().sentence().find("device"), std::string::npos);
 }
 
 TEST_F(ExerciseFolder, APartThatIsListedTwiceOrHasAnUnseenLetterInItsNameIsRefused) {
