@@ -40,6 +40,15 @@ class ArmCheck {
   // True from when it was sure that mass or delay is not as stated.
   bool notAsStated() const { return not_as_stated_; }
 
+  template <class Self, class Archive>
+  static void visitState(Self& self, Archive& archive) {
+    archive(self.more_samples_, self.x_, self.v_, self.a_);
+    archive(self.last_answer_m_, self.last_y_m_, self.since_air_s_, self.in_air_m2_);
+    archive(self.aa_, self.aa_before_, self.yy_, self.noise_);
+    archive(self.ya_, self.ya_before_, self.ya_after_);
+    archive(self.lighter_, self.not_as_stated_);
+  }
+
  private:
   void judgeDelay();
 

@@ -37,6 +37,11 @@ class ArmEstimator {
   // Time constant with which the position follows the samples, less a period [s].
   double lag_s() const { return T_ / gain_[0] - T_; }
 
+  template <class Self, class Archive>
+  static void visitState(Self& self, Archive& archive) {
+    archive(self.x_, self.v_, self.a_, self.started_);
+  }
+
  private:
   void restart(const Vec3& position_m);
 

@@ -47,6 +47,11 @@ struct LearntScale {
   void inContact(double period_s);
   void inAir(double period_s);
 
+  template <class Self, class Archive>
+  static void visitState(Self& self, Archive& archive) {
+    archive(self.value, self.tried_, self.quiet_s_);
+  }
+
  private:
   double tried_ = 1.0;    // the value at which it was lowered last
   double quiet_s_ = 1e9;  // in contact, since then
@@ -74,6 +79,19 @@ class BoundedController {
     return stiffness_.value < damping_.value ? stiffness_.value : damping_.value;
   }
   std::uint32_t parts() const { return parts_; }
+
+  template <class Self, class Archive>
+  static void visitState(Self& self, Archive& archive) {
+    archive(self.most_.damping, self.most_.stiffness);
+    archive(self.estimator_, self.check_, self.hold_, self.counts_, self.sent_N_);
+    archive(self.damping_, self.stiffness_, self.impact_);
+    archive(self.started_, self.was_touching_);
+    archive(self.last_estimate_m_, self.last_seen_m_, self.last_stiffness_);
+    archive(self.credit_J_, self.owed_J_, self.stored_as_seen_J_);
+    archive(self.dissipated_J_, self.most_dissipated_J_);
+    archive(self.last_force_N_, self.variation_N_, self.drift_N_);
+    archive(self.not_obeyed_ticks_, self.held_with_);
+  }
 
  private:
   // Where the arm will be when the force of this tick begins to act, and the credit then.

@@ -36,6 +36,13 @@ class ToolContact {
   // The tissue of each point of the tool, -1 air.
   std::span<const std::int8_t> classes() const { return classes_; }
 
+  template <class Self, class Archive>
+  static void visitState(Self& self, Archive& archive) {
+    archive.same(self.classes_.size());
+    for (auto& one : self.classes_) archive.within(one, -1, kMaxTissues);
+    archive(self.turn_);
+  }
+
  private:
   int classNear(const TissueField& tissue, const Vec3& place) const;
 

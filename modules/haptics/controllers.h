@@ -46,6 +46,11 @@ struct SeedController {
             .parts = last_alpha > 0.0 ? std::uint32_t(kPartDamping) : 0u};
   }
 
+  template <class Self, class Archive>
+  static void visitState(Self& self, Archive& archive) {
+    archive(self.observer_J, self.last_alpha, self.last_vp2);
+  }
+
   double observer_J = 0.0;  // E
   double last_alpha = 0.0;
   double last_vp2 = 0.0;  // |v_p|^2

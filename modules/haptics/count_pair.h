@@ -35,12 +35,22 @@ class CountPair {
     return at_m;
   }
 
+  template <class Self, class Archive>
+  static void visitState(Self& self, Archive& archive) {
+    archive(self.axes_);
+  }
+
  private:
   static constexpr double kSoon_s = 0.1;
   struct Axis {
     double now_m = 0.0, before_m = 0.0;  // the last two counts
     double since_s = 1e9;
     bool back = false;
+
+    template <class Self, class Archive>
+    static void visitState(Self& self, Archive& archive) {
+      archive(self.now_m, self.before_m, self.since_s, self.back);
+    }
   };
   double step_m_, T_;
   std::array<Axis, 3> axes_{};

@@ -20,6 +20,12 @@ class ErrorRule {
   bool away() const { return away_ || kept_; }
   bool kept() const { return kept_; }
 
+  template <class Self, class Archive>
+  static void visitState(Self& self, Archive& archive) {
+    archive(self.said_, self.away_, self.kept_);
+    archive(self.since_said_s_, self.last_begin_s_, self.begin_before_s_);
+  }
+
  private:
   bool said_ = false, away_ = false, kept_ = false;
   double since_said_s_ = 0.0;
@@ -39,6 +45,11 @@ class WarmthRule {
   double limit_N(double most_N, bool warm, double sent_N, const ArmDynamics& arm, double period_s);
   // The last limit was below the most.
   bool limits() const { return limits_; }
+
+  template <class Self, class Archive>
+  static void visitState(Self& self, Archive& archive) {
+    archive(self.share_, self.warmth_, self.limits_);
+  }
 
  private:
   double share_ = 1.0;   // of the most, by the motors' own word

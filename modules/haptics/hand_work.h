@@ -50,6 +50,12 @@ class HandWork {
   double done_J() const { return done_J_; }
   double stored_J() const { return stored_J_; }
 
+  template <class Self, class Archive>
+  static void visitState(Self& self, Archive& archive) {
+    archive(self.done_J_, self.taken_J_, self.motor_J_, self.stored_J_, self.most_lost_J_);
+    archive(self.share_, self.started_, self.shown_);
+  }
+
  private:
   static constexpr double kLeastShare = 1e-6;
   double done_J_ = 0.0, taken_J_ = 0.0, motor_J_ = 0.0, stored_J_ = 0.0, most_lost_J_ = 0.0;

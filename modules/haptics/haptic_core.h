@@ -3,7 +3,9 @@
 // bits. Nothing here allocates, locks, throws or does I/O after construction.
 #pragma once
 
+#include <cstddef>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "haptics/contact.h"
@@ -56,6 +58,21 @@ class HapticCore {
   CarveJournal& journal() { return journal_; }  // for its file
   const Grid& grid() const { return writer_.grid(); }
   const HapticParameters& parameters() const { return parameters_; }
+
+  // ---- Its state as a value, between two ticks: all that the ticks before left behind and one to
+  // come reads. A core that has loaded it goes on, given the same inputs, bit for bit as the saved
+  // one does (core_state_test). For whoever joins late, and for going back and forth in time.
+  //
+  // Not in it: the parameters that no command changes; the volume, and the log of what was removed
+  // from it; what the loop keeps (devices, clock, watchdog, commands that wait), which comes in as
+  // input; carves() and events() of the last tick; and what follows from the rest and is made anew:
+  // look-up tables of the tissues, and what removal and the proxy's search lay out for a pass.
+  std::vector<std::byte> save() const;
+  // Into a core made of the same parameters, on a grid with the same voxels, whose journal has the
+  // same log (journal().log(): append() its entries in order). Errors: BAD_STATE, also where the
+  // parameters are others or the journal is at another place; the core is then as it was.
+  Status load(std::span<const std::byte> bytes);
+
   bool paused() const { return paused_; }
   ControllerKind controller() const { return parameters_.controller; }
   std::uint64_t nonFinite() const { return nonfinite_; }
@@ -77,6 +94,12 @@ class HapticCore {
     Removal removal;
     std::vector<TouchPoint> points;
     Cutting cutting = Cutting::by_hand;
+
+    template <class Self, class Archive>
+    static void visitState(Self& self, Archive& archive) {
+      archive(self.laws, self.contact, self.removal);
+      if (self.proxy) archive(*self.proxy);
+    }
   };
   struct Arm {
     Arm(const ArmParameters& parameters, const HapticParameters& all, const GridGeometry& geometry);
@@ -115,6 +138,20 @@ class HapticCore {
     Vec3 energy_out_J{0.0};
     std::uint32_t faults = 0;
     std::uint64_t air_ticks = 0;  // since the tool was last in tissue
+
+    // The controller is of the kind that was saved.
+    template <class Self, class Archive>
+    static void visitState(Self& self, Archive& archive) {
+      archive(self.tools);
+      archive.within(self.in_hand, 0, std::int64_t(self.tools.size()));
+      archive.within(self.wanted, 0, std::int64_t(self.tools.size()));
+      archive(self.controller, self.limiter, self.errors, self.warmth);
+      archive(self.last_pose, self.tool_mm);
+      archive(self.clutched, self.remap, self.turn_to, self.as_exercise);
+      archive(self.work, self.last_model_N, self.last_elastic_Nm);
+      archive(self.placed, self.waiting, self.not_as_stated, self.hooked_s, self.let_go_share);
+      archive(self.energy_out_J, self.faults, self.air_ticks);
+    }
   };
   // How an arm moved since the last tick, patient axes, and where its tool is: at its proxy.
   struct Motion {
@@ -185,6 +222,13 @@ class HapticCore {
   void endStrokes();
   CarveJournal::Credits credits() const;
   void latch(std::size_t index, std::uint32_t fault, std::uint64_t tick);
+
+  // As a value (haptic_core_state.cpp).
+  template <class Archive>
+  void visitParameters(Archive& archive) const;
+  template <class Self, class Archive>
+  static void visitState(Self& self, Archive& archive);
+  Status read(std::span<const std::byte> state);
 
   HapticParameters parameters_;
   Grid::Writer writer_;

@@ -5,6 +5,7 @@
 //   void add(const LawInput&, ContactForce&)   adds its force on the arm; nothing without contact
 //   void forget()                              after an undo or reset: it begins anew
 //   static Impedance impedance(tissue)         what it demands of a tissue; zero: not its own
+//   static void visitState(self, archive)      its members, if it has any (base/state_archive.h)
 //
 // and, where it is so:
 //
@@ -64,6 +65,10 @@ struct LawOfTool {
       : demanded(points), rendered(points) {}
   void ask(None, const TissueField&, const Pose&, const LawInput&) {}
   void add(L& law, const LawInput& in, ContactForce& out) const { law.add(in, out); }
+  template <class Self, class Archive>
+  static void visitState(Self& self, Archive& archive) {
+    archive(self.demanded, self.rendered);
+  }
 
   using Tissues = None;
   L demanded, rendered;
@@ -80,6 +85,10 @@ struct LawOfTool<L> {
     answer = query.ask(tissues, tissue, tool_mm, in);
   }
   void add(L& law, const LawInput& in, ContactForce& out) const { law.add(in, answer, out); }
+  template <class Self, class Archive>
+  static void visitState(Self& self, Archive& archive) {
+    archive(self.demanded, self.rendered);
+  }
 
   using Tissues = typename L::Tissues;
   L demanded, rendered;

@@ -60,6 +60,15 @@ class Proxy {
 
   static constexpr int kMostSteps = 8;
 
+  template <class Self, class Archive>
+  static void visitState(Self& self, Archive& archive) {
+    archive(self.surface_, self.pose_, self.cutting_);
+    archive(self.gathered_, self.stale_, self.next_stale_, self.gone_);
+    archive(self.travelled_, self.next_travelled_, self.last_step_mm_);
+    archive(self.loaded_, self.stiffness_);
+    archive.within(self.held_by_, -1, kMaxTissues);
+  }
+
  private:
   // Upper bounds of how far the body went: by shifts, and by turns at a distance from the tip.
   struct Travel {
@@ -68,6 +77,11 @@ class Proxy {
     void add(const SmallMotion& motion) {
       shift_mm += glm::length(motion.shift_mm);
       turn += glm::length(motion.turn);
+    }
+
+    template <class Self, class Archive>
+    static void visitState(Self& self, Archive& archive) {
+      archive(self.shift_mm, self.turn);
     }
   };
   // A tick's way towards the arm.

@@ -78,6 +78,16 @@ void Removal::begin(const Capsule& now) {
   const double clear_mm = known_ ? clear_.radius : -layer_mm_;
   goal_.radius = std::min(radius_mm_, std::max(0.0, clear_mm) + layer_mm_);
   if (kind_ == RemovalKind::instant || !known_) goal_.radius = radius_mm_;
+  layOut();
+  slice_ = 0;
+  row_ = -1;
+  paid_ = true;
+  passing_ = true;
+  backwards_ = !backwards_;
+}
+
+// What the pass from what is clear to its goal goes through.
+void Removal::layOut() {
   Capsule from = known_ ? clear_ : goal_;
   from.radius = goal_.radius;
   solid_.set(from, goal_);
@@ -88,12 +98,7 @@ void Removal::begin(const Capsule& now) {
   const Indices columns = indices(solid_.width(), per_spacing_.x, geometry_.size[0]);
   low_[0] = columns.first;
   high_[0] = columns.last;
-  slice_ = 0;
   slice_end_ = high_[2] - low_[2] + 1;
-  row_ = -1;
-  paid_ = true;
-  passing_ = true;
-  backwards_ = !backwards_;
 }
 
 void Removal::end(const Capsule& now) {
@@ -168,12 +173,30 @@ bool Removal::sweepSlices(Tick& tick) {
   return true;
 }
 
+int Removal::sliceNow() const {
+  return backwards_ ? high_[2] - slice_ : low_[2] + slice_;
+}
+
+void Removal::layOutSlice(int k) {
+  const Indices rows = indices(solid_.band(k * spacing_mm_.z), per_spacing_.y, geometry_.size[1]);
+  low_[1] = rows.first;
+  high_[1] = rows.last;
+}
+
+// A pass that another removal began goes on here.
+bool Removal::takeOver() {
+  if (!passing_) return true;
+  layOut();
+  if (slice_ < 0 || slice_ >= slice_end_) return false;
+  if (row_ < 0) return true;
+  layOutSlice(sliceNow());
+  return row_ <= high_[1] - low_[1] + 1;
+}
+
 bool Removal::sweepSlice(Tick& tick) {
-  const int k = backwards_ ? high_[2] - slice_ : low_[2] + slice_;
+  const int k = sliceNow();
   if (row_ < 0) {
-    const Indices rows = indices(solid_.band(k * spacing_mm_.z), per_spacing_.y, geometry_.size[1]);
-    low_[1] = rows.first;
-    high_[1] = rows.last;
+    layOutSlice(k);
     row_ = 0;
   }
   const int rows = high_[1] - low_[1] + 1;

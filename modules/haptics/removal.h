@@ -81,6 +81,17 @@ class Removal {
   // No hand is as fast: beyond this a pose has jumped, sweeps nothing on its way and does no work.
   static constexpr double kFastest_m_s = 5.0;
 
+  template <class Self, class Archive>
+  static void visitState(Self& self, Archive& archive) {
+    archive(self.recent_J_, self.credit_J_, self.lost_J_, self.spent_J_);
+    archive(self.known_, self.clear_, self.last_);
+    archive(self.passing_, self.paid_, self.backwards_, self.goal_);
+    archive(self.slice_, self.row_);
+    if constexpr (Archive::kReads) {
+      if (!self.takeOver()) archive.refuse();
+    }
+  }
+
  private:
   void spend(double price_J) {
     credit_J_ -= price_J;
@@ -108,10 +119,14 @@ class Removal {
   };
   static Indices indices(const Interval& mm, double per_spacing, int count);
   void begin(const Capsule& now);
+  void layOut();
   void end(const Capsule& now);
   bool beginWhereNeeded(const TissueField& tissue, const Capsule& now);
   bool sweepSlices(Tick& tick);
   bool sweepSlice(Tick& tick);
+  int sliceNow() const;
+  void layOutSlice(int k);
+  bool takeOver();
   std::size_t findRows(Tick& tick, int k, int rows, int& next, std::span<Row> batch) const;
   bool sweepRow(Tick& tick, const Row& row);
   bool mayMeetTissue(const TissueField& tissue, const Capsule& now) const;

@@ -31,6 +31,11 @@ class RestHold {
   // All of the force is held.
   bool rests() const { return along_.holding && across_.holding; }
 
+  template <class Self, class Archive>
+  static void visitState(Self& self, Archive& archive) {
+    archive(self.direction_, self.along_, self.across_);
+  }
+
  private:
   struct Window {
     Vec3 low{0.0}, high{0.0};
@@ -38,6 +43,12 @@ class RestHold {
     int ticks = 0;
     bool holding = false;
     Vec3 fading_N{0.0};  // what is left of the jump as the hold ended
+
+    template <class Self, class Archive>
+    static void visitState(Self& self, Archive& archive) {
+      archive(self.low, self.high, self.sum_N);
+      archive(self.ticks, self.holding, self.fading_N);
+    }
   };
   // `rests` is asked of how far the samples of the window lie apart on each axis; a count is worth
   // `count_N`.

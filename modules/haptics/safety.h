@@ -43,6 +43,12 @@ class LatenessRule {
   bool away() const { return away_ || kept_; }
   bool kept() const { return kept_; }
 
+  template <class Self, class Archive>
+  static void visitState(Self& self, Archive& archive) {
+    archive(self.away_, self.kept_);
+    archive(self.since_late_s_, self.last_stall_s_, self.stall_before_s_);
+  }
+
  private:
   bool away_ = false, kept_ = false;
   double since_late_s_ = 0.0;    // s since a tick was more than 5 ms late
@@ -91,6 +97,12 @@ class OutputLimiter {
   // True after restored() while the tool has not been out of tissue: it must not cut either, or an
   // undo with the tool in place would cut at once what it put back.
   bool waitingForAir() const { return waiting_for_air_; }
+
+  template <class Self, class Archive>
+  static void visitState(Self& self, Archive& archive) {
+    archive(self.sent_N_, self.gain_, self.catch_up_s_);
+    archive(self.waiting_for_air_, self.released_, self.fading_N_, self.fading_);
+  }
 
  private:
   Vec3 sent_N_{0.0};

@@ -243,19 +243,51 @@ void SolidSurface::begin(const TissueField& tissue, const PlacedBody& body, Cutt
 
 void SolidSurface::addStretch(const TissueField& tissue, Stretch stretch) {
   const Capsule& axis = stretch.axis;
-  Capsule outer = axis, inner = axis;
-  outer.radius = axis.radius + margin_mm_ + half_diagonal_mm_;
-  inner.radius = axis.radius - half_diagonal_mm_;
-  const Vec3 low = (glm::min(axis.from, axis.to) - outer.radius) / spacing_mm_;
-  const Vec3 high = (glm::max(axis.from, axis.to) + outer.radius) / spacing_mm_;
+  const double outer = axis.radius + margin_mm_ + half_diagonal_mm_;
+  const Vec3 low = (glm::min(axis.from, axis.to) - outer) / spacing_mm_;
+  const Vec3 high = (glm::max(axis.from, axis.to) + outer) / spacing_mm_;
   if (!tissue.mayHoldSolid(low, high)) return;
-  stretch.hollow = inner.radius > 0.0;
-  stretch.around = CapsuleRows(outer);
-  if (stretch.hollow) stretch.within = CapsuleRows(inner);
+  bound(stretch);
   const int apart = cells_[stretch.part].apart[2];
   stretch.plane = int(std::max(0.0, low.z) / apart) * apart;
   stretch.last_plane = std::min(geometry_.size[2] - 1, int(std::max(-1.0, high.z)));
   stretches_.push_back(stretch);
+}
+
+void SolidSurface::bound(Stretch& stretch) const {
+  Capsule outer = stretch.axis, inner = stretch.axis;
+  outer.radius = stretch.axis.radius + margin_mm_ + half_diagonal_mm_;
+  inner.radius = stretch.axis.radius - half_diagonal_mm_;
+  stretch.hollow = inner.radius > 0.0;
+  stretch.around = CapsuleRows(outer);
+  if (stretch.hollow) stretch.within = CapsuleRows(inner);
+}
+
+// A search that another surface began goes on here.
+bool SolidSurface::takeOver() {
+  std::fill(stamp_.begin(), stamp_.end(), 0);
+  turn_ = 1;
+  const auto known = [this](const SurfacePiece& piece) {
+    return std::size_t(piece.part) < cells_.size() && piece.voxel < geometry_.voxelCount();
+  };
+  if (!std::all_of(pieces_.begin(), pieces_.end(), known)) return false;
+  if (!under_way_) return true;
+  if (!std::all_of(next_.begin(), next_.end(), known)) return false;
+  for (Stretch& stretch : stretches_) {
+    if (stretch.part >= cells_.size() || stretch.plane < 0) return false;
+    if (stretch.last_plane >= geometry_.size[2]) return false;
+    bound(stretch);
+  }
+  for (std::size_t n = 0; n < found_.size(); ++n) {
+    const Found& found = found_[n];
+    const std::size_t cell = std::size_t(found.cell);
+    const Index3& v = found.voxel;
+    if (cell >= stamp_.size() || found.part >= cells_.size()) return false;
+    if (!geometry_.contains(v[0], v[1], v[2])) return false;
+    stamp_[cell] = turn_;
+    cell_[cell] = std::int32_t(n);
+  }
+  return true;
 }
 
 bool SolidSurface::goOn(const TissueField& tissue, int work) {
@@ -373,11 +405,11 @@ void SolidSurface::find(const Index3& voxel, const Stretch& stretch) {
   if (stamp_[cell] != turn_) {
     stamp_[cell] = turn_;
     cell_[cell] = std::int32_t(found_.size());
-    found_.push_back({voxel, stretch.part, away, distance2});
+    found_.push_back({voxel, stretch.part, away, distance2, std::int32_t(cell)});
     return;
   }
   Found& nearest = found_[std::size_t(cell_[cell])];
-  if (distance2 < nearest.distance2_mm2) nearest = {voxel, stretch.part, away, distance2};
+  if (distance2 < nearest.distance2_mm2) nearest = {voxel, stretch.part, away, distance2, std::int32_t(cell)};
 }
 
 void SolidSurface::addPiece(const TissueField& tissue, const Found& found) {

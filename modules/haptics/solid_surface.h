@@ -12,6 +12,19 @@
 
 namespace trephine {
 
+// A tool's body at a pose, patient axes.
+struct PlacedBody {
+  static constexpr std::size_t kMost = 4;
+  struct Part {
+    Vec3 from_mm{0.0}, along_mm{0.0};
+    double per_length2 = 0.0;  // 1 / |along|^2, 0 for a sphere
+    double radius_mm = 0.0;
+  };
+  std::array<Part, kMost> parts;
+  std::size_t count = 0;
+  Vec3 tip_mm{0.0};
+};
+
 // A disk on the surface of a voxel of solid tissue that borders on what is not solid, placed within
 // the voxel by partial volume, or a small sphere where the voxel has no clear side (a plate as thin
 // as a voxel). Disks of neighbours overlap, so that nothing slips between them.
@@ -26,6 +39,15 @@ struct SurfacePiece {
   bool flat = false;       // the surface around it is a plane
   // The proxy's: the gap when it was last looked at, and how far the tool had travelled then.
   double gap_mm = 0.0, travelled_mm = 0.0;
+
+  template <class Self, class Archive>
+  static void visitState(Self& self, Archive& archive) {
+    archive(self.at_mm, self.normal, self.size_mm);
+    archive.within(self.part, 0, std::int64_t(PlacedBody::kMost));
+    archive(self.voxel);
+    archive.within(self.tissue_class, 0, kMaxTissues);
+    archive(self.cuttable, self.flat, self.gap_mm, self.travelled_mm);
+  }
 };
 
 // Where a part of the body touches a piece, or would.
@@ -33,19 +55,6 @@ struct Touch {
   double gap_mm = 0.0;      // below 0: inside
   Vec3 normal{0.0};         // from the piece to the tool
   Vec3 lever_mm{0.0};       // from the tool's tip to where it touches
-};
-
-// A tool's body at a pose, patient axes.
-struct PlacedBody {
-  static constexpr std::size_t kMost = 4;
-  struct Part {
-    Vec3 from_mm{0.0}, along_mm{0.0};
-    double per_length2 = 0.0;  // 1 / |along|^2, 0 for a sphere
-    double radius_mm = 0.0;
-  };
-  std::array<Part, kMost> parts;
-  std::size_t count = 0;
-  Vec3 tip_mm{0.0};
 };
 
 Touch touchOf(const SurfacePiece& piece, const PlacedBody& body);
@@ -96,6 +105,21 @@ class SolidSurface {
   double near_reach_mm() const { return near_reach_mm_; }
   static constexpr double kFar = 4.0;
 
+  template <class Self, class Archive>
+  static void visitState(Self& self, Archive& archive) {
+    archive.grown(self.pieces_);
+    archive(self.near_reach_mm_, self.work_, self.under_way_);
+    if (self.under_way_) {
+      archive(self.cutting_, self.next_reach_mm_, self.done_, self.searched_, self.made_);
+      archive.grown(self.stretches_);
+      archive.grown(self.found_);
+      archive.grown(self.next_);
+    }
+    if constexpr (Archive::kReads) {
+      if (!self.takeOver()) archive.refuse();
+    }
+  }
+
  private:
   struct Cells {
     int along = 1, directions = 2, first = 0;  // of a part
@@ -108,9 +132,17 @@ class SolidSurface {
     double per_length2 = 0.0;
     double from = 0.0, share = 1.0;  // where on the part's axis it begins, how much of it it is
     std::size_t part = 0;
-    CapsuleRows around, within;  // solid tissue is looked for between the two
+    // Solid tissue is looked for between the two, which follow from the axis.
+    CapsuleRows around, within;
     bool hollow = false;
     int plane = 0, last_plane = -1;  // the next to be looked at
+
+    template <class Self, class Archive>
+    static void visitState(Self& self, Archive& archive) {
+      archive(self.axis, self.along, self.per_length2, self.from, self.share);
+      archive.within(self.part, 0, std::int64_t(PlacedBody::kMost));
+      archive(self.plane, self.last_plane);
+    }
   };
   // A row of voxels; where right > left, what is between them is not looked at.
   struct Row {
@@ -123,8 +155,18 @@ class SolidSurface {
     std::size_t part = 0;
     Vec3 away_mm{0.0};  // from the part's axis, in the grid's own axes
     double distance2_mm2 = 0.0;
+    std::int32_t cell = 0;
+
+    template <class Self, class Archive>
+    static void visitState(Self& self, Archive& archive) {
+      archive(self.voxel);
+      archive.within(self.part, 0, std::int64_t(PlacedBody::kMost));
+      archive(self.away_mm, self.distance2_mm2, self.cell);
+    }
   };
   void addStretch(const TissueField& tissue, Stretch stretch);
+  void bound(Stretch& stretch) const;
+  bool takeOver();
   int searchPlane(const TissueField& tissue, Stretch& stretch);
   void searchRows(const TissueField& tissue, const Stretch& stretch, std::span<const Row> rows);
   void find(const Index3& voxel, const Stretch& stretch);

@@ -15,6 +15,11 @@ struct Capsule {
   Vec3 from{0.0}, to{0.0};
   double radius = 0.0;
   bool isSphere() const { return from == to; }
+
+  template <class Self, class Archive>
+  static void visitState(Self& self, Archive& archive) {
+    archive(self.from, self.to, self.radius);
+  }
 };
 
 // From `low` to `high`; empty where low > high.

@@ -46,9 +46,25 @@ class TissueBricks {
     return anyIn(low, high, [](const Brick& brick) { return brick.solid > 0; });
   }
 
+  template <class Self, class Archive>
+  static void visitState(Self& self, Archive& archive) {
+    archive(self.count_);
+    archive.within(self.next_, 0, std::int64_t(self.count_.size()));
+    if constexpr (Archive::kReads) {
+      self.unknown_ = std::size_t(
+          std::count_if(self.count_.begin(), self.count_.end(),
+                        [](const Brick& brick) { return brick.tissue == kUnknown; }));
+    }
+  }
+
  private:
   struct Brick {
     std::uint16_t tissue = 0, solid = 0;  // voxels
+
+    template <class Self, class Archive>
+    static void visitState(Self& self, Archive& archive) {
+      archive(self.tissue, self.solid);
+    }
   };
   static constexpr std::uint16_t kUnknown = 65535;
   static constexpr Brick kUnknownBrick{kUnknown, kUnknown};

@@ -73,6 +73,11 @@ class TissueField {
     return std::int64_t(geometry.indexOf(int(v.x), int(v.y), int(v.z)));
   }
 
+  template <class Self, class Archive>
+  static void visitState(Self& self, Archive& archive) {
+    archive(self.bricks_);
+  }
+
  private:
   const Grid& grid_;
   TissueTable tissues_;

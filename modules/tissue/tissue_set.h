@@ -128,6 +128,12 @@ struct TissueClass : TickNumbers {
   std::int32_t solid = 0;  // a tool stops at it
   std::int32_t reserved = 0;
   friend bool operator==(const TissueClass&, const TissueClass&) = default;
+
+  template <class Self, class Archive>
+  static void visitState(Self& self, Archive& archive) {
+    for (const TissueNumber& number : kTissueNumbers) archive(self.*number.in_tick);
+    archive(self.hu_min, self.hu_max, self.cuttable, self.label, self.solid);
+  }
 };
 
 struct TissueTable {
@@ -135,6 +141,12 @@ struct TissueTable {
   std::int32_t reserved = 0;
   std::array<TissueClass, kMaxTissues> classes{};
   friend bool operator==(const TissueTable&, const TissueTable&) = default;
+
+  template <class Self, class Archive>
+  static void visitState(Self& self, Archive& archive) {
+    archive.within(self.count, 0, std::int64_t(kMaxTissues) + 1);
+    archive(self.classes);
+  }
 };
 
 // Classes keep the order of the set's tissues, which must be valid.

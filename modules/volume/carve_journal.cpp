@@ -270,4 +270,60 @@ void CarveJournal::finishJob() {
   }
 }
 
+// ---- As a state.
+
+// FNV-1a, 64 bits.
+std::uint64_t CarveJournal::hashOfPlace(const Grid& grid) const {
+  std::uint64_t hash = 0xCBF29CE484222325u;
+  const auto add = [&hash](std::uint64_t number) {
+    for (int byte = 0; byte < 8; ++byte) {
+      hash = (hash ^ (number >> (8 * byte) & 0xFFu)) * 0x100000001B3u;
+    }
+  };
+  const std::size_t voxels = grid.geometry().voxelCount();
+  add(log_.size());
+  for (std::uint64_t n = log_.ringBegin(); n < log_.size(); ++n) {
+    const CarveEntry& entry = log_.at(n);
+    const bool stands = entry.voxel < voxels && grid.hu(entry.voxel) == kAirHu;
+    add(std::uint64_t(entry.voxel) << 32 | std::uint64_t(std::uint16_t(entry.hu)) << 16 |
+        entry.tag);
+    add(stands);
+  }
+  return hash;
+}
+
+// Whether everything that is named is there.
+bool CarveJournal::isWhole() const {
+  const auto isStroke = [this](std::uint32_t n) { return n == kNone || n < stroke_count_; };
+  const auto isBranch = [this](std::uint32_t n) { return n < branch_count_; };
+  const auto isPlace = [&](const Place& place) {
+    return isBranch(place.branch) && place.entry <= log_.size();
+  };
+  bool whole = branch_count_ > 0 && mark_count_ > 0 && settled_marks_ > 0 &&
+               settled_marks_ <= mark_count_ && isPlace(here_) && isBranch(tip_branch_) &&
+               isStroke(top_) && isStroke(redo_top_);
+  for (std::size_t n = 0; n < branch_count_; ++n) {
+    const Branch& branch = branches_[n];
+    whole = whole && isPlace(branch.parent) && (n == 0 || branch.parent.branch < n) &&
+            branch.first <= log_.size() && branch.end <= log_.size() &&
+            (branch.way_down == kNone || isBranch(branch.way_down));
+  }
+  for (std::size_t n = 0; n < stroke_count_; ++n) {
+    const Stroke& stroke = strokes_[n];
+    const bool undone = stroke.undone_from.branch != kNone;
+    whole = whole && stroke.first <= stroke.end && stroke.end <= log_.size() &&
+            isBranch(stroke.branch) && isStroke(stroke.below) && isStroke(stroke.redo_below) &&
+            (!undone || (isPlace(stroke.undone_from) && isPlace(stroke.undone_to)));
+  }
+  for (std::size_t n = 0; n < mark_count_; ++n) {
+    whole = whole && isPlace(marks_[n].place) && isStroke(marks_[n].top);
+  }
+  for (std::uint32_t open : open_) whole = whole && isStroke(open);
+  if (!busy_) return whole;
+  return whole && isPlace(target_) && isPlace(stretch_to_) && isStroke(job_top_) &&
+         isStroke(job_redo_top_) && isBranch(meet_branch_) &&
+         (way_down_ == kNone || isBranch(way_down_)) && cursor_ <= log_.size() &&
+         limit_ <= log_.size() && stretch_arm_ < kMaxArms;
+}
+
 }  // namespace trephine

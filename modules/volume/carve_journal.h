@@ -105,6 +105,28 @@ class CarveJournal {
   // For JournalFile.
   CarveLog& log() { return log_; }
 
+  // The tree, the strokes, the marks, the place and the job, not the entries of the log: these are
+  // the volume's. A reader has a log with the same entries and a grid at the same place, which
+  // hashOfPlace() tells.
+  template <class Self, class Archive>
+  static void visitState(Self& self, Archive& archive) {
+    archive.firstOf(self.branches_, self.branch_count_);
+    archive.firstOf(self.strokes_, self.stroke_count_);
+    archive.firstOf(self.marks_, self.mark_count_);
+    archive(self.settled_marks_, self.here_, self.tip_branch_, self.top_, self.redo_top_);
+    archive(self.open_, self.removed_, self.paid_, self.busy_);
+    if (self.busy_) {
+      archive(self.target_, self.job_top_, self.job_redo_top_, self.job_credits_);
+      archive(self.climbing_, self.meet_branch_, self.way_down_);
+      archive(self.cursor_, self.limit_, self.stretch_arm_, self.stretch_to_);
+    }
+    if constexpr (Archive::kReads) {
+      if (!self.isWhole()) archive.refuse();
+    }
+  }
+  // Of the log's length, of the entries that the ring holds, and of which of them the grid lacks.
+  std::uint64_t hashOfPlace(const Grid& grid) const;
+
  private:
   static constexpr std::uint32_t kNone = ~std::uint32_t(0);
 
@@ -113,6 +135,11 @@ class CarveJournal {
     std::uint32_t branch = 0;
     std::uint64_t entry = 0;
     friend bool operator==(const Place&, const Place&) = default;
+
+    template <class Self, class Archive>
+    static void visitState(Self& self, Archive& archive) {
+      archive(self.branch, self.entry);
+    }
   };
   // Removal: entries from `first` on, in order. Undo of a stroke: the entries of `arm` in
   // [first, end), put back; its only place has the entry `first`.
@@ -123,6 +150,13 @@ class CarveJournal {
     std::int32_t arm = -1;           // -1: removal
     std::uint32_t way_down = kNone;  // the next branch of a job's way down
     bool isUndo() const { return arm >= 0; }
+
+    template <class Self, class Archive>
+    static void visitState(Self& self, Archive& archive) {
+      archive(self.parent, self.first, self.end);
+      archive.within(self.arm, -1, kMaxArms);
+      archive(self.way_down);
+    }
   };
   struct Stroke {
     std::uint64_t first = 0;  // its entries are those of its arm in [first, end)
@@ -136,11 +170,23 @@ class CarveJournal {
     std::uint32_t redo_below = kNone;  // the stroke that redo takes next, while this is undone
     Place undone_from{kNone, 0};       // where it was undone last, and where that led
     Place undone_to{kNone, 0};
+
+    template <class Self, class Archive>
+    static void visitState(Self& self, Archive& archive) {
+      archive(self.first, self.end, self.voxels, self.credits, self.credit_before_undo);
+      archive.within(self.arm, 0, kMaxArms);
+      archive(self.branch, self.below, self.redo_below, self.undone_from, self.undone_to);
+    }
   };
   struct Mark {
     Place place;
     std::uint32_t top = kNone;
     Credits credits{};
+
+    template <class Self, class Archive>
+    static void visitState(Self& self, Archive& archive) {
+      archive(self.place, self.top, self.credits);
+    }
   };
   struct Slice {
     std::uint64_t first, end;
@@ -157,6 +203,7 @@ class CarveJournal {
   Slice nextSlice(std::size_t max_voxels) const;
   void finishJob();
   void count(const CarveEntry& entry, bool taken);
+  bool isWhole() const;
 
   CarveLog log_;
   std::vector<Branch> branches_;  // a parent has the smaller number; 0 is the root

@@ -19,6 +19,10 @@ struct CoulombLaw {
   void add(const LawInput& in, ContactForce& out);
   void forget() { stiffness.assign(stiffness.size(), 0.0); }
   void engage() { forget(); }
+  template <class Self, class Archive>
+  static void visitState(Self& self, Archive& archive) {
+    archive(self.anchors_m, self.stiffness);
+  }
 
   std::vector<Vec3> anchors_m;
   std::vector<double> stiffness;  // of each point's spring; 0: no anchor

@@ -50,6 +50,10 @@ struct ElasticLaw {
   static Impedance impedance(const TissueClass& tissue) { return {0.0, tissue.stiffness_N_per_m}; }
   void add(const LawInput& in, const Answer& answer, ContactForce& out);
   void forget() { *this = ElasticLaw(); }
+  template <class Self, class Archive>
+  static void visitState(Self& self, Archive& archive) {
+    archive(self.normal, self.depth_m, self.centre_m, self.stiffness, self.parted, self.most_N);
+  }
 
   Vec3 normal{0.0};  // the last clear one, out of the tissue
   // Of a sphere whose centre is in tissue: its depth, where its centre was in the tick before, and

@@ -23,6 +23,11 @@ struct RuptureLaw {
   }
   void add(const LawInput& in, ContactForce& out);
   void forget() { *this = RuptureLaw(); }
+  template <class Self, class Archive>
+  static void visitState(Self& self, Archive& archive) {
+    archive.within(self.stretched, -1, std::int64_t(kMaxTissues));
+    archive(self.ruptured, self.entry_m, self.inwards);
+  }
 
   std::int32_t stretched = -1;  // the tissue class that is being pressed in
   std::uint32_t ruptured = 0;   // bit c: class c has given way
