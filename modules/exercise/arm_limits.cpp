@@ -35,19 +35,12 @@ bool isForce(const TissueNumber& number) {
 
 bool isFelt(const TissueNumber& number, const Tissue& tissue, const std::vector<LawKind>& laws,
             RemovalKind removal) {
-  const std::string_view key = number.key;
-  const bool elastic = names(laws, LawKind::elastic), coulomb = names(laws, LawKind::coulomb);
-  const bool rupture = names(laws, LawKind::rupture);
-  const bool stiff = tissue.stiffness_N_per_m.value > 0.0, rubs = tissue.friction_N.value > 0.0;
-  const bool tears = tissue.rupture_N && tissue.rupture_N->value > 0.0;
-  if (key == "damping_Ns_per_m") return names(laws, LawKind::viscous);
-  if (key == "stiffness_N_per_m") {
-    return elastic || (coulomb && rubs) || (rupture && tears);
-  }
-  if (key == "friction_N") return coulomb && stiff;
-  if (key == "rupture_N") return rupture && stiff;
-  if (key == "cutting_J_per_mm3") return removal == RemovalKind::work && tissue.cuttable;
-  return true;
+  const bool cuts = number.in_tick == &TickNumbers::cutting_J_per_mm3;
+  if (cuts && removal == RemovalKind::work && tissue.cuttable) return true;
+  TickNumbers numbers;
+  for (const TissueNumber& one : kTissueNumbers) numbers.*one.in_tick = one.valueOf(tissue);
+  return std::any_of(laws.begin(), laws.end(),
+                     [&](LawKind law) { return feels(law, number.in_tick, numbers); });
 }
 
 bool isWeaker(const TissueNumber& number, const Tissue& tissue, const ArmsLimit& arms,

@@ -9,6 +9,7 @@
 
 #include "base/math.h"
 #include "haptics/arm_dynamics.h"
+#include "haptics/law_words.h"
 #include "haptics/proxy.h"
 #include "tissue/tissue_set.h"
 

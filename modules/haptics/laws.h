@@ -1,6 +1,10 @@
 // The force laws that an exercise can name. Each is a small type in its own file under laws/,
 // created only when the exercise names it:
 //
+//   static constexpr LawWords kWords           what it is called and does
+//   static constexpr std::array kNumbers       which numbers of a tissue it uses, as members of
+//                                              TickNumbers; where one of them is 0, the others do
+//                                              nothing by this law
 //   explicit Law(points)                       room for a tool of so many points
 //   void add(const LawInput&, ContactForce&)   adds its force on the arm; nothing without contact
 //   void forget()                              after an undo or reset: it begins anew
@@ -20,12 +24,13 @@
 //   struct Tissues                             what it makes of the tissues for that, for all tools
 //     void use(const TissueTable&, std::uint32_t acts_in)   bit c: it acts in class c
 //
-// To add a law: its file, its lines here, its tests (README.md).
+// To add a law: its file, its include and its place in the list here, its tests (README.md).
 #pragma once
 
 #include <algorithm>
 #include <array>
 #include <optional>
+#include <span>
 #include <string_view>
 #include <tuple>
 #include <type_traits>
@@ -44,13 +49,9 @@ template <class... Laws>
 struct LawList {};
 using AllLaws = LawList<ViscousLaw, CoulombLaw, ElasticLaw, RuptureLaw>;
 
-// In the order of the list.
+// A law's place in the list. Those that are spoken of elsewhere have a name here; that of any is
+// kLawKind.
 enum class LawKind { viscous, coulomb, elastic, rupture };
-inline constexpr std::array<std::pair<std::string_view, LawKind>, 4> kLawNames{
-    {{"viscous", LawKind::viscous},
-     {"coulomb", LawKind::coulomb},
-     {"elastic", LawKind::elastic},
-     {"rupture", LawKind::rupture}}};
 
 inline bool names(const std::vector<LawKind>& laws, LawKind law) {
   return std::find(laws.begin(), laws.end(), law) != laws.end();
@@ -65,6 +66,7 @@ struct LawOfTool {
       : demanded(points), rendered(points) {}
   void ask(None, const TissueField&, const Pose&, const LawInput&) {}
   void add(L& law, const LawInput& in, ContactForce& out) const { law.add(in, out); }
+
   template <class Self, class Archive>
   static void visitState(Self& self, Archive& archive) {
     archive(self.demanded, self.rendered);
@@ -85,6 +87,7 @@ struct LawOfTool<L> {
     answer = query.ask(tissues, tissue, tool_mm, in);
   }
   void add(L& law, const LawInput& in, ContactForce& out) const { law.add(in, answer, out); }
+
   template <class Self, class Archive>
   static void visitState(Self& self, Archive& archive) {
     archive(self.demanded, self.rendered);
@@ -99,6 +102,8 @@ struct LawOfTool<L> {
 namespace detail {
 
 struct LawTraits {
+  LawWords words{};
+  std::span<double TickNumbers::*const> numbers;
   Impedance (*impedance)(const TissueClass&) = nullptr;
   std::optional<LawKind> stands_in_for;
   bool stops_at_solid = false;
@@ -113,6 +118,8 @@ constexpr LawKind kindOf(LawList<Laws...>) {
 template <class L>
 constexpr LawTraits traitsOf() {
   LawTraits traits;
+  traits.words = L::kWords;
+  traits.numbers = L::kNumbers;
   traits.impedance = &L::impedance;
   if constexpr (requires { typename L::StandsInFor; }) {
     traits.stands_in_for = kindOf<typename L::StandsInFor>(AllLaws{});
@@ -123,6 +130,13 @@ constexpr LawTraits traitsOf() {
 template <class... Laws>
 constexpr std::array<LawTraits, sizeof...(Laws)> traitsOfAll(LawList<Laws...>) {
   return {traitsOf<Laws>()...};
+}
+template <std::size_t N>
+constexpr std::array<std::pair<std::string_view, LawKind>, N> namesOf(
+    const std::array<LawTraits, N>& laws) {
+  std::array<std::pair<std::string_view, LawKind>, N> names{};
+  for (std::size_t n = 0; n < N; ++n) names[n] = {laws[n].words.id, LawKind(n)};
+  return names;
 }
 
 template <class List>
@@ -135,8 +149,30 @@ struct Made<LawList<Laws...>> {
 
 }  // namespace detail
 
+template <class L>
+inline constexpr LawKind kLawKind = detail::kindOf<L>(AllLaws{});
+static_assert(kLawKind<ViscousLaw> == LawKind::viscous);
+static_assert(kLawKind<CoulombLaw> == LawKind::coulomb);
+static_assert(kLawKind<ElasticLaw> == LawKind::elastic);
+static_assert(kLawKind<RuptureLaw> == LawKind::rupture);
+
 inline constexpr auto kLawTraits = detail::traitsOfAll(AllLaws{});
-static_assert(kLawTraits.size() == kLawNames.size());
+// By the laws' ids, in files.
+inline constexpr auto kLawNames = detail::namesOf(kLawTraits);
+
+constexpr const LawWords& wordsOf(LawKind law) {
+  return kLawTraits[std::size_t(law)].words;
+}
+// Whether a law has a use for a number of a tissue: it uses it, and the tissue has whatever else it
+// uses.
+inline bool feels(LawKind law, double TickNumbers::*number, const TickNumbers& tissue) {
+  bool uses = false, has_others = true;
+  for (double TickNumbers::*one : kLawTraits[std::size_t(law)].numbers) {
+    uses = uses || one == number;
+    has_others = has_others && (one == number || tissue.*one > 0.0);
+  }
+  return uses && has_others;
+}
 
 using Law = detail::Made<AllLaws>::OfTool;
 

@@ -18,34 +18,6 @@ namespace trephine {
 
 namespace {
 
-QString lawName(LawKind law) {
-  switch (law) {
-    case LawKind::viscous:
-      return ToolsPanel::tr("Viscous");
-    case LawKind::coulomb:
-      return ToolsPanel::tr("Coulomb");
-    case LawKind::elastic:
-      return ToolsPanel::tr("Elastic");
-    case LawKind::rupture:
-      return ToolsPanel::tr("Rupture");
-  }
-  return {};
-}
-
-QString lawMeaning(LawKind law) {
-  switch (law) {
-    case LawKind::viscous:
-      return ToolsPanel::tr("Tissue resists speed: f = -b v, the seed paper's puncture and cutting.");
-    case LawKind::coulomb:
-      return ToolsPanel::tr("Dry friction: a tool that rests is held, one that slides is braked.");
-    case LawKind::elastic:
-      return ToolsPanel::tr("Tissue pushes back with its stiffness, and solid tissue stops a tool.");
-    case LawKind::rupture:
-      return ToolsPanel::tr("A capsule gives way at its rupture force, and the force drops.");
-  }
-  return {};
-}
-
 // What laws and controllers cost holds while these alone are changed.
 bool sameButLaws(Exercise a, const Exercise& b) {
   a.laws = b.laws;
@@ -389,7 +361,8 @@ void ToolsPanel::buildLaws() {
 void ToolsPanel::describeCosts() {
   (*laws_)["laws"].describe([this](const std::string& name) {
     const LawKind law = *kindOf(kLawNames, name);
-    return FieldEditor::ChoiceText{lawName(law), lawMeaning(law), costOf(costs_.laws, law)};
+    const LawWords& words = wordsOf(law);
+    return FieldEditor::ChoiceText{tr(words.name), tr(words.meaning), costOf(costs_.laws, law)};
   });
   (*laws_)["controller"].describe([this](const std::string& name) {
     const ControllerKind kind = *kindOf(kControllerNames, name);

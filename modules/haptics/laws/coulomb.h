@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "haptics/contact_force.h"
@@ -14,11 +15,17 @@ namespace trephine {
 // tissue its stretch shrinks with 1 / k, so that the force goes on from what it was. k is the tissue's stiffness [N/m],
 // F its friction [N], both for the whole tool.
 struct CoulombLaw {
+  static constexpr LawWords kWords{
+      "coulomb", "Coulomb",
+      "Dry friction: a tool that rests is held, one that slides is braked."};
+  static constexpr std::array kNumbers{&TickNumbers::stiffness_N_per_m, &TickNumbers::friction_N};
+
   explicit CoulombLaw(std::size_t points = 1) : anchors_m(points), stiffness(points, 0.0) {}
   static Impedance impedance(const TissueClass& tissue) { return {0.0, tissue.stiffness_N_per_m}; }
   void add(const LawInput& in, ContactForce& out);
   void forget() { stiffness.assign(stiffness.size(), 0.0); }
   void engage() { forget(); }
+
   template <class Self, class Archive>
   static void visitState(Self& self, Archive& archive) {
     archive(self.anchors_m, self.stiffness);

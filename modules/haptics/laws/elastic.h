@@ -1,5 +1,7 @@
 #pragma once
 
+#include <array>
+
 #include "haptics/contact_force.h"
 #include "haptics/contact_sphere.h"
 #include "haptics/law_input.h"
@@ -18,6 +20,11 @@ namespace trephine {
 // made. For a sharp tool, which cuts the tissue open, the push fades as the sphere sinks in and
 // does not come back on the way out.
 struct ElasticLaw {
+  static constexpr LawWords kWords{
+      "elastic", "Elastic",
+      "Tissue pushes back with its stiffness, and solid tissue stops a tool."};
+  static constexpr std::array kNumbers{&TickNumbers::stiffness_N_per_m};
+
   static constexpr bool kStopsAtSolid = true;
 
   // The stiffness that pushes on a contact sphere: of soft tissue in which the law acts. What is
@@ -50,6 +57,7 @@ struct ElasticLaw {
   static Impedance impedance(const TissueClass& tissue) { return {0.0, tissue.stiffness_N_per_m}; }
   void add(const LawInput& in, const Answer& answer, ContactForce& out);
   void forget() { *this = ElasticLaw(); }
+
   template <class Self, class Archive>
   static void visitState(Self& self, Archive& archive) {
     archive(self.normal, self.depth_m, self.centre_m, self.stiffness, self.parted, self.most_N);

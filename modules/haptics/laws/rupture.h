@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 
 #include "haptics/contact_force.h"
@@ -15,6 +16,10 @@ struct ElasticLaw;
 // at |x - entry| = F_r / k the tissue ruptures and stays so until the tool has left all tissue. A
 // tip that draws back before that leaves it whole. One capsule at a time.
 struct RuptureLaw {
+  static constexpr LawWords kWords{
+      "rupture", "Rupture", "A capsule gives way at its rupture force, and the force drops."};
+  static constexpr std::array kNumbers{&TickNumbers::stiffness_N_per_m, &TickNumbers::rupture_N};
+
   explicit RuptureLaw(std::size_t /*points*/ = 1) {}
   // Of a capsule alone, which pushes by this law and not by the elastic one.
   using StandsInFor = ElasticLaw;
@@ -23,6 +28,7 @@ struct RuptureLaw {
   }
   void add(const LawInput& in, ContactForce& out);
   void forget() { *this = RuptureLaw(); }
+
   template <class Self, class Archive>
   static void visitState(Self& self, Archive& archive) {
     archive.within(self.stretched, -1, std::int64_t(kMaxTissues));

@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <string_view>
 
 namespace trephine {
 namespace {
@@ -312,6 +314,37 @@ TEST(RuptureLaw, GivesWayAtTheSamePlaceWhateverTheArmRenders) {
   at(0.0);
   EXPECT_NEAR(at(-0.00124), 0.496, 1e-12);
   EXPECT_EQ(at(-0.00126), 0.0);
+}
+
+TEST(Laws, EachSayWhatTheyAreCalledAndDo) {
+  ASSERT_EQ(kLawNames.size(), kLawTraits.size());
+  for (const auto& [name, law] : kLawNames) {
+    const LawWords& words = wordsOf(law);
+    EXPECT_EQ(name, words.id);
+    EXPECT_EQ(std::count_if(kLawNames.begin(), kLawNames.end(),
+                            [&](const auto& other) { return other.first == words.id; }),
+              1)
+        << words.id;
+    EXPECT_GT(std::string_view(words.name).size(), 0u) << words.id;
+    EXPECT_TRUE(std::string_view(words.meaning).ends_with('.')) << words.id;
+    EXPECT_FALSE(kLawTraits[std::size_t(law)].numbers.empty()) << words.id;
+  }
+}
+
+TEST(Laws, FeelANumberThatTheyUseWhereTheTissueHasTheOthers) {
+  TickNumbers tissue;
+  tissue.stiffness_N_per_m = 800.0;
+  const auto felt = [&](LawKind law, double TickNumbers::*number) {
+    return feels(law, number, tissue);
+  };
+  EXPECT_TRUE(felt(LawKind::viscous, &TickNumbers::damping_Ns_per_m));
+  EXPECT_FALSE(felt(LawKind::viscous, &TickNumbers::stiffness_N_per_m));
+  EXPECT_TRUE(felt(LawKind::elastic, &TickNumbers::stiffness_N_per_m));
+  EXPECT_FALSE(felt(LawKind::coulomb, &TickNumbers::stiffness_N_per_m)) << "nothing rubs";
+  EXPECT_TRUE(felt(LawKind::coulomb, &TickNumbers::friction_N));
+  EXPECT_TRUE(felt(LawKind::rupture, &TickNumbers::rupture_N));
+  tissue.friction_N = 1.0;
+  EXPECT_TRUE(felt(LawKind::coulomb, &TickNumbers::stiffness_N_per_m));
 }
 
 TEST(Laws, AreMadeByName) {
