@@ -40,6 +40,7 @@
 
 #include "haptics/laws/coulomb.h"
 #include "haptics/laws/elastic.h"
+#include "haptics/laws/granular.h"
 #include "haptics/laws/rupture.h"
 #include "haptics/laws/viscous.h"
 
@@ -47,7 +48,7 @@ namespace trephine {
 
 template <class... Laws>
 struct LawList {};
-using AllLaws = LawList<ViscousLaw, CoulombLaw, ElasticLaw, RuptureLaw>;
+using AllLaws = LawList<ViscousLaw, CoulombLaw, ElasticLaw, RuptureLaw, GranularLaw>;
 
 // A law's place in the list. Those that are spoken of elsewhere have a name here; that of any is
 // kLawKind.
