@@ -40,7 +40,6 @@
 
 #include "haptics/laws/coulomb.h"
 #include "haptics/laws/elastic.h"
-#include "haptics/laws/granular.h"
 #include "haptics/laws/rupture.h"
 #include "haptics/laws/viscous.h"
 
@@ -48,7 +47,7 @@ namespace trephine {
 
 template <class... Laws>
 struct LawList {};
-using AllLaws = LawList<ViscousLaw, CoulombLaw, ElasticLaw, RuptureLaw, GranularLaw>;
+using AllLaws = LawList<ViscousLaw, CoulombLaw, ElasticLaw, RuptureLaw>;
 
 // A law's place in the list. Those that are spoken of elsewhere have a name here; that of any is
 // kLawKind.
