@@ -8,5 +8,6 @@ namespace trephine::code {
 inline constexpr Code kBadUse{"BAD_USE"};
 inline constexpr Code kInternal{"INTERNAL"};
 inline constexpr Code kNoStorage{"NO_STORAGE"};
+inline constexpr Code kNotInstalled{"NOT_INSTALLED"};
 
 }  // namespace trephine::code

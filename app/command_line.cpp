@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "app/answer.h"
+#include "base/codes.h"
 #include "base/utf8.h"
 
 namespace trephine {
@@ -38,7 +39,7 @@ std::optional<int> parsed(CLI::App& app, int argc, char** argv) {
       sayError("%s\nRun with --help for more information.\n", what.c_str());
       return 1;
     }
-    return printError("usage", {"BAD_ARGUMENT", what, "the command line", "See --help"}, true);
+    return printError("usage", {code::kBadArgument, what, "the command line", "See --help"}, true);
   }
 }
 

@@ -5,15 +5,18 @@
 #include <cstdio>
 
 #include "app/answer.h"
+#include "app/codes.h"
+#include "base/codes.h"
 #include "base/file.h"
 #include "base/log.h"
 #include "base/system.h"
 #include "base/utf8.h"
+#include "case/case.h"
+#include "case/codes.h"
+#include "exercise/names.h"
 #include "imaging/dicom/ct_writer.h"
 #include "machine/exercise/explain.h"
 #include "machine/trades/trades_measurement.h"
-#include "exercise/names.h"
-#include "case/case.h"
 #include "training/recording_list.h"
 #include "training/replay.h"
 #include "volume/phantom_file.h"
@@ -54,7 +57,7 @@ int replayCommand(const std::string& file, const std::string& case_source,
     if (!phantomNamed(source)) source.clear();
   }
   if (source.empty()) {
-    const Error error{"NO_CASE", "The recording was made on a case of its own", "--case",
+    const Error error{code::kNoCase, "The recording was made on a case of its own", "--case",
                       "Give the folder or the volume file that the session was run on"};
     return printError("replay", error, json);
   }
@@ -98,7 +101,7 @@ int recordingsCommand(const std::vector<std::string>& files, bool json,
   bool all = true;
   for (const std::string& file : files) {
     if (progress.cancelled()) {
-      return printError("recordings", {"CANCELLED", "Not all recordings were listed", "", ""},
+      return printError("recordings", {code::kCancelled, "Not all recordings were listed", "", ""},
                         json);
     }
     const ListedRecording row = listRecording(file);
@@ -145,10 +148,11 @@ int startMeasurements(char** words, bool json) {
   std::string name = program;
   words[0] = name.data();
   ::execv(program.c_str(), words);
-  return printError("measure",
-                    {"NOT_INSTALLED", "Measurements are a program of their own, trephine-measure",
-                     "trephine-lab measure", "Install the package trephine-researcher"},
-                    json);
+  return printError(
+      "measure",
+      {code::kNotInstalled, "Measurements are a program of their own, trephine-measure",
+       "trephine-lab measure", "Install the package trephine-researcher"},
+      json);
 }
 
 int tradesCommand(const std::string& out, bool json, const Progress& progress) {

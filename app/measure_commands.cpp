@@ -1,6 +1,7 @@
 #include "app/measure_commands.h"
 
 #include "app/answer.h"
+#include "base/codes.h"
 #include "base/file.h"
 #include "base/log.h"
 #include "base/system.h"
@@ -19,6 +20,7 @@
 #include "lab/trades/trade_charts.h"
 #include "machine/ticks/jitter_measurement.h"
 #include "machine/trades/trades_measurement.h"
+#include "plot/codes.h"
 #include "volume/phantom_file.h"
 
 namespace trephine {
@@ -39,7 +41,7 @@ void printMeasured(const char* name, const Measurement& measured, bool json) {
 Status checkCase(const std::string& source) {
   std::error_code ec;
   if (source.empty() || phantomNamed(source) || std::filesystem::exists(source, ec)) return {};
-  return Error{"MISSING_FOLDER", "There is no such case", source,
+  return Error{code::kMissingFolder, "There is no such case", source,
                "Give a folder of CT, a volume file, phantom:cranium or phantom:abdomen"};
 }
 
@@ -47,7 +49,7 @@ Status checkCase(const std::string& source) {
 template <class Draw>
 Result<Json> drawnFiles(const char* what, Draw&& draw) {
   auto drawn = draw();
-  if (!drawn && drawn.error().code == "CANNOT_DRAW") {
+  if (!drawn && drawn.error().code == code::kCannotDraw) {
     spdlog::warn("No {}: {}", what, drawn.error().what);
     return Json(nullptr);
   }
@@ -98,7 +100,7 @@ Result<Json> measureStabilitySets(const StabilityArguments& arguments, std::stri
   Result<std::vector<StabilitySet>> sets = readStabilitySets(names);
   if (!sets) return sets.error();
   if (arguments.seconds && !(*arguments.seconds >= 1.0 && *arguments.seconds <= 600.0)) {
-    return Error{"BAD_ARGUMENT", "The time must lie between 1 and 600 s", "--seconds", ""};
+    return Error{code::kBadArgument, "The time must lie between 1 and 600 s", "--seconds", ""};
   }
   std::vector<StabilityCell> all = fullGrid(), some = representativeCells();
   if (!arguments.grid.empty()) {

@@ -9,6 +9,7 @@ inline constexpr Code kBadArgument{"BAD_ARGUMENT"};
 inline constexpr Code kBadField{"BAD_FIELD"};
 inline constexpr Code kBadJson{"BAD_JSON"};
 inline constexpr Code kBadPin{"BAD_PIN"};
+inline constexpr Code kBadState{"BAD_STATE"};
 inline constexpr Code kBusy{"BUSY"};
 inline constexpr Code kCancelled{"CANCELLED"};
 inline constexpr Code kCannotRead{"CANNOT_READ"};

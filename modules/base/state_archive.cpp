@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <string>
 
+#include "base/codes.h"
 #include "base/sha256.h"
 
 namespace trephine {
@@ -20,7 +21,7 @@ std::array<char, kStateKindBytes> kindBytes(std::string_view kind) {
 }
 
 Error badState(std::string_view kind, const std::string& what) {
-  return {"BAD_STATE", what, "the state `" + std::string(kind) + "`",
+  return {code::kBadState, what, "the state `" + std::string(kind) + "`",
           "Take it from the running exercise again, with the same release."};
 }
 

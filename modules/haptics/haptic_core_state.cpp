@@ -1,4 +1,5 @@
 // The core's state as bytes, and back.
+#include "base/codes.h"
 #include "base/state_archive.h"
 #include "haptics/haptic_core.h"
 
@@ -11,7 +12,7 @@ constexpr std::string_view kStateKind = "core";
 constexpr std::uint32_t kStateVersion = 1;
 
 Error badState(const char* what) {
-  return {"BAD_STATE", what, "the state `" + std::string(kStateKind) + "`",
+  return {code::kBadState, what, "the state `" + std::string(kStateKind) + "`",
           "Take the state, the volume and the log of the same moment of the same exercise."};
 }
 

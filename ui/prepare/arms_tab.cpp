@@ -5,10 +5,12 @@
 #include <cmath>
 
 #include "base/child_process.h"
+#include "base/codes.h"
 #include "base/file.h"
 #include "base/locked_folder.h"
 #include "base/log.h"
 #include "base/system.h"
+#include "machine/codes.h"
 #include "machine/ticks/law_costs.h"
 #include "machine/trades/recommended.h"
 #include "machine/trades/trades_measurement.h"
@@ -72,7 +74,7 @@ void ArmsTab::measureCosts() {
       [this](Result<LawCosts> costs) {
         tools_->showMeasuring({});
         if (!costs) {
-          if (costs.error().code != "CANCELLED") app_.report(costs.error());
+          if (costs.error().code != code::kCancelled) app_.report(costs.error());
           return;
         }
         ToolsPanel::Costs words;
@@ -143,8 +145,8 @@ void ArmsTab::measureTrades() {
                      progress);
         if (!run) return run.error();
         if (run->exit_code != 0) {
-          return Error{"NOT_MEASURED", "The measurement did not come to its end", "trephine-lab",
-                       "Run 'trephine-lab trades --out DIR' to see why"};
+          return Error{code::kNotMeasured, "The measurement did not come to its end",
+                       "trephine-lab", "Run 'trephine-lab trades --out DIR' to see why"};
         }
         if (Status made = makeFolder(to); !made) return made;
         for (const char* file : {"trades.json", "recommended.json"}) {

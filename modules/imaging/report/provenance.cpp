@@ -1,6 +1,7 @@
 #include "imaging/report/provenance.h"
 
 #include "base/file.h"
+#include "training/codes.h"
 
 namespace trephine {
 
@@ -100,7 +101,7 @@ Result<Provenance> provenanceFrom(const Json& json, const std::string& file) {
   }
   provenance.volume_sha256 = reader.text("volume_sha256");
   if (reader.has("source_ids")) {
-    return Error{"OLDER_VERSION",
+    return Error{code::kOlderVersion,
                  "It was written by a Trephine that kept which CT it is of where all may read it",
                  file, "Import the CT again, and delete what was made of it before"};
   }

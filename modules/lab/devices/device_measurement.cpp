@@ -10,10 +10,13 @@
 #include <thread>
 
 #include "base/child_process.h"
+#include "base/codes.h"
 #include "base/file.h"
 #include "base/system.h"
+#include "device/codes.h"
 #include "exercise/arms_file.h"
 #include "lab/devices/loop_watch.h"
+#include "machine/codes.h"
 #include "machine/common/quantile.h"
 #include "session/arm_devices.h"
 #include "session/session.h"
@@ -32,7 +35,7 @@ constexpr double kFelt_N = 0.05;   // an arm has force
 const char* kSides[] = {"right", "left"};
 
 Error cancelled() {
-  return {"CANCELLED", "The measurement was cancelled", "measure devices", ""};
+  return {code::kCancelled, "The measurement was cancelled", "measure devices", ""};
 }
 
 // What is measured at once: the arms of one plugin, plugged in or emulated.
@@ -62,12 +65,12 @@ std::vector<Subject> pluggedIn() {
 
 Status plugIn(Subject& subject) {
   if (subject.bench && !subject.bench->plugIn()) {
-    return Error{"NO_DEVICE", "The bench cannot emulate '" + subject.plugin + "' here", "",
+    return Error{code::kNoDevice, "The bench cannot emulate '" + subject.plugin + "' here", "",
                  "Run it as its README says"};
   }
   subject.arms = armsOf(subject.plugin);
   if (!subject.arms.empty()) return {};
-  return Error{"NO_DEVICE", "No arm of '" + subject.plugin + "' is found", "",
+  return Error{code::kNoDevice, "No arm of '" + subject.plugin + "' is found", "",
                "Plug it in, or give a bench that emulates it"};
 }
 
@@ -331,7 +334,7 @@ Result<DeviceTrial> trialOf(const TrialOptions& options, const fs::path& out,
   const Error why = errorSaid(said_file).value_or(json ? ended : json.error());
   fs::remove(said_file, ec);
   if (run->exit_code != 0 || !json || !json->contains("zero_ms")) {
-    return Error{"NOT_MEASURED", "A trial did not come to its end: " + why.what, why.where,
+    return Error{code::kNotMeasured, "A trial did not come to its end: " + why.what, why.where,
                  why.next};
   }
   fs::remove(answer, ec);
@@ -352,7 +355,7 @@ Status runTrials(const fs::path& bench, int count, const fs::path& out, DeviceRo
         out / (row.plugin + name + std::to_string(n % std::max(1, count)) + ".h5");
     const Result<DeviceTrial> trial =
         trialOf({bench, unplug, wait_s(random)}, out, recording, progress);
-    if (!trial && (progress.cancelled() || trial.error().code != "NOT_MEASURED")) {
+    if (!trial && (progress.cancelled() || trial.error().code != code::kNotMeasured)) {
       return trial.error();
     }
     if (!trial) {  // the others count all the same
@@ -443,7 +446,7 @@ Result<DeviceTrial> tryDevice(const TrialOptions& options, const fs::path& recor
   while (force_N() < kFelt_N && hostTime_ns() < deadline_ns) std::this_thread::sleep_for(200us);
   if (force_N() < kFelt_N) {
     (void)(*session)->stop();
-    return Error{"NOT_MEASURED", "The arm was given no force within 10 s", "", ""};
+    return Error{code::kNotMeasured, "The arm was given no force within 10 s", "", ""};
   }
   const std::int64_t at_ns = hostTime_ns();
   // Stop is asked for while the call blocks; the arm is looked at until after it.
@@ -471,7 +474,7 @@ Result<DeviceTrial> tryDevice(const TrialOptions& options, const fs::path& recor
   if (newest.sent_ns < at_ns + kLook_ns / 2 || glm::length(newest.force_N) > 0.0) {
     (void)(*session)->stop();
     looks.join();
-    return Error{"NOT_MEASURED", "The loop stood still, or the force stayed", "", ""};
+    return Error{code::kNotMeasured, "The loop stood still, or the force stayed", "", ""};
   }
   for (std::size_t i = ticks; i-- > 0;) {
     const LoopWatch::Tick& tick = watch.tick(of_exercise, i);
@@ -507,7 +510,8 @@ Result<DeviceMeasurement> measureDevices(const DeviceOptions& options, const fs:
                                          const Progress& progress) {
   if (!(options.seconds >= 1.0 && options.seconds <= 600.0) || options.trials < 0 ||
       options.trials > 1000) {
-    return Error{"BAD_ARGUMENT", "The time must lie between 1 and 600 s, the trials from 0 to 1000",
+    return Error{code::kBadArgument,
+                 "The time must lie between 1 and 600 s, the trials from 0 to 1000",
                  "--seconds, --trials", ""};
   }
   if (Status made = makeFolder(out); !made) return made.error();
@@ -519,7 +523,7 @@ Result<DeviceMeasurement> measureDevices(const DeviceOptions& options, const fs:
   }
   if (options.benches.empty()) subjects = pluggedIn();
   if (subjects.empty()) {
-    return Error{"NO_DEVICE", "No arm is plugged in", "",
+    return Error{code::kNoDevice, "No arm is plugged in", "",
                  "Plug one in, or give a bench that emulates one (--bench)"};
   }
   DeviceMeasurement measurement;

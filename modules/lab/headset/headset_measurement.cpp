@@ -7,14 +7,19 @@
 #include <cstdlib>
 #include <functional>
 
+#include "base/codes.h"
 #include "base/system.h"
+#include "headset/codes.h"
 #include "headset/eye_pictures.h"
 #include "headset/packed_drawing.h"
 #include "headset/stereo_screen.h"
 #include "headset/test_runtime.h"
-#include "machine/common/exercise_view.h"
+#include "imaging/codes.h"
+#include "lab/codes.h"
 #include "lab/headset/headset_geometry.h"
 #include "lab/headset/headset_rig.h"
+#include "machine/codes.h"
+#include "machine/common/exercise_view.h"
 #include "render/gl_limits.h"
 
 namespace trephine {
@@ -30,7 +35,7 @@ constexpr double kRow_s = 4.0;  // of each row
 constexpr double kEyes_mm = 63.0, kScreen_mm = 600.0;  // before a screen
 
 Error stopped() {
-  return {"CANCELLED", "The measurement was cancelled", "measure headset", ""};
+  return {code::kCancelled, "The measurement was cancelled", "measure headset", ""};
 }
 
 int entriesOf(const char* folder) {
@@ -108,7 +113,7 @@ Status Measuring::begin(int size) {
     rig_.stopHeadset();
     finish();
   }
-  return Error{"NO_PICTURE", "The headset took no picture within 10 s", "",
+  return Error{code::kNoPicture, "The headset took no picture within 10 s", "",
                "Put it on, and see whether its own software shows something"};
 }
 
@@ -141,7 +146,7 @@ Result<HeadsetRow> Measuring::openXrRow(int size) {
       kRow_s);
   if (!rig_.headset()) {
     return rig_.end()->why.ok()
-               ? Error{"HEADSET_ENDED", "The headset ended by itself", "", "Try again"}
+               ? Error{code::kHeadsetEnded, "The headset ended by itself", "", "Try again"}
                : rig_.end()->why.error();
   }
   const HeadsetState after = rig_.headset()->state();
@@ -155,7 +160,7 @@ Result<HeadsetRow> Measuring::openXrRow(int size) {
   row.repeats_percent = 100.0 * double(after.repeated - before.repeated) / std::max(1.0, all);
   row.held_percent = 100.0 * double(after.held - before.held) / std::max(1.0, all);
   rig_.stopHeadset();
-  if (!finish()) return Error{"HEADSET_STUCK", "The headset does not end", "", "Try again"};
+  if (!finish()) return Error{code::kHeadsetStuck, "The headset does not end", "", "Try again"};
   return row;
 }
 
@@ -209,7 +214,8 @@ Status Measuring::answers() {
   rig_.until([&] { return !rig_.headset() || rig_.headset()->state().located; }, kPatience_s);
   if (!rig_.headset()) return rig_.end()->why;
   rig_.stopHeadset();
-  return finish() ? Status() : Error{"HEADSET_STUCK", "The headset does not end", "", "Try again"};
+  return finish() ? Status()
+                  : Error{code::kHeadsetStuck, "The headset does not end", "", "Try again"};
 }
 
 Status Measuring::rows(const std::vector<int>& sizes) {
@@ -254,7 +260,7 @@ Status Measuring::exercise(double seconds, std::vector<std::pair<std::uint64_t, 
     missed[with] += double(after.missed - before.missed);
     if (with) {
       rig_.stopHeadset();
-      if (!finish()) return Error{"HEADSET_STUCK", "The headset does not end", "", "Try again"};
+      if (!finish()) return Error{code::kHeadsetStuck, "The headset does not end", "", "Try again"};
     }
   }
   to_.missed_without_percent = 100.0 * missed[0] / std::max(1.0, ticks[0]);
@@ -297,7 +303,8 @@ Status Measuring::losses(int of_each) {
       constexpr Loss kKinds[] = {Loss::instance, Loss::session, Loss::pending, Loss::event};
       runtime_->lose(kKinds[kind]);
     }
-    if (!finish()) return Error{"HEADSET_STUCK", "A lost headset does not end", "", "Try again"};
+    if (!finish())
+      return Error{code::kHeadsetStuck, "A lost headset does not end", "", "Try again"};
     done += !rig_.end()->why.ok() ? 1 : 0;
     cleaned_ms.push_back(1e-6 * double(monotonic_ns() - lost_ns));
   }
@@ -386,13 +393,13 @@ Result<HeadsetMeasurement> measureHeadset(const HeadsetMeasureOptions& options, 
                                           const Progress& progress) {
   if (!(options.seconds >= 2.0 && options.seconds <= 600.0) || options.toggles < 0 ||
       options.toggles > 1000 || options.losses < 0 || options.losses > 1000) {
-    return Error{"BAD_OPTION", "Seconds are from 2 to 600, toggles and losses from 0 to 1000",
+    return Error{code::kBadOption, "Seconds are from 2 to 600, toggles and losses from 0 to 1000",
                  "measure headset", "Give others"};
   }
   std::error_code problem;
   fs::create_directories(out, problem);
   if (problem)
-    return Error{"CANNOT_WRITE", problem.message(), out.string(), "Choose another folder"};
+    return Error{code::kCannotWrite, problem.message(), out.string(), "Choose another folder"};
   Result<TestRuntime*> runtime = findRuntime();
   if (!runtime) return runtime.error();
   Result<std::unique_ptr<HeadsetRig>> made = HeadsetRig::create();

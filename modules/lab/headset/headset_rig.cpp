@@ -8,6 +8,7 @@
 #include <cstdlib>
 #include <thread>
 
+#include "base/codes.h"
 #include "machine/common/exercise_view.h"
 #include "render/display_probe.h"
 #include "training/replay.h"
@@ -51,7 +52,7 @@ Result<std::unique_ptr<HeadsetRig>> HeadsetRig::create() {
   rig->surface_->setFormat(rig->context_->format());
   rig->surface_->create();
   if (!made || !rig->context_->makeCurrent(rig->surface_.get())) {
-    return Error{"NO_OPENGL", "The graphics driver gives no OpenGL 3.2", "",
+    return Error{code::kNoOpengl, "The graphics driver gives no OpenGL 3.2", "",
                  "Update the graphics driver"};
   }
   rig->renderer_ = std::make_unique<SceneRenderer>();

@@ -7,6 +7,7 @@
 #include <locale>
 #include <sstream>
 
+#include "base/codes.h"
 #include "base/file.h"
 #include "base/locked_folder.h"
 #include "machine/common/spread.h"
@@ -21,7 +22,7 @@ constexpr double kMakingShare = 0.4;  // of the progress
 constexpr double kMb = 1024.0 * 1024.0;
 
 Error badArgument(const char* what, const char* where) {
-  return {"BAD_ARGUMENT", what, where, ""};
+  return {code::kBadArgument, what, where, ""};
 }
 
 Status check(const ImportOptions& options, const std::vector<std::string>& names) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "base/codes.h"
 #include "imaging/dicom/ct_writer.h"
 #include "volume/phantom.h"
 
@@ -42,7 +43,7 @@ Status checkSeriesSize(const Index3& size) {
     voxels *= std::uint64_t(std::clamp(size[axis], 2, 2048));
   }
   if (voxels <= kMostVoxels) return {};
-  return Error{"BAD_ARGUMENT",
+  return Error{code::kBadArgument,
                "A series has 2 to 2048 voxels along an edge, and 2^28 (512 MB) in all", "size", ""};
 }
 
@@ -60,7 +61,7 @@ Result<std::vector<KnownVolume>> writeOwnSeries(const ImportSeries& series,
                                                 const std::filesystem::path& folder,
                                                 const Progress& progress) {
   progress.at(0.0, "Making the phantom");
-  if (progress.cancelled()) return Error{"CANCELLED", "The measurement was cancelled", "", ""};
+  if (progress.cancelled()) return Error{code::kCancelled, "The measurement was cancelled", "", ""};
   const double parts = double(series.names.size()) + 2.0;
   double from = 1.0 / parts;
   std::vector<KnownVolume> known;

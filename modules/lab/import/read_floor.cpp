@@ -10,7 +10,9 @@
 #include <optional>
 #include <vector>
 
+#include "base/codes.h"
 #include "base/descriptor.h"
+#include "volume/codes.h"
 
 namespace trephine {
 
@@ -42,7 +44,7 @@ Result<ReadFloor> readEveryByte(const fs::path& folder, const Progress& progress
   for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error)) {
     files.push_back(it->path());
   }
-  if (error) return Error{"MISSING_FOLDER", "The folder cannot be read", folder.string(), ""};
+  if (error) return Error{code::kMissingFolder, "The folder cannot be read", folder.string(), ""};
   std::sort(files.begin(), files.end());
 
   ReadFloor floor;
@@ -50,7 +52,7 @@ Result<ReadFloor> readEveryByte(const fs::path& folder, const Progress& progress
   std::size_t longest = 0;
   for (const fs::path& file : files) {
     const auto bytes = fs::file_size(file, error);
-    if (error) return Error{"UNREADABLE", "A file has no length", folder.string(), ""};
+    if (error) return Error{code::kUnreadable, "A file has no length", folder.string(), ""};
     longest = std::max<std::size_t>(longest, bytes);
     floor.bytes += bytes;
   }
@@ -60,9 +62,9 @@ Result<ReadFloor> readEveryByte(const fs::path& folder, const Progress& progress
     const std::unique_ptr<char[]> buffer(new char[std::max<std::size_t>(room, 1)]);
     std::size_t at = 0;
     for (const fs::path& file : files) {
-      if (progress.cancelled()) return Error{"CANCELLED", "The reading was cancelled", "", ""};
+      if (progress.cancelled()) return Error{code::kCancelled, "The reading was cancelled", "", ""};
       const auto got = readWhole(file, &buffer[at], room - at);
-      if (!got) return Error{"UNREADABLE", "A file cannot be read", folder.string(), ""};
+      if (!got) return Error{code::kUnreadable, "A file cannot be read", folder.string(), ""};
       if (keep) at += *got;
     }
     (keep ? floor.kept_seconds : floor.seconds) =

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "base/codes.h"
 #include "base/file.h"
 #include "lab/render/render_parts.h"
 #include "volume/phantom.h"
@@ -12,7 +13,7 @@ namespace {
 
 Status check(const RenderOptions& options) {
   const auto bad = [](const char* what, const char* where) {
-    return Error{"BAD_ARGUMENT", what, where, ""};
+    return Error{code::kBadArgument, what, where, ""};
   };
   if (options.sample_distances.empty()) {
     return bad("There must be a sample distance", "sample_distances");

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <vector>
 
+#include "base/codes.h"
 #include "base/progress.h"
 #include "base/result.h"
 #include "lab/render/render_measurement.h"
@@ -13,7 +14,7 @@
 namespace trephine {
 
 inline Error renderCancelled() {
-  return {"CANCELLED", "The measurement was cancelled", "measure render", ""};
+  return {code::kCancelled, "The measurement was cancelled", "measure render", ""};
 }
 
 // Still rows of a subject: sample distances by both mappers, levels by ours. Pictures go to `out`.

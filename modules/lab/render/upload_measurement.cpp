@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/codes.h"
 #include "render/scene_renderer.h"
 
 namespace trephine {
@@ -66,7 +67,7 @@ double median(std::vector<double> values) {
 }  // namespace
 
 Result<UploadMeasurement> measureUpload(const Progress& progress) {
-  const Error cancelled{"CANCELLED", "The measurement was cancelled", "measure upload", ""};
+  const Error cancelled{code::kCancelled, "The measurement was cancelled", "measure upload", ""};
   progress.at(0.0, "volume");
   Result<std::unique_ptr<SceneRenderer>> made = SceneRenderer::offscreen(480, 360);
   if (!made) return made.error();

@@ -6,6 +6,7 @@
 #include <set>
 #include <utility>
 
+#include "base/codes.h"
 #include "lab/stability/log_centres.h"
 #include "plot/axis.h"
 
@@ -139,7 +140,7 @@ StabilityMap mapOf(const std::string& controller, bool walls,
 
 Result<std::vector<StabilityMap>> stabilityMaps(const std::vector<MapCell>& cells) {
   if (cells.empty()) {
-    return Error{"BAD_ARGUMENT", "There is no cell to draw a map of", "the stability grid",
+    return Error{code::kBadArgument, "There is no cell to draw a map of", "the stability grid",
                  "Judge at least one cell"};
   }
   struct Kinds {
@@ -151,7 +152,7 @@ Result<std::vector<StabilityMap>> stabilityMaps(const std::vector<MapCell>& cell
   for (std::size_t i = 0; i < cells.size(); ++i) {
     const MapCell& cell = cells[i];
     if (!possible(cell)) {
-      return Error{"BAD_ARGUMENT", "A cell of the stability grid holds a value that cannot be",
+      return Error{code::kBadArgument, "A cell of the stability grid holds a value that cannot be",
                    "cell " + std::to_string(i + 1) + ", controller " + forPicture(cell.controller),
                    "Mass and period must lie above 0, all else at 0 or above"};
     }
@@ -187,7 +188,7 @@ Result<std::vector<StabilityMap>> stabilityMaps(const std::vector<MapCell>& cell
     }
   }
   if (maps.empty()) {
-    return Error{"BAD_ARGUMENT", "Every cell of the stability grid has a damper of b = 0",
+    return Error{code::kBadArgument, "Every cell of the stability grid has a damper of b = 0",
                  "the stability grid", "Give dampers or walls above 0"};
   }
   return maps;

@@ -7,6 +7,7 @@
 #include <sstream>
 #include <utility>
 
+#include "base/codes.h"
 #include "base/file.h"
 #include "machine/common/on_all_processors.h"
 
@@ -120,7 +121,7 @@ Result<StabilityMeasurement> measureStability(std::vector<StabilityCell> cells,
   const bool finished = onAllProcessors(count, "Stability", progress, [&](std::size_t i) {
     measurement.judged[i] = judge(measurement.cells[i], seconds);
   });
-  if (!finished) return Error{"CANCELLED", "The measurement was cancelled", "", ""};
+  if (!finished) return Error{code::kCancelled, "The measurement was cancelled", "", ""};
   return measurement;
 }
 

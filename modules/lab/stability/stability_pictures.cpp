@@ -5,6 +5,7 @@
 #include <cmath>
 #include <string>
 
+#include "base/codes.h"
 #include "base/file.h"
 #include "plot/drawing.h"
 
@@ -154,7 +155,7 @@ Result<std::vector<std::filesystem::path>> writeStabilityMaps(const std::vector<
   std::vector<std::filesystem::path> files;
   for (const StabilityMap& map : *maps) {
     if (progress.cancelled()) {
-      return Error{"CANCELLED", "The drawing of the maps was cancelled", folder.string(), ""};
+      return Error{code::kCancelled, "The drawing of the maps was cancelled", folder.string(), ""};
     }
     progress.at(double(files.size()) / double(maps->size()), map.file_name);
     const std::filesystem::path file = folder / map.file_name;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "base/codes.h"
 #include "base/range.h"
 #include "exercise/names.h"
 #include "machine/common/on_all_processors.h"
@@ -118,7 +119,7 @@ Result<std::vector<StabilitySet>> readStabilitySets(const std::string& names) {
     const std::string name = names.substr(begin, end - begin);
     const auto set = kindOf(kStabilitySetNames, name);
     if (!set) {
-      return Error{"BAD_ARGUMENT", "There is no set '" + name + "'", "--sets",
+      return Error{code::kBadArgument, "There is no set '" + name + "'", "--sets",
                    choices(kStabilitySetNames)};
     }
     if (std::find(sets.begin(), sets.end(), *set) == sets.end()) sets.push_back(*set);
@@ -155,7 +156,7 @@ Result<SetFigures> measureStabilitySet(StabilitySet set, const std::vector<Stabi
     const CellResult ideal = runCell(run.cell, CellDriver::ideal, 1.0, conditions);
     run.also_ideal = faultsOf(run.cell, run.result).allIn(faultsOf(run.cell, ideal));
   });
-  if (!finished) return Error{"CANCELLED", "The measurement was cancelled", "", ""};
+  if (!finished) return Error{code::kCancelled, "The measurement was cancelled", "", ""};
 
   SetFigures figures;
   figures.total.name = "all";

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <iterator>
 
+#include "base/codes.h"
 #include "base/file.h"
 #include "base/formatted.h"
 #include "lab/touch/extremes_rows.h"
@@ -59,7 +60,7 @@ Result<ExtremesMeasurement> measureExtremes(const std::filesystem::path& out,
     const double share = options.touch ? 0.1 : 1.0;
     progress.at(share * double(measurement.rows.size()) / double(all.size()), c.name);
     if (progress.cancelled()) {
-      return Error{"CANCELLED", "The measurement was cancelled", "measure extremes", ""};
+      return Error{code::kCancelled, "The measurement was cancelled", "measure extremes", ""};
     }
     const Outcome outcome = c.measure();
     measurement.rows.push_back({c.name, c.input, c.expected, outcome.got, outcome.pass});

@@ -5,11 +5,12 @@
 #include <optional>
 #include <utility>
 
+#include "base/codes.h"
 #include "base/formatted.h"
-#include "machine/common/on_all_processors.h"
+#include "case/case.h"
 #include "lab/touch/placed_exercise.h"
 #include "lab/touch/rest_measurement.h"
-#include "case/case.h"
+#include "machine/common/on_all_processors.h"
 #include "volume/phantom_file.h"
 
 namespace trephine {
@@ -433,7 +434,8 @@ Result<std::vector<ExtremeRow>> measureTouchExtremes(const std::string& case_sou
     Dive& dive = dives[i];
     dive.result = pressInto(*dive.tool, boneOnly(dive.cuttable), *dive.volume, dive.press);
   });
-  if (!finished) return Error{"CANCELLED", "The measurement was cancelled", "measure extremes", ""};
+  if (!finished)
+    return Error{code::kCancelled, "The measurement was cancelled", "measure extremes", ""};
 
   std::vector<ExtremeRow> out;
   for (std::size_t i = 0; i < rows.size(); ++i) {

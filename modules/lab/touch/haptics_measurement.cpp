@@ -13,6 +13,7 @@
 #include <tuple>
 #include <utility>
 
+#include "base/codes.h"
 #include "base/file.h"
 #include "haptics/haptic_core.h"
 #include "machine/common/quantile.h"
@@ -108,12 +109,12 @@ Pose strokePose_mm(const EllipsoidShell& shell, const HapticsRow& row, int arm, 
 }
 
 Error cancelled() {
-  return {"CANCELLED", "The measurement was cancelled", "measure haptics", ""};
+  return {code::kCancelled, "The measurement was cancelled", "measure haptics", ""};
 }
 
 Status check(const HapticsOptions& options) {
   const auto bad = [](const char* what, const char* where) {
-    return Error{"BAD_ARGUMENT", what, where, ""};
+    return Error{code::kBadArgument, what, where, ""};
   };
   if (options.ticks < 100 || options.ticks > 1'000'000) {
     return bad("A row takes 100 to 1,000,000 ticks", "ticks");

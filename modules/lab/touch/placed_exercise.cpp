@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "base/system.h"
+#include "case/codes.h"
 #include "case/placement.h"
 #include "exercise/arm_limits.h"
 #include "session/arm_devices.h"
@@ -28,7 +29,7 @@ Result<PlacedExercise> placeExercise(const std::string& name, const std::string&
   if (!of) return of.error();
   if (of->error) return *of->error;
   for (const Warning& warning : of->warnings) {
-    if (warning.code != "NO_LANDMARK") continue;  // a figure would be of another place
+    if (warning.code != code::kNoLandmark) continue;  // a figure would be of another place
     return Error{warning.code, warning.text, "scene '" + name + "'",
                  "Choose a case of the scene's anatomy"};
   }

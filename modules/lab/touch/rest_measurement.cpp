@@ -5,10 +5,11 @@
 #include <cmath>
 #include <utility>
 
+#include "base/codes.h"
 #include "base/formatted.h"
 #include "haptics/unseen_energy.h"
-#include "machine/common/on_all_processors.h"
 #include "lab/touch/rest_places.h"
+#include "machine/common/on_all_processors.h"
 
 namespace trephine {
 
@@ -160,7 +161,7 @@ Result<RestFigures> measureRest(std::optional<double> seconds, const Progress& p
       row.unstable = row.unstable && !row.also_ideal;
     }
   });
-  if (!finished) return Error{"CANCELLED", "The measurement was cancelled", "", ""};
+  if (!finished) return Error{code::kCancelled, "The measurement was cancelled", "", ""};
   for (std::vector<RestRow>& some : rows) {
     std::move(some.begin(), some.end(), std::back_inserter(figures.rows));
   }

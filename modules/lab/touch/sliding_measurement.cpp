@@ -3,6 +3,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "base/codes.h"
 #include "haptics/haptic_core.h"
 #include "machine/common/quantile.h"
 #include "machine/common/shell_phantom.h"
@@ -117,7 +118,7 @@ Result<SlidingMeasurement> measureSliding(const SlidingOptions& options, const P
   if (options.grid < 32 || options.grid > 512 || options.paths < 1 || options.paths > 1000 ||
       !(options.seconds >= 0.01 && options.seconds <= 60.0) ||
       !(options.noise_hu >= 0.0 && options.noise_hu <= 500.0)) {
-    return Error{"BAD_ARGUMENT",
+    return Error{code::kBadArgument,
                  "A slide needs a grid of 32 to 512, 1 to 1000 paths of 0.01 to 60 s and noise of "
                  "0 to 500 HU",
                  "the options of the slide", ""};
@@ -130,7 +131,7 @@ Result<SlidingMeasurement> measureSliding(const SlidingOptions& options, const P
   std::vector<std::vector<SlidingTick>> paths;
   for (int n = 0; n < options.paths; ++n) {
     if (progress.cancelled()) {
-      return Error{"CANCELLED", "The measurement was cancelled", "measure haptics", ""};
+      return Error{code::kCancelled, "The measurement was cancelled", "measure haptics", ""};
     }
     progress.at(from + (to - from) * n / options.paths, "sliding");
     HapticCore core(elasticAlone(), *grid.takeWriter());

@@ -5,6 +5,7 @@
 #include <string_view>
 #include <utility>
 
+#include "base/codes.h"
 #include "base/file.h"
 #include "plot/drawing.h"
 
@@ -49,7 +50,7 @@ Result<std::vector<std::vector<TradeRow>>> byKnob(const std::vector<TradeRow>& r
     const bool possible =
         std::isfinite(row.error) && std::isfinite(row.cost) && row.error >= 0.0 && row.cost >= 0.0;
     if (!possible) {
-      return Error{"BAD_ARGUMENT", "A row holds a figure that cannot be",
+      return Error{code::kBadArgument, "A row holds a figure that cannot be",
                    row.knob + " " + row.setting, "Errors and costs are 0 or above"};
     }
     auto knob = std::find_if(knobs.begin(), knobs.end(),
@@ -58,7 +59,8 @@ Result<std::vector<std::vector<TradeRow>>> byKnob(const std::vector<TradeRow>& r
     knob->push_back(row);
   }
   if (knobs.empty()) {
-    return Error{"BAD_ARGUMENT", "There is no row to draw", "the trades", "Measure at least one"};
+    return Error{code::kBadArgument, "There is no row to draw", "the trades",
+                 "Measure at least one"};
   }
   return knobs;
 }
@@ -127,7 +129,8 @@ Result<std::vector<std::filesystem::path>> writeTradeCharts(const std::vector<Tr
   std::vector<std::filesystem::path> files;
   for (const std::vector<TradeRow>& knob : *knobs) {
     if (progress.cancelled()) {
-      return Error{"CANCELLED", "The drawing of the charts was cancelled", folder.string(), ""};
+      return Error{code::kCancelled, "The drawing of the charts was cancelled", folder.string(),
+                   ""};
     }
     const std::filesystem::path file = folder / ("trade-" + knob.front().knob + ".png");
     if (Status written = plot::writePng(tradeChart(knob), plot::Theme::light, file); !written) {

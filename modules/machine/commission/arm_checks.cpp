@@ -5,11 +5,13 @@
 #include <thread>
 
 #include "base/child_process.h"
+#include "base/codes.h"
 #include "base/file.h"
 #include "base/formatted.h"
 #include "base/locked_folder.h"
 #include "base/system.h"
 #include "device/find_arms.h"
+#include "machine/codes.h"
 #include "machine/commission/commission.h"
 #include "session/arm_trial.h"
 
@@ -83,7 +85,7 @@ std::vector<CommissionCheck> judgedArms(const std::vector<ArmAnswered>& arms) {
   std::vector<CommissionCheck> checks{judged("arm_encoders", most_steps, scatter)};
   CommissionCheck forces = judged("arm_forces", least, pushed);
   const auto unknown = [](const char* name, const std::string& what, const char* next) {
-    return notMeasured(name, Fitness::warn, {"NOT_HELD", what, "", next});
+    return notMeasured(name, Fitness::warn, {code::kNotHeld, what, "", next});
   };
   // One that was not tried says nothing of the others, but is not passed either.
   if (!all_heard && checks[0].verdict == Fitness::pass) {
@@ -112,9 +114,9 @@ std::vector<CommissionCheck> tryArms(double patience_s, const Progress& progress
   };
   if (here.arms.empty())
     return with(
-        both(Fitness::warn, {"NO_ARMS", "No arm is plugged in", "", "See to the arms first"}));
+        both(Fitness::warn, {code::kNoArms, "No arm is plugged in", "", "See to the arms first"}));
   if (patience_s <= 0.0) {
-    return with(both(Fitness::warn, {"NOT_TRIED", "The arms were not tried", "",
+    return with(both(Fitness::warn, {code::kNotTried, "The arms were not tried", "",
                                      "Commission again, and hold each arm meanwhile"}));
   }
   const std::unique_ptr<ArmTrial> trial = ArmTrial::start(here.arms);
@@ -152,7 +154,7 @@ std::vector<CommissionCheck> checkArms(double patience_s, const Progress& progre
     return checks;
   };
   const auto failed = [&](const char* what) {
-    return failedFor({"NOT_ANSWERED", what, "",
+    return failedFor({code::kNotAnswered, what, "",
                       "Unplug one device after the other, commission again each time, and have the "
                       "driver mended of the one without which it passes"});
   };
@@ -160,15 +162,15 @@ std::vector<CommissionCheck> checkArms(double patience_s, const Progress& progre
   const Result<std::filesystem::path> temporary = temporaryFolder();
   if (!temporary) {
     return failedFor(
-        {"CANNOT_WRITE", "There is no folder for temporary files", "", kTemporaryNext});
+        {code::kCannotWrite, "There is no folder for temporary files", "", kTemporaryNext});
   }
   const Result<LockedFolder> folder = LockedFolder::make(*temporary, ".trephine-arms-", *temporary);
   if (!folder) {
-    return failedFor({"CANNOT_WRITE", "The folder for temporary files cannot be written to", "",
+    return failedFor({code::kCannotWrite, "The folder for temporary files cannot be written to", "",
                       kTemporaryNext});
   }
   if (const Status fits = tryRoom(folder->path(), 100'000); !fits) {
-    return failedFor({"CANNOT_WRITE", "The folder for temporary files has no room", "",
+    return failedFor({code::kCannotWrite, "The folder for temporary files has no room", "",
                       std::string("Free some space there. ") + kTemporaryNext});
   }
   const Result<ChildRun> run =

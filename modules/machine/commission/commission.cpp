@@ -9,16 +9,19 @@
 #include <ctime>
 #include <thread>
 
+#include "base/codes.h"
 #include "base/local_time.h"
 #include "base/memory.h"
 #include "base/release.h"
 #include "base/system.h"
 #include "headset/headset.h"
+#include "machine/codes.h"
 #include "machine/commission/arm_checks.h"
 #include "machine/commission/disk_check.h"
 #include "machine/drawing/drawing_parts.h"
 #include "machine/ticks/jitter_measurement.h"
 #include "machine/trades/trades_measurement.h"
+#include "render/codes.h"
 #include "render/display_probe.h"
 #include "render/gl_limits.h"
 
@@ -32,7 +35,7 @@ constexpr double kDiskMost_s = 20.0;
 constexpr double kRates_hz[] = {1000.0, 2000.0, 4000.0};  // of which lateness is asked
 
 Error stopped() {
-  return {"CANCELLED", "The commissioning was cancelled", "commission", ""};
+  return {code::kCancelled, "The commissioning was cancelled", "commission", ""};
 }
 
 std::string machineName() {
@@ -102,7 +105,7 @@ Status Run::lateness() {
   for (const double rate_hz : kRates_hz) {
     if (granted_) continue;
     add(latenessName(rate_hz, true), Fitness::warn,
-        {"NO_REAL_TIME", "Real-time priority was not granted", "",
+        {code::kNoRealTime, "Real-time priority was not granted", "",
          commissionLimit("priority")->next});
   }
   return {};
@@ -154,7 +157,7 @@ Status Run::drawing() {
   if (const Status display = probeDisplay(); !display) {
     Error why = display.error();
     // A virtual screen would be measured in the place of the one that is looked at.
-    if (why.code == "NO_DISPLAY") why.next = "Commission inside a desktop session";
+    if (why.code == code::kNoDisplay) why.next = "Commission inside a desktop session";
     for (const char* name : kDrawn) add(name, Fitness::fail, why);
     return {};
   }
@@ -209,18 +212,19 @@ Fitness fitnessOf(const Commissioning& of) {
 
 Result<Commissioning> commission(const CommissionOptions& options, const Progress& progress) {
   if (!(options.seconds >= 0.2 && options.seconds <= 60.0)) {
-    return Error{"BAD_OPTION", "Seconds are from 0.2 to 60", "commission", "Give others"};
+    return Error{code::kBadOption, "Seconds are from 0.2 to 60", "commission", "Give others"};
   }
   if (!(options.patience_s >= 0.0 && options.patience_s <= 600.0)) {
-    return Error{"BAD_OPTION", "Arms are waited for from 0 to 600 s", "commission", "Give others"};
+    return Error{code::kBadOption, "Arms are waited for from 0 to 600 s", "commission",
+                 "Give others"};
   }
   Commissioning result{{}, localTime("%Y-%m-%d %H:%M"), buildName(), machineName(), {}};
   Run run(options, progress);
   if (Status late = run.lateness(); !late) {
-    return late.error().code == "CANCELLED" ? stopped() : late.error();
+    return late.error().code == code::kCancelled ? stopped() : late.error();
   }
   if (Status traded = run.trades(); !traded) {
-    return traded.error().code == "CANCELLED" ? stopped() : traded.error();
+    return traded.error().code == code::kCancelled ? stopped() : traded.error();
   }
   run.memory();
   progress.at(0.42, "The disk");
@@ -230,7 +234,7 @@ Result<Commissioning> commission(const CommissionOptions& options, const Progres
   run.take({judged("headset", openXrInstalled() ? 1.0 : 0.0)});
   if (progress.cancelled()) return stopped();
   if (Status drawn = run.drawing(); !drawn) {
-    return drawn.error().code == "CANCELLED" ? stopped() : drawn.error();
+    return drawn.error().code == code::kCancelled ? stopped() : drawn.error();
   }
   result.checks = std::move(run.checks);
   result.recommended = std::move(run.recommended);

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "base/codes.h"
 #include "base/html.h"
 #include "base/purpose.h"
 #include "machine/commission/commission.h"
@@ -151,13 +152,13 @@ Result<Commissioning> readCommissioning(const std::filesystem::path& file) {
   constexpr std::uintmax_t kMostBytes = 1'000'000;
   std::error_code ec;
   if (std::filesystem::file_size(file, ec) > kMostBytes && !ec) {
-    return Error{"TOO_LARGE", "This is no commissioning of ours: it is too large", file.string(),
-                 "Commission the workstation anew"};
+    return Error{code::kTooLarge, "This is no commissioning of ours: it is too large",
+                 file.string(), "Commission the workstation anew"};
   }
   const Result<Json> json = readJsonFile(file);
   if (!json) return json.error();
   const auto bad = [&](const char* field) {
-    return Error{"BAD_FIELD", "This is no commissioning of ours", file.string() + ": " + field,
+    return Error{code::kBadField, "This is no commissioning of ours", file.string() + ": " + field,
                  "Commission the workstation anew"};
   };
   try {

@@ -7,6 +7,7 @@
 #include <cerrno>
 #include <chrono>
 
+#include "base/codes.h"
 #include "base/descriptor.h"
 #include "base/file.h"
 
@@ -53,7 +54,7 @@ std::vector<CommissionCheck> checkDisk(const std::filesystem::path& folder, std:
                                        bool has_to_be_there) {
   std::error_code ec;
   if (has_to_be_there && !std::filesystem::is_directory(folder, ec)) {
-    const Error why{"MISSING_FOLDER", "This folder is not there", folder.string(),
+    const Error why{code::kMissingFolder, "This folder is not there", folder.string(),
                     "Check its name in /etc/trephine/settings.json, and whether its disk is "
                     "connected"};
     return {notMeasured("disk_room", Fitness::fail, why),

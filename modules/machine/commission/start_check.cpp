@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "machine/codes.h"
 #include "machine/commission/arm_checks.h"
 #include "machine/commission/disk_check.h"
 #include "machine/ticks/jitter_measurement.h"
@@ -24,7 +25,7 @@ Result<Commissioning> lastCommissioning(const std::filesystem::path& own_folder,
     if (read && (!last || read->when > last->when)) last = *std::move(read);
   }
   if (last) return *std::move(last);
-  return Error{"NOT_COMMISSIONED", "This workstation was not commissioned yet", "", "See Help"};
+  return Error{code::kNotCommissioned, "This workstation was not commissioned yet", "", "See Help"};
 }
 
 Result<std::vector<CommissionCheck>> checkAtStart(const StartSurroundings& surroundings,
@@ -35,7 +36,7 @@ Result<std::vector<CommissionCheck>> checkAtStart(const StartSurroundings& surro
     return measureJitterRow(kRate_hz, real_time, kTicks_s, clock, progress, 0.0, 0.4);
   };
   Result<JitterRow> row = measure(true);
-  const bool granted = row || row.error().code != "NO_REAL_TIME";
+  const bool granted = row || row.error().code != code::kNoRealTime;
   if (!granted) row = measure(false);
   if (!row) return row.error();
   const auto lateness = [&] {

@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "base/codes.h"
 #include "base/progress.h"
 #include "base/result.h"
 #include "case/placement.h"
@@ -50,7 +51,7 @@ inline double msSince(RenderClock::time_point start) {
 }
 double medianOf(std::vector<double> values);
 inline Error drawingCancelled() {
-  return {"CANCELLED", "The measurement was cancelled", "pictures", ""};
+  return {code::kCancelled, "The measurement was cancelled", "pictures", ""};
 }
 
 constexpr double kEqual_dB = 100.0;          // stand for equal pictures

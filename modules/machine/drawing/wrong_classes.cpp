@@ -4,6 +4,7 @@
 #include <cmath>
 #include <optional>
 
+#include "base/codes.h"
 #include "machine/common/on_all_processors.h"
 #include "machine/drawing/drawing_parts.h"
 #include "render/view_camera.h"
@@ -71,8 +72,8 @@ Status colourApart(ClassSubject& subject) {
     }
     if (tissue.opacity == 0.0) continue;
     if (subject.visible.size() == kCorners.size()) {
-      return Error{"BAD_ARGUMENT", "No more than 7 visible tissues can be told apart", subject.name,
-                   ""};
+      return Error{code::kBadArgument, "No more than 7 visible tissues can be told apart",
+                   subject.name, ""};
     }
     const auto& corner = kCorners[subject.visible.size()];
     tissue.colour = Vec3(corner[0], corner[1], corner[2]);

@@ -8,6 +8,7 @@
 #include <memory>
 #include <sstream>
 
+#include "base/codes.h"
 #include "base/memory.h"
 #include "base/utf8.h"
 #include "case/placement.h"
@@ -116,13 +117,13 @@ Result<Json> warningsAtStart(Exercise& exercise, const Rig& rig, const Progress&
   core.tick(input, nullptr, 0, record);
   Json warnings = Json::array();
   for (const Warning& warning : of->warnings) {
-    warnings.push_back({{"code", warning.code}, {"text", warning.text}});
+    warnings.push_back({{"code", warning.code.str()}, {"text", warning.text}});
   }
   for (const Event& event : core.events()) {
     if (event.kind != EventKind::starts_in_tissue) continue;
     const Warning warning =
         startsInTissue(exercise.arms[std::size_t(event.arm)].name, stopAtSolid(exercise.laws));
-    warnings.push_back({{"code", warning.code}, {"text", warning.text}});
+    warnings.push_back({{"code", warning.code.str()}, {"text", warning.text}});
   }
   return warnings;
 }
@@ -296,7 +297,7 @@ Result<Json> explainExercise(Exercise exercise, const std::vector<RecommendedSet
     core.tick(input, nullptr, 0, record);
   });
 
-  if (progress.cancelled()) return Error{"CANCELLED", "The explanation was cancelled", "", ""};
+  if (progress.cancelled()) return Error{code::kCancelled, "The explanation was cancelled", "", ""};
 
   Json tissues = Json::array(), laws = Json::array();
   for (const Tissue& tissue : exercise.tissues.tissues) tissues.push_back(tissue.id);

@@ -15,9 +15,11 @@
 #include <thread>
 #include <utility>
 
+#include "base/codes.h"
 #include "base/file.h"
 #include "base/rt/alloc_guard.h"
 #include "base/rt/thread.h"
+#include "machine/codes.h"
 
 namespace trephine {
 
@@ -43,7 +45,7 @@ bool canHaveRealTime() {
 
 Error noRealTime() {
   const std::string limit = " - rtprio " + std::to_string(kPriority);
-  return {"NO_REAL_TIME",
+  return {code::kNoRealTime,
           "Real-time priority was not granted: as root, write the line 'NAME" + limit +
               "' with your user's name, or '@GROUP" + limit +
               "' with a group of yours, to /etc/security/limits.d/trephine.conf, then log in again",
@@ -51,7 +53,7 @@ Error noRealTime() {
 }
 
 Error cancelled() {
-  return {"CANCELLED", "The measurement was cancelled", "measure jitter", ""};
+  return {code::kCancelled, "The measurement was cancelled", "measure jitter", ""};
 }
 
 const char* priorityName(bool real_time) {
@@ -126,7 +128,7 @@ Result<JitterRow> measureJitterRow(double rate_hz, bool real_time, double second
   }
   if (!granted.get()) {
     if (real_time) return noRealTime();
-    return Error{"NO_NORMAL_PRIORITY", "Real-time priority could not be given up", step, ""};
+    return Error{code::kNoNormalPriority, "Real-time priority could not be given up", step, ""};
   }
   return summarizeJitter(rate_hz, real_time, std::move(late_ns), schedule.missed());
 }
@@ -135,7 +137,8 @@ Result<JitterMeasurement> measureJitter(const JitterOptions& options,
                                         const std::filesystem::path& out,
                                         const Progress& progress) {
   if (!(options.seconds >= 0.1 && options.seconds <= 600.0)) {
-    return Error{"BAD_ARGUMENT", "The time must lie between 0.1 and 600 seconds", "--seconds", ""};
+    return Error{code::kBadArgument, "The time must lie between 0.1 and 600 seconds", "--seconds",
+                 ""};
   }
   if (!out.empty()) {
     if (Status made = makeFolder(out); !made) return made.error();

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <memory>
 
+#include "base/codes.h"
+#include "exercise/codes.h"
 #include "haptics/haptic_core.h"
 #include "machine/common/quantile.h"
 
@@ -86,8 +88,8 @@ class Variant {
 Result<LawCosts> measureLawCosts(const Exercise& exercise, const Progress& progress) {
   if (exercise.arms.empty() || exercise.tissues.tissues.empty() ||
       !exercise.findTool(exercise.arms[0].tool)) {
-    return Error{"BAD_SCENE", "The exercise has no arm, no tool or no tissue to measure with", "",
-                 "Give it one of each"};
+    return Error{code::kBadScene, "The exercise has no arm, no tool or no tissue to measure with",
+                 "", "Give it one of each"};
   }
   const Tissue& firmest = *std::ranges::max_element(
       exercise.tissues.tissues, {},
@@ -109,13 +111,13 @@ Result<LawCosts> measureLawCosts(const Exercise& exercise, const Progress& progr
   for (const HapticParameters& parameters : wanted) {
     variants.push_back(std::make_unique<Variant>(parameters, hu));
     (void)variants.back()->run();  // to warm it
-    if (progress.cancelled()) return Error{"CANCELLED", "It was cancelled", "", ""};
+    if (progress.cancelled()) return Error{code::kCancelled, "It was cancelled", "", ""};
   }
   std::vector<std::vector<double>> ns(variants.size());
   for (int round = 0; round < kRounds; ++round) {
     for (std::size_t v = 0; v < variants.size(); ++v) {
       ns[v].push_back(variants[v]->run());
-      if (progress.cancelled()) return Error{"CANCELLED", "It was cancelled", "", ""};
+      if (progress.cancelled()) return Error{code::kCancelled, "It was cancelled", "", ""};
     }
     progress.at(double(round + 1) / kRounds, "Measuring the laws");
   }

@@ -4,6 +4,7 @@
 
 #include <vector>
 
+#include "base/codes.h"
 #include "base/progress.h"
 #include "base/result.h"
 #include "haptics/tool.h"
@@ -38,7 +39,7 @@ TradeRows tradeRayCasting(const TradesOptions& options, const Progress& progress
 std::string rayCastingSetting(double distance_voxels, bool plain);
 
 inline Error tradesCancelled() {
-  return {"CANCELLED", "The measurement was cancelled", "trades", ""};
+  return {code::kCancelled, "The measurement was cancelled", "trades", ""};
 }
 
 }  // namespace trephine

@@ -2,9 +2,11 @@
 // looked for.
 #include <cstdio>
 
+#include "base/codes.h"
 #include "base/log.h"
 #include "machine/drawing/ray_settings.h"
 #include "machine/trades/trade_knobs.h"
+#include "render/codes.h"
 
 namespace trephine {
 
@@ -24,7 +26,8 @@ TradeRows tradeRayCasting(const TradesOptions& options, const Progress& progress
   of.truth_step = options.ray_truth_step;
   const auto figures = measureRaySettings(settings, of, progress);
   std::vector<TradeRow> rows;
-  if (!figures && (figures.error().code == "NO_DISPLAY" || figures.error().code == "NO_OPENGL")) {
+  if (!figures &&
+      (figures.error().code == code::kNoDisplay || figures.error().code == code::kNoOpengl)) {
     spdlog::warn("No ray casting: {}", figures.error().what);
     return rows;
   }

@@ -8,6 +8,7 @@
 #include <locale>
 #include <sstream>
 
+#include "base/codes.h"
 #include "base/file.h"
 #include "machine/trades/trade_knobs.h"
 
@@ -19,7 +20,7 @@ constexpr double kRateUnit_hz = 160000.0;  // rates divide it: a whole number of
 
 Status check(const TradesOptions& options) {
   const auto bad = [](const char* what, const char* where) {
-    return Error{"BAD_ARGUMENT", what, where, ""};
+    return Error{code::kBadArgument, what, where, ""};
   };
   for (const auto& [counts, where] : {std::pair(&options.blade_points, "blade_points"),
                                       std::pair(&options.burr_points, "burr_points")}) {

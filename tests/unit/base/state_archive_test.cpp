@@ -146,7 +146,7 @@ TEST(StateArchive, OpensOnlyTheStateThatWasSealed) {
   ASSERT_TRUE(opened);
   EXPECT_TRUE(std::ranges::equal(*opened, writer.bytes()));
   const auto refused = [](const auto& result) {
-    return !result && result.error().code == "BAD_STATE";
+    return !result && result.error().code.str() == "BAD_STATE";
   };
   EXPECT_TRUE(refused(openedState("tests", 3, sealed)));
   EXPECT_TRUE(refused(openedState("test", 4, sealed)));

@@ -230,7 +230,7 @@ TEST_F(ExerciseFolder, OneThatNamesDevicesIsRefusedAndNothingIsWritten) {
   listAnew(stick);
   const auto refused = importExercise(stick, folder_ / "there");
   ASSERT_FALSE(refused);
-  EXPECT_EQ(refused.error().code, "BAD_FIELD");
+  EXPECT_EQ(refused.error().code.str(), "BAD_FIELD");
   EXPECT_NE(refused.error().sentence().find("device"), std::string::npos);
 }
 

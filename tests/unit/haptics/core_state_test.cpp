@@ -387,7 +387,7 @@ TEST(CoreStateValue, RefusesWhatIsNotItsOwnAndStaysAsItWas) {
   const std::vector<std::byte> before = fresh->core.save();
   const auto refused = [&](Core& at, std::span<const std::byte> bytes) {
     const Status loaded = at.core.load(bytes);
-    return !loaded && loaded.error().code == "BAD_STATE";
+    return !loaded && loaded.error().code.str() == "BAD_STATE";
   };
   std::vector<std::byte> bytes = moment.state;
   for (std::size_t length : {std::size_t(0), std::size_t(20), bytes.size() / 2, bytes.size() - 1}) {

@@ -78,7 +78,7 @@ TEST(Provenance, IsReadBackAsItWasWritten) {
   EXPECT_TRUE(back->source_ids.empty());
   Json before = toJson(of);
   before["source_ids"] = {{"study", "1"}, {"series", "2"}, {"frame_of_reference", "3"}};
-  EXPECT_EQ(provenanceFrom(before, "provenance.json").error().code, "OLDER_VERSION");
+  EXPECT_EQ(provenanceFrom(before, "provenance.json").error().code.str(), "OLDER_VERSION");
   EXPECT_EQ(back->crop, of.crop);
   const auto plain = provenanceFrom(toJson(Provenance{}), "p");
   ASSERT_TRUE(plain) << plain.error().sentence();

@@ -128,7 +128,7 @@ TEST_F(CaseOfJaneDoe, ThatSaysWhichCtItIsOfWhereAllMayReadItIsRefusedInOneSenten
   ASSERT_TRUE(writeTextFile(record.folder / "provenance.json", provenance.dump(2)));
   const Result<LoadedCase> refused = CaseLibrary(storage()).load(record.id);
   ASSERT_FALSE(refused);
-  EXPECT_EQ(refused.error().code, "OLDER_VERSION");
+  EXPECT_EQ(refused.error().code.str(), "OLDER_VERSION");
   EXPECT_NE(refused.error().sentence().find("Import the CT again"), std::string::npos);
 }
 
