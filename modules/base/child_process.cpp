@@ -19,6 +19,7 @@
 #include "base/codes.h"
 #include "base/descriptor.h"
 #include "base/json.h"
+#include "base/tr.h"
 
 extern char** environ;
 
@@ -43,7 +44,7 @@ Descriptor aboveStandard(int fd) {
 }
 
 Error cannotRun(const ChildCommand& command, int error) {
-  return {code::kCannotRun, std::string("A program could not be run: ") + std::strerror(error),
+  return {code::kCannotRun, tr("A program could not be run: {}", std::strerror(error)),
           std::filesystem::path(command.words.front()).filename().string(), ""};
 }
 
@@ -154,7 +155,7 @@ Result<ChildRun> runChild(const ChildCommand& command, const Progress& progress)
   rusage usage{};
   while (::wait4(child, &status, 0, &usage) < 0 && errno == EINTR) {
   }
-  if (progress.cancelled()) return Error{code::kCancelled, "It was cancelled", "", ""};
+  if (progress.cancelled()) return Error{code::kCancelled, tr("It was cancelled"), "", ""};
   if (report.error != 0) return cannotRun(command, report.error);
   if (process.get() < 0) return cannotRun(command, ENOSYS);
   run.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);

@@ -6,6 +6,7 @@
 #include <system_error>
 
 #include "base/codes.h"
+#include "base/tr.h"
 
 namespace trephine {
 
@@ -21,9 +22,9 @@ Status enoughRoom(const fs::path& folder, double bytes, const std::string& what)
     return std::to_string(std::int64_t(std::min(std::ceil(n / 1e6), 9e18))) + " MB";
   };
   return Error{code::kCannotWrite,
-               "The disk has no room for " + what + ": it needs " + mb(bytes) + ", and " +
-                   mb(double(room.available)) + " are free",
-               folder.string(), "Free some space, or choose another storage folder"};
+               tr("The disk has no room for {}: it needs {}, and {} are free", what, mb(bytes),
+                  mb(double(room.available))),
+               folder.string(), tr("Free some space, or choose another storage folder")};
 }
 
 }  // namespace trephine

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "base/codes.h"
+#include "base/tr.h"
 
 namespace trephine {
 
@@ -37,11 +38,11 @@ bool isAmong(std::span<const std::string_view> names, std::string_view name) {
 }
 
 std::string noSuchChoice(const std::string& name) {
-  return "'" + name + "' is none of its choices";
+  return tr("'{}' is none of its choices", name);
 }
 
 std::string useOneOf(const FieldShape& field) {
-  return "Use one of: " + listed(field.names, "");
+  return tr("Use one of: {}", listed(field.names, ""));
 }
 
 // Longer than any list of ours.
@@ -52,23 +53,23 @@ std::string typeWords(const FieldShape& field) {
     case FieldKind::number:
       return "number";
     case FieldKind::whole:
-      return "whole number";
+      return tr("whole number");
     case FieldKind::three_numbers:
-      return "three numbers";
+      return tr("three numbers");
     case FieldKind::direction:
       return "direction";
     case FieldKind::flag:
-      return "true or false";
+      return tr("true or false");
     case FieldKind::text:
     case FieldKind::reference:
       return "text";
     case FieldKind::lines:
     case FieldKind::references:
-      return "list of texts";
+      return tr("list of texts");
     case FieldKind::choice:
       return listed(field.names, "`");
     case FieldKind::choices:
-      return "list of " + listed(field.names, "`");
+      return tr("list of {}", listed(field.names, "`"));
   }
   return {};
 }
@@ -124,7 +125,7 @@ FieldValue readField(JsonReader& item, const FieldShape& field) {
         if (!isAmong(field.names, name)) {
           item.fail(key, noSuchChoice(name), useOneOf(field));
         } else if (std::ranges::find(names, name) != names.end()) {
-          item.fail(key, "'" + name + "' stands twice in the list", "Name each once");
+          item.fail(key, tr("'{}' stands twice in the list", name), tr("Name each once"));
         } else {
           names.push_back(name);
         }
@@ -156,8 +157,8 @@ void writeField(Json& json, const FieldShape& field, const FieldValue& value) {
 Status checkNumber(const FieldRow& row, double value, const std::string& of) {
   if (row.range.holds(value)) return {};
   return Error{code::kImpossibleNumber,
-               "The value " + plainNumber(value) + " must lie " + row.range.words(),
-               of + ": " + row.key, "Correct that value"};
+               tr("The value {} must lie {}", plainNumber(value), row.range.words()),
+               of + ": " + row.key, tr("Correct that value")};
 }
 
 Status checkField(const FieldShape& field, const FieldValue& value, const std::string& of) {
@@ -186,21 +187,21 @@ Result<FieldValue> parseField(const FieldShape& field, const std::string& text,
       const bool whole = field.kind == FieldKind::whole;
       const bool read = error == std::errc() && stop == end && (!whole || number == std::floor(number));
       if (read && field.row.range.holds(number)) return FieldValue(number);
-      return bad("'" + text + "' is no possible " + std::string(field.row.key),
-                 std::string(whole ? "Give a whole number " : "Give a number ") +
+      return bad(tr("'{}' is no possible {}", text, field.row.key),
+                 std::string(whole ? tr("Give a whole number ") : tr("Give a number ")) +
                      field.row.range.words());
     }
     case FieldKind::flag:
       if (text == "true" || text == "false") return FieldValue(text == "true");
-      return bad("'" + text + "' is neither true nor false", "Give true or false");
+      return bad(tr("'{}' is neither true nor false", text), tr("Give true or false"));
     case FieldKind::text:
     case FieldKind::reference:
       return FieldValue(text);
     case FieldKind::choice:
       if (isAmong(field.names, text)) return FieldValue(text);
-      return bad("There is no " + std::string(field.row.key) + " '" + text + "'", useOneOf(field));
+      return bad(tr("There is no {} '{}'", field.row.key, text), useOneOf(field));
     default:
-      return bad(std::string(field.row.key) + " cannot be given here", "Set it in the file");
+      return bad(tr("{} cannot be given here", field.row.key), tr("Set it in the file"));
   }
 }
 
@@ -222,8 +223,9 @@ std::string optionOf(const FieldRow& row) {
 }
 
 std::string schemaHead() {
-  return "| of | key | type | range | unit | without it | meaning "
-         "|\n|---|---|---|---|---|---|---|\n";
+  return tr(
+      "| of | key | type | range | unit | without it | meaning "
+      "|\n|---|---|---|---|---|---|---|\n");
 }
 
 std::string schemaLine(std::string_view of, const FieldRow& row, std::string_view type,
@@ -233,7 +235,7 @@ std::string schemaLine(std::string_view of, const FieldRow& row, std::string_vie
   };
   const std::string range =
       type.ends_with("number") || type.ends_with("numbers")
-          ? pageNumber(row.range.low) + " to " + pageNumber(row.range.high)
+          ? tr("{} to {}", pageNumber(row.range.low), pageNumber(row.range.high))
           : "";
   return "|" + cell(of) + cell("`" + std::string(row.key) + "`") + cell(type) + cell(range) +
          cell(row.range.unit) + cell(row.given == Given::always ? "refused" : fallback) +

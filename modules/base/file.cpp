@@ -13,6 +13,7 @@
 #include "base/descriptor.h"
 #include "base/shared_folder.h"
 #include "base/stretched_hash.h"
+#include "base/tr.h"
 
 namespace trephine {
 
@@ -67,19 +68,19 @@ Status replaceFile(const fs::path& target, const std::function<Status(const fs::
 
 Error writeError(const fs::path& target, int error) {
   return Error{code::kCannotWrite,
-               std::string("The file could not be written: ") +
-                   (error ? std::strerror(error) : "unknown reason"),
-               target.string(), afterFailedWrite(error) + "; nothing that was there is lost"};
+               tr("The file could not be written: {}",
+                  (error ? std::strerror(error) : tr("unknown reason"))),
+               target.string(), tr("{}; nothing that was there is lost", afterFailedWrite(error))};
 }
 
 std::string afterFailedWrite(int error) {
   if (error == ENOSPC || error == EDQUOT || error == EFBIG) {
-    return "Free some space, or choose another place";
+    return tr("Free some space, or choose another place");
   }
   if (error == EACCES || error == EPERM || error == EROFS) {
-    return "Choose a place where you may write";
+    return tr("Choose a place where you may write");
   }
-  return "Choose another place";
+  return tr("Choose another place");
 }
 
 Status checkNewFile(const fs::path& file, const std::string& option) {
@@ -88,14 +89,14 @@ Status checkNewFile(const fs::path& file, const std::string& option) {
   if (fs::exists(there)) {
     return Error{code::kCannotWrite,
                  fs::is_directory(there)
-                     ? "This is a folder, not a new file"
-                     : "There is something of this name already, which would be lost",
-                 file.string(), "Give " + option + " a name that is not taken"};
+                     ? tr("This is a folder, not a new file")
+                     : tr("There is something of this name already, which would be lost"),
+                 file.string(), tr("Give {} a name that is not taken", option)};
   }
   const fs::path folder = file.has_parent_path() ? file.parent_path() : ".";
   if (!fs::is_directory(folder, ec)) {
-    return Error{code::kMissingFolder, "There is no folder for this file", file.string(),
-                 "Make it, or give " + option + " another place"};
+    return Error{code::kMissingFolder, tr("There is no folder for this file"), file.string(),
+                 tr("Make it, or give {} another place", option)};
   }
   const fs::path temporary = temporaryFor(file);
   if (!Descriptor(::open(temporary.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0600)).ok()) {
@@ -106,10 +107,10 @@ Status checkNewFile(const fs::path& file, const std::string& option) {
 }
 
 Result<std::string> readWholeFile(const fs::path& file, std::size_t most_bytes) {
-  const char* const check = "Check the name and that you may read it";
+  const std::string check = tr("Check the name and that you may read it");
   const auto failed = [&](Code code, int error) {
-    return Error{code, std::string("The file cannot be read: ") + std::strerror(error),
-                 file.string(), check};
+    return Error{code, tr("The file cannot be read: {}", std::strerror(error)), file.string(),
+                 check};
   };
   // Opening a pipe would wait for its writer without O_NONBLOCK, which a regular file ignores.
   const Descriptor opened(::open(file.c_str(), O_RDONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC));
@@ -120,12 +121,11 @@ Result<std::string> readWholeFile(const fs::path& file, std::size_t most_bytes) 
   struct stat of {};
   if (::fstat(opened.get(), &of) != 0) return failed(code::kCannotRead, errno);
   if (!S_ISREG(of.st_mode)) {
-    return Error{code::kNoFile, "This is no file but a folder, a pipe or a device", file.string(),
-                 check};
+    return Error{code::kNoFile, tr("This is no file but a folder, a pipe or a device"),
+                 file.string(), check};
   }
-  const Error too_large{code::kTooLarge,
-                        "The file is larger than " + std::to_string(most_bytes >> 20) + " MB",
-                        file.string(), "Choose another file"};
+  const Error too_large{code::kTooLarge, tr("The file is larger than {} MB", most_bytes >> 20),
+                        file.string(), tr("Choose another file")};
   if (std::uintmax_t(of.st_size) > most_bytes) return too_large;
   std::string text(std::size_t(of.st_size), '\0');
   std::size_t got = 0;
@@ -165,10 +165,10 @@ Status tryRoom(const fs::path& folder, std::size_t bytes) {
 Status makeFolder(const fs::path& folder) {
   std::error_code ec;
   fs::create_directories(folder, ec);
-  const std::string reason = ec ? ec.message() : "a file is in its place";
+  const std::string reason = ec ? ec.message() : tr("a file is in its place");
   if (ec || !fs::is_directory(folder, ec)) {
-    return Error{code::kCannotWrite, "The folder could not be made: " + reason, folder.string(),
-                 "Choose another folder"};
+    return Error{code::kCannotWrite, tr("The folder could not be made: {}", reason),
+                 folder.string(), tr("Choose another folder")};
   }
   return {};
 }
@@ -179,9 +179,9 @@ Result<fs::path> temporaryFolder() {
   const fs::path folder = given ? named : "/tmp";
   std::error_code ec;
   if (fs::is_directory(folder, ec)) return folder;
-  return Error{code::kNoTemporaryFolder, "There is no folder for temporary files",
+  return Error{code::kNoTemporaryFolder, tr("There is no folder for temporary files"),
                (given ? "TMPDIR=" : "") + folder.string(),
-               "Set TMPDIR to a folder that you may write to"};
+               tr("Set TMPDIR to a folder that you may write to")};
 }
 
 }  // namespace trephine

@@ -15,6 +15,7 @@
 #include "base/codes.h"
 #include "base/progress.h"
 #include "base/result.h"
+#include "base/tr.h"
 
 namespace trephine {
 
@@ -68,10 +69,11 @@ class Job {
     try {
       return work(progress);
     } catch (const std::bad_alloc&) {
-      return Error{code::kOutOfMemory, "There is not enough memory for this", "",
-                   "Close other programs or choose a smaller series"};
+      return Error{code::kOutOfMemory, tr("There is not enough memory for this"), "",
+                   tr("Close other programs or choose a smaller series")};
     } catch (const std::exception& problem) {
-      return Error{code::kUnexpected, problem.what(), "", "Try again, and report it if it stays"};
+      return Error{code::kUnexpected, problem.what(), "",
+                   tr("Try again, and report it if it stays")};
     }
   }
   void prepare();

@@ -6,6 +6,7 @@
 
 #include "base/codes.h"
 #include "base/file.h"
+#include "base/tr.h"
 #include "base/utf8.h"
 
 namespace trephine {
@@ -48,9 +49,9 @@ bool isLong(const Json& value, std::size_t& left) {
 std::string shorten(const Json& value) {
   std::size_t most = 1000;
   if (isLong(value, most)) {
-    return value.is_array() ? "a list of " + std::to_string(value.size())
-           : value.is_object() ? "an object of " + std::to_string(value.size())
-                               : "a long text";
+    return value.is_array()    ? tr("a list of {}", value.size())
+           : value.is_object() ? tr("an object of {}", value.size())
+                               : tr("a long text");
   }
   std::string text = value.dump(-1, ' ', false, Json::error_handler_t::replace);
   return shorten(std::move(text), 60);
@@ -68,7 +69,7 @@ class ValueMaker : public Json::json_sax_t {
   bool number_unsigned(std::uint64_t value) override { return add(value); }
   bool number_float(double value, const std::string&) override { return add(value); }
   bool string(std::string& value) override { return add(std::move(value)); }
-  bool binary(Json::binary_t&) override { return refuse("it is binary"); }
+  bool binary(Json::binary_t&) override { return refuse(tr("it is binary")); }
   bool start_object(std::size_t) override { return open(false); }
   bool start_array(std::size_t) override { return open(true); }
   bool end_object() override { return close(); }
@@ -76,9 +77,9 @@ class ValueMaker : public Json::json_sax_t {
   bool key(std::string& name) override {
     Level& level = levels_.back();
     level.key = std::move(name);
-    if (!level.keys.insert(level.key).second) return refuse("a field is given twice");
+    if (!level.keys.insert(level.key).second) return refuse(tr("a field is given twice"));
     if (level.keys.size() <= kMaxMembers) return true;
-    return refuse("an object has more than " + std::to_string(kMaxMembers) + " fields");
+    return refuse(tr("an object has more than {} fields", kMaxMembers));
   }
   bool parse_error(std::size_t, const std::string&, const Json::exception& e) override {
     constexpr int kOutOfRange = 406;  // a number that no double holds
@@ -122,7 +123,7 @@ class ValueMaker : public Json::json_sax_t {
   bool count() {
     constexpr std::size_t kLooks = 4096;  // values from one look at `cancelled` to the next
     if (++values_ > kMaxValues) {
-      return refuse("it holds more than " + std::to_string(kMaxValues) + " values");
+      return refuse(tr("it holds more than {} values", kMaxValues));
     }
     cancelled_ = values_ % kLooks == 0 && progress_.cancelled();
     return !cancelled_;
@@ -143,7 +144,7 @@ class ValueMaker : public Json::json_sax_t {
   }
   bool open(bool is_list) {
     if (levels_.size() >= kMaxDepth) {
-      return refuse("it is nested deeper than " + std::to_string(kMaxDepth));
+      return refuse(tr("it is nested deeper than {}", kMaxDepth));
     }
     if (!count()) return false;
     levels_.push_back({is_list});
@@ -182,14 +183,14 @@ Result<Json> parseJson(std::string_view text, const std::string& file, const Pro
   std::string reason;
   try {
     if (Json::sax_parse(text, &maker)) return maker.take();
-    if (maker.wasCancelled()) return Error{code::kCancelled, "Reading was cancelled", file, ""};
+    if (maker.wasCancelled()) return Error{code::kCancelled, tr("Reading was cancelled"), file, ""};
     reason = maker.reason();
   } catch (const std::exception& e) {  // no memory
     reason = e.what();
   }
-  return Error{code::kBadJson, "The file is not valid JSON: " + shorten(std::move(reason), 200),
-               file + (maker.field().empty() ? "" : ": " + maker.field()),
-               "Correct it at that place"};
+  return Error{
+      code::kBadJson, tr("The file is not valid JSON: {}", shorten(std::move(reason), 200)),
+      file + (maker.field().empty() ? "" : ": " + maker.field()), tr("Correct it at that place")};
 }
 
 Result<Json> readJsonFile(const std::filesystem::path& file, const Progress& progress,
@@ -199,7 +200,7 @@ Result<Json> readJsonFile(const std::filesystem::path& file, const Progress& pro
   Error error = text.error();
   const bool too_large = error.code == code::kTooLarge;
   error.code = too_large ? code::kBadJson : code::kMissingFile;
-  if (too_large) error.what += ", which none of our files of this kind is";
+  if (too_large) error.what += tr(", which none of our files of this kind is");
   return error;
 }
 
@@ -213,21 +214,36 @@ JsonReader::JsonReader(const Json* object, std::shared_ptr<State> state, std::st
       seen_(std::make_shared<std::vector<std::string>>()),
       children_(std::make_shared<std::vector<JsonReader>>()) {
   if (!object_->is_object()) {
-    fail("", "Expected an object, found " + shorten(*object_));
+    fail("", tr("Expected an object, found {}", shorten(*object_)));
     object_ = &kEmptyObject;
   }
 }
 
+namespace {
+
+std::string seeSchema() {
+  return tr("Correct it; the file's schema describes every field");
+}
+
+std::string addAsInSchema() {
+  return tr("Add it; the schema lists every field");
+}
+
+}  // namespace
+
+bool pointsToSchema(const Error& error) {
+  return error.next == seeSchema() || error.next == addAsInSchema();
+}
+
 std::string JsonReader::fieldName(const char* key) const {
-  if (*key == '\0') return field_.empty() ? "the file's top level" : field_;
+  if (*key == '\0') return field_.empty() ? tr("the file's top level") : field_;
   return field_.empty() ? key : field_ + "." + key;
 }
 
 void JsonReader::fail(const char* key, const std::string& what, const std::string& next) {
   if (state_->error) return;
-  state_->error =
-      Error{code::kBadField, what, state_->file + ": " + fieldName(key),
-            next.empty() ? "Correct it; the file's schema describes every field" : next};
+  state_->error = Error{code::kBadField, what, state_->file + ": " + fieldName(key),
+                        next.empty() ? seeSchema() : next};
 }
 
 bool JsonReader::has(const char* key) const {
@@ -238,17 +254,17 @@ const Json* JsonReader::find(const char* key, bool required) {
   seen_->emplace_back(key);
   auto it = object_->find(key);
   if (it != object_->end()) return &*it;
-  if (required) fail(key, "A required field is missing", "Add it; the schema lists every field");
+  if (required) fail(key, tr("A required field is missing"), addAsInSchema());
   return nullptr;
 }
 
 void JsonReader::outOfRange(const Json& value, const char* key, const Range& range) {
-  fail(key, "The value " + shorten(value) + " must lie " + range.words());
+  fail(key, tr("The value {} must lie {}", shorten(value), range.words()));
 }
 
 double JsonReader::asNumber(const Json& value, const char* key, const Range& range) {
   if (!value.is_number()) {
-    fail(key, "Expected a number, found " + shorten(value));
+    fail(key, tr("Expected a number, found {}", shorten(value)));
     return 0.0;
   }
   const double number = value.get<double>();
@@ -256,7 +272,7 @@ double JsonReader::asNumber(const Json& value, const char* key, const Range& ran
   if (std::isfinite(number)) {
     outOfRange(value, key, range);
   } else {
-    fail(key, "The number " + std::to_string(number) + " is not finite");  // JSON has no nan
+    fail(key, tr("The number {} is not finite", std::to_string(number)));  // JSON has no nan
   }
   return 0.0;
 }
@@ -276,7 +292,7 @@ std::int64_t JsonReader::asInteger(const Json& value, const char* key, const Ran
   constexpr auto kMax = std::uint64_t(std::numeric_limits<std::int64_t>::max());
   if (!value.is_number_integer() ||
       (value.is_number_unsigned() && value.get<std::uint64_t>() > kMax)) {
-    fail(key, "Expected a whole number, found " + shorten(value));
+    fail(key, tr("Expected a whole number, found {}", shorten(value)));
     return 0;
   }
   const auto number = value.get<std::int64_t>();
@@ -298,7 +314,7 @@ bool JsonReader::boolean(const char* key, bool fallback) {
   const Json* value = find(key, false);
   if (!value) return fallback;
   if (!value->is_boolean()) {
-    fail(key, "Expected true or false, found " + shorten(*value));
+    fail(key, tr("Expected true or false, found {}", shorten(*value)));
     return fallback;
   }
   return value->get<bool>();
@@ -308,12 +324,11 @@ std::string JsonReader::text(const char* key) {
   const Json* value = find(key, true);
   if (!value) return {};
   if (!value->is_string()) {
-    fail(key, "Expected text, found " + shorten(*value));
+    fail(key, tr("Expected text, found {}", shorten(*value)));
     return {};
   }
   if (value->get_ref<const std::string&>().size() > kMaxText) {
-    fail(key,
-         "The text " + shorten(*value) + " is longer than " + std::to_string(kMaxText) + " bytes");
+    fail(key, tr("The text {} is longer than {} bytes", shorten(*value), kMaxText));
     return {};
   }
   checkOneLine(*value, key);
@@ -323,24 +338,24 @@ std::string JsonReader::text(const char* key) {
 void JsonReader::checkOneLine(const Json& text, const char* key) {
   if (isOneLine(text.get_ref<const std::string&>())) return;
   fail(key,
-       "The text " + shorten(text) + " is no plain line: it has line breaks or control characters");
+       tr("The text {} is no plain line: it has line breaks or control characters", shorten(text)));
 }
 
 std::string JsonReader::text(const char* key, std::string fallback) {
   return has(key) ? text(key) : (find(key, false), fallback);
 }
 
-const Json* JsonReader::list(const char* key, std::size_t least, std::size_t most, const char* of) {
+const Json* JsonReader::list(const char* key, std::size_t least, std::size_t most,
+                             const std::string& of) {
   const Json* value = find(key, true);
   if (!value) return nullptr;
   if (!value->is_array()) {
-    fail(key, std::string("Expected a list of ") + of + ", found " + shorten(*value));
+    fail(key, tr("Expected a list of {}, found {}", of, shorten(*value)));
     return nullptr;
   }
   if (value->size() >= least && value->size() <= most) return value;
-  fail(key, std::string("Expected a list of ") + (least == most ? "" : "at most ") +
-                std::to_string(most) + " " + of + ", found " + std::to_string(value->size()) +
-                ": " + shorten(*value));
+  fail(key, tr("Expected a list of {}{} {}, found {}: {}", (least == most ? "" : tr("at most ")),
+               most, of, value->size(), shorten(*value)));
   return nullptr;
 }
 
@@ -359,8 +374,8 @@ Vec3 JsonReader::direction(const char* key) {
   constexpr double kUnit = 1e-12;  // what was written as a unit vector is read as it was, to the bit
   if (std::abs(length - 1.0) < kUnit) return along;
   if (kDirectionLength.holds(length)) return along / length;
-  fail(key, "The direction has a length of " + plainNumber(length) + ", which must lie " +
-                kDirectionLength.words());
+  fail(key, tr("The direction has a length of {}, which must lie {}", plainNumber(length),
+               kDirectionLength.words()));
   return {0.0, 0.0, 1.0};
 }
 
@@ -377,7 +392,7 @@ std::vector<std::string> JsonReader::texts(const char* key, std::size_t most) {
       checkOneLine(item, key);
       out.push_back(item.get<std::string>());
     } else {
-      fail(key, "Expected a list of texts, found " + shorten(item));
+      fail(key, tr("Expected a list of texts, found {}", shorten(item)));
     }
   }
   return out;
@@ -386,7 +401,7 @@ std::vector<std::string> JsonReader::texts(const char* key, std::size_t most) {
 std::vector<std::int64_t> JsonReader::integers(const char* key, std::size_t count,
                                                const Range& range) {
   std::vector<std::int64_t> out(count, 0);
-  const Json* value = list(key, count, count, "whole numbers");
+  const Json* value = list(key, count, count, tr("whole numbers"));
   for (std::size_t i = 0; value && i < count; ++i) out[i] = asInteger((*value)[i], key, range);
   return out;
 }
@@ -428,22 +443,22 @@ void JsonReader::format(const char* format, int version) {
   std::int64_t number = integer("version", {-kAny, kAny});
   if (!ok()) return;
   if (found != format) {
-    fail("format", "This is a '" + found + "' file, not a '" + format + "' file");
+    fail("format", tr("This is a '{}' file, not a '{}' file", found, format));
   } else if (number > version) {
     fail("version",
-         "The file has version " + std::to_string(number) + " of " + format +
-             ", and this program reads up to " + std::to_string(version),
-         "Open it with a newer Trephine");
+         tr("The file has version {} of {}, and this program reads up to {}", number, format,
+            version),
+         tr("Open it with a newer Trephine"));
   } else if (number < 1) {
-    fail("version", "The version " + std::to_string(number) + " does not exist");
+    fail("version", tr("The version {} does not exist", number));
   }
 }
 
 void JsonReader::checkUnknown() {
   for (auto it = object_->begin(); it != object_->end(); ++it) {
     if (std::find(seen_->begin(), seen_->end(), it.key()) == seen_->end()) {
-      fail(it.key().c_str(), "Unknown field with value " + shorten(it.value()),
-           "Remove it or correct its name");
+      fail(it.key().c_str(), tr("Unknown field with value {}", shorten(it.value())),
+           tr("Remove it or correct its name"));
       return;
     }
   }

@@ -85,7 +85,7 @@ class JsonReader {
   JsonReader(const Json* object, std::shared_ptr<State> state, std::string field);
   const Json* find(const char* key, bool required);
   // The list of that key; null after a problem.
-  const Json* list(const char* key, std::size_t least, std::size_t most, const char* of);
+  const Json* list(const char* key, std::size_t least, std::size_t most, const std::string& of);
   void checkOneLine(const Json& text, const char* key);
   double asNumber(const Json& value, const char* key, const Range& range);
   std::int64_t asInteger(const Json& value, const char* key, const Range& range);
@@ -98,5 +98,8 @@ class JsonReader {
   std::shared_ptr<std::vector<std::string>> seen_;
   std::shared_ptr<std::vector<JsonReader>> children_;
 };
+
+// Whether all that the error of a JsonReader advises is to look at the file's schema.
+bool pointsToSchema(const Error& error);
 
 }  // namespace trephine

@@ -11,6 +11,7 @@
 #include <string>
 
 #include "base/codes.h"
+#include "base/tr.h"
 
 namespace trephine {
 
@@ -21,7 +22,7 @@ namespace fs = std::filesystem;
 constexpr double kMb = 1024.0 * 1024.0;
 constexpr double kSpare_mb = 64.0;  // left to everything else
 constexpr const char* kLess =
-    "Close other programs, or import the case cropped or at a lower resolution";
+    trLater("Close other programs, or import the case cropped or at a lower resolution");
 // Groups of version 1 without a limit have the largest number of pages there is.
 constexpr double kNoLimit_bytes = 1e18;
 
@@ -127,8 +128,8 @@ Status enoughMemory(double needed_mb, const std::string& what, const std::string
   const auto figure = [](double mb) { return std::to_string(std::llround(mb)) + " MB"; };
   return Error{
       code::kOutOfMemory,
-      what + " needs " + figure(needed_mb) + " of memory, and " + figure(usable_mb) + " can be had",
-      where, kLess};
+      tr("{} needs {} of memory, and {} can be had", what, figure(needed_mb), figure(usable_mb)),
+      where, tr(kLess)};
 }
 
 Status enoughToRead(double needed_mb, const std::string& what, const std::string& where,
@@ -137,12 +138,12 @@ Status enoughToRead(double needed_mb, const std::string& what, const std::string
   if (enough) return enough;
   Error error = enough.error();
   error.next =
-      "Close other programs, use a computer with more memory, or have a smaller part exported";
+      tr("Close other programs, use a computer with more memory, or have a smaller part exported");
   return error;
 }
 
 Error outOfMemory(const std::string& what, const std::string& where) {
-  return {code::kOutOfMemory, "There is not enough memory " + what, where, kLess};
+  return {code::kOutOfMemory, tr("There is not enough memory {}", what), where, tr(kLess)};
 }
 
 }  // namespace trephine

@@ -6,6 +6,7 @@
 #include "base/codes.h"
 #include "base/hex.h"
 #include "base/stretched_hash.h"
+#include "base/tr.h"
 
 namespace trephine {
 
@@ -44,8 +45,9 @@ std::string hashOf(std::string_view text, const std::string& salt_hex, int itera
 
 Result<Pin> makePin(std::string_view text) {
   if (!mayBePin(text)) {
-    return Error{code::kBadPin, "A PIN has 4 to 12 digits or letters from A to Z, and nothing else",
-                 "", "Choose another"};
+    return Error{code::kBadPin,
+                 tr("A PIN has 4 to 12 digits or letters from A to Z, and nothing else"), "",
+                 tr("Choose another")};
   }
   const Result<std::string> salt = randomHex(kSaltBytes);
   if (!salt) return salt.error();
@@ -64,8 +66,8 @@ bool pinMatches(const Pin& pin, std::string_view text) {
 Pin readPin(JsonReader reader) {
   Pin pin;
   if (const std::string name = reader.text("algorithm"); reader.ok() && name != kAlgorithm) {
-    reader.fail("algorithm", "Unknown algorithm '" + name + "'",
-                std::string("Use ") + kAlgorithm + ", as trephine-lab pin does");
+    reader.fail("algorithm", tr("Unknown algorithm '{}'", name),
+                tr("Use {}, as trephine-lab pin does", kAlgorithm));
   }
   pin.iterations = int(reader.integer("iterations", kIterationRange));
   pin.salt_hex = reader.text("salt_hex");
@@ -73,12 +75,12 @@ Pin readPin(JsonReader reader) {
   if (!reader.ok()) return pin;
   const int salt = bytesIn(pin.salt_hex);
   if (salt < kSaltBytes || salt > kMostSaltBytes) {
-    reader.fail("salt_hex", "The salt is not 32 to 128 digits of hex",
-                "Copy it as trephine-lab pin printed it");
+    reader.fail("salt_hex", tr("The salt is not 32 to 128 digits of hex"),
+                tr("Copy it as trephine-lab pin printed it"));
   }
   if (bytesIn(pin.hash_hex) != kHashBytes) {
-    reader.fail("hash_hex", "The hash is not 64 digits of hex",
-                "Copy it as trephine-lab pin printed it");
+    reader.fail("hash_hex", tr("The hash is not 64 digits of hex"),
+                tr("Copy it as trephine-lab pin printed it"));
   }
   return pin;
 }

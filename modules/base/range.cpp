@@ -2,6 +2,8 @@
 
 #include <cstdio>
 
+#include "base/tr.h"
+
 namespace trephine {
 
 std::string plainNumber(double value) {
@@ -11,7 +13,7 @@ std::string plainNumber(double value) {
 }
 
 std::string Range::words() const {
-  return "between " + plainNumber(low) + " and " + plainNumber(high) + (*unit ? " " : "") + unit;
+  return tr("between {} and {}{}{}", plainNumber(low), plainNumber(high), (*unit ? " " : ""), unit);
 }
 
 }  // namespace trephine

@@ -5,6 +5,7 @@
 
 #include "base/codes.h"
 #include "base/sha256.h"
+#include "base/tr.h"
 
 namespace trephine {
 
@@ -21,8 +22,8 @@ std::array<char, kStateKindBytes> kindBytes(std::string_view kind) {
 }
 
 Error badState(std::string_view kind, const std::string& what) {
-  return {code::kBadState, what, "the state `" + std::string(kind) + "`",
-          "Take it from the running exercise again, with the same release."};
+  return {code::kBadState, what, tr("the state `{}`", kind),
+          tr("Take it from the running exercise again, with the same release")};
 }
 
 }  // namespace
@@ -43,7 +44,7 @@ std::vector<std::byte> sealedState(std::string_view kind, std::uint32_t version,
 Result<std::span<const std::byte>> openedState(std::string_view kind, std::uint32_t version,
                                                std::span<const std::byte> sealed) {
   if (sealed.size() < kStateHeadBytes) {
-    return badState(kind, "The bytes end within the state's head.");
+    return badState(kind, tr("The bytes end within the state's head"));
   }
   StateReader head(sealed.first(kStateHeadBytes));
   std::array<char, kStateKindBytes> kind_read{};
@@ -51,18 +52,17 @@ Result<std::span<const std::byte>> openedState(std::string_view kind, std::uint3
   std::uint64_t length = 0;
   std::array<char, kStateHashBytes> hash{};
   head(kind_read, version_read, length, hash);
-  if (kind_read != kindBytes(kind)) return badState(kind, "The bytes are no such state.");
+  if (kind_read != kindBytes(kind)) return badState(kind, tr("The bytes are no such state"));
   if (version_read != version) {
-    return badState(kind, "The state is of version " + std::to_string(version_read) +
-                              ", this release reads version " + std::to_string(version) + ".");
+    return badState(kind, tr("The state is of version {}, this release reads version {}",
+                             version_read, version));
   }
   const std::span<const std::byte> state = sealed.subspan(kStateHeadBytes);
   if (state.size() != length) {
-    return badState(kind, "The state has " + std::to_string(state.size()) + " bytes of " +
-                              std::to_string(length) + ".");
+    return badState(kind, tr("The state has {} bytes of {}", state.size(), length));
   }
   if (sha256Hex(state.data(), state.size()) != std::string_view(hash.data(), hash.size())) {
-    return badState(kind, "The bytes are not those that were written.");
+    return badState(kind, tr("The bytes are not those that were written"));
   }
   return state;
 }

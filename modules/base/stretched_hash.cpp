@@ -9,6 +9,7 @@
 
 #include "base/codes.h"
 #include "base/hex.h"
+#include "base/tr.h"
 
 namespace trephine {
 
@@ -40,7 +41,8 @@ bool sameSecret(std::string_view a, std::string_view b) {
 Result<std::string> randomHex(int bytes) {
   std::vector<std::uint8_t> random(std::size_t(bytes), 0);
   if (RAND_bytes(random.data(), bytes) != 1) {
-    return Error{code::kNoRandomNumbers, "The system gives no random numbers", "", "Try again"};
+    return Error{code::kNoRandomNumbers, tr("The system gives no random numbers"), "",
+                 tr("Try again")};
   }
   return hexOf(random);
 }

@@ -4,6 +4,8 @@
 #include <memory>
 #include <utility>
 
+#include "base/tr.h"
+
 namespace trephine {
 
 namespace {
@@ -28,9 +30,9 @@ std::optional<double> TimeLeft::at(double fraction, Clock::time_point now) {
 
 std::string timeLeftWords(double seconds) {
   // Steps of 5 s, and minutes from 90 s up: an estimate, and no clock that jumps.
-  if (seconds < 10.0) return "about " + std::to_string(int(std::ceil(seconds))) + " s left";
-  if (seconds < 90.0) return "about " + std::to_string(5 * std::lround(seconds / 5.0)) + " s left";
-  return "about " + std::to_string(std::lround(seconds / 60.0)) + " min left";
+  if (seconds < 10.0) return tr("about {} s left", int(std::ceil(seconds)));
+  if (seconds < 90.0) return tr("about {} s left", 5 * std::lround(seconds / 5.0));
+  return tr("about {} min left", std::lround(seconds / 60.0));
 }
 
 std::function<void(double, const std::string&)> withTimeLeft(

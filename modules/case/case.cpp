@@ -8,6 +8,7 @@
 
 #include "base/codes.h"
 #include "base/memory.h"
+#include "base/tr.h"
 #include "case/codes.h"
 #include "imaging/codes.h"
 #include "imaging/importer.h"
@@ -29,8 +30,8 @@ Result<Case> importBest(const std::string& source, const Answers& answers,
   const std::optional<std::string> series = folder->bestSeries(answers);
   if (!series) {
     if (folder->report().error) return *folder->report().error;
-    return Error{code::kAllRefused, "No series in the folder can be used", source,
-                 "The import report says why for each"};
+    return Error{code::kAllRefused, tr("No series in the folder can be used"), source,
+                 tr("The import report says why for each")};
   }
   ImportRequest request;
   request.answers = answers;
@@ -81,8 +82,8 @@ const char* exerciseAnatomy(BodyRegion region) {
 
 Result<Case> readCase(const std::string& source, const Progress& progress, const Answers& answers) {
   if (source.empty()) {
-    return Error{code::kNoCase, "The scene names no case and none was given", "--case",
-                 "Give a folder of CT, or phantom:cranium or phantom:abdomen"};
+    return Error{code::kNoCase, tr("The scene names no case and none was given"), "--case",
+                 tr("Give a folder of CT, or phantom:cranium or phantom:abdomen")};
   }
   try {
     Result<Case> of = read(source, answers, Progress(progress, 0.0, 0.9));
@@ -90,7 +91,7 @@ Result<Case> readCase(const std::string& source, const Progress& progress, const
     if (of) of->anatomy = anatomyOf(*of->volume, Progress(progress, 0.9, 1.0));
     return of;
   } catch (const std::bad_alloc&) {
-    return outOfMemory("for the case", "the case");
+    return outOfMemory(tr("for the case"), tr("the case"));
   }
 }
 
@@ -108,8 +109,8 @@ Status keepsCase(const std::filesystem::path& target, const std::string& source)
     if (!fs::exists(file, ec)) continue;
     const fs::path from = fs::canonical(file, ec);
     if (std::mismatch(from.begin(), from.end(), to.begin(), to.end()).first != from.end()) continue;
-    return Error{code::kCannotWrite, "This is of the case that is read, and would be lost",
-                 target.string(), "Choose another name or place"};
+    return Error{code::kCannotWrite, tr("This is of the case that is read, and would be lost"),
+                 target.string(), tr("Choose another name or place")};
   }
   return {};
 }

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "base/codes.h"
+#include "base/tr.h"
 #include "case/codes.h"
 #include "exercise/codes.h"
 #include "exercise/exercise_structures.h"
@@ -23,14 +24,15 @@ std::optional<Warning> anatomyWarning(const Exercise& exercise,
   if (exercise.anatomy != exerciseAnatomy(anatomy->region)) {
     const bool known = exercise.anatomy == "cranium" || exercise.anatomy == "abdomen";
     if (!known) return {};
-    return Warning{code::kOtherAnatomy, "The case shows " +
-                                            std::string(shown == "head" ? "a " : "an ") + shown +
-                                            ", and the exercise is for the " + exercise.anatomy};
+    return Warning{code::kOtherAnatomy,
+                   tr("The case shows {}{}, and the exercise is for the {}",
+                      shown == "head" ? "a " : "an ", shown, exercise.anatomy)};
   }
   if (anatomy->region == BodyRegion::head && !anatomy->vault) {
-    return Warning{code::kNoVault,
-                   "The case shows a head whose vault is not whole in the scan: the exercise may "
-                   "begin in another bone"};
+    return Warning{
+        code::kNoVault,
+        tr("The case shows a head whose vault is not whole in the scan: the exercise may "
+           "begin in another bone")};
   }
   return {};
 }
@@ -67,9 +69,9 @@ Result<std::vector<PlacedLandmark>> landmarksIn(const Exercise& exercise, Placem
   if (std::ranges::min(volume.geometry.size) < 2) return placed;  // one slice is no body
   auto surface = onBody(exercise, volume, progress);
   if (!surface) return surface.error().code == code::kCancelled ? surface : placed;
-  of.warnings.push_back(
-      {code::kNoLandmark, "The place where the exercise begins is not in the case (" +
-                              placed.error().what + "): it begins at the body's surface"});
+  of.warnings.push_back({code::kNoLandmark, tr("The place where the exercise begins is not in the "
+                                               "case ({}): it begins at the body's surface",
+                                               placed.error().what)});
   return surface;
 }
 
@@ -91,7 +93,7 @@ Exercise placedExercise(const Exercise& exercise, const Placement& in) {
 
 Result<Placement> place(const Exercise& exercise, Case patient, const Progress& progress,
                         const NameHider& hide) {
-  progress.at(0.0, "Finding landmarks");
+  progress.at(0.0, tr("Finding landmarks"));
   Placement placed;
   placed.patient = std::move(patient);
   placed.exercise = exercise;

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <utility>
 
+#include "base/tr.h"
 #include "desk/codes.h"
 
 namespace trephine {
@@ -19,9 +20,9 @@ Status waitForArms(std::unique_lock<std::timed_mutex>& lock, const Rig& rig,
   if (chosen.empty() && std::ranges::none_of(rig.arms, is_real)) return {};
   if (lock.try_lock_for(std::chrono::seconds(10))) return {};
   return Error{
-      code::kArmsBusy, "Looking for arms has not come to an end: a device does not answer", "",
-      "Unplug it and wait, or start Trephine again; mouse and keys move hands that have no "
-      "arm under Devices"};
+      code::kArmsBusy, tr("Looking for arms has not come to an end: a device does not answer"), "",
+      tr("Unplug it and wait, or start Trephine again; mouse and keys move hands that have no "
+         "arm under Devices")};
 }
 
 ArmsHere::ArmsHere(std::function<std::optional<ChosenArms>()> chosen,

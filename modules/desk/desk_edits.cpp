@@ -2,6 +2,7 @@
 #include <algorithm>
 
 #include "base/codes.h"
+#include "base/tr.h"
 #include "case/codes.h"
 #include "desk/desk.h"
 #include "exercise/codes.h"
@@ -48,8 +49,8 @@ void Desk::takeBack() {
 
 Status Desk::notLocked(Lock lock, const char* what) const {
   if (!isLocked(lock)) return {};
-  return Error{code::kLocked, std::string(what) + " locked on this workstation or by this exercise",
-               "", unlocking(policy_)};
+  return Error{code::kLocked, tr("{} locked on this workstation or by this exercise", what), "",
+               unlocking(policy_)};
 }
 
 // --- Edits ---
@@ -63,18 +64,18 @@ void Desk::refreshPlaced() {
 Status Desk::mayEdit(const Exercise& wanted) const {
   const TissueSet& wanted_tissues = tissuesInForce(wanted, isElsewhere());
   if (wanted_tissues != tissues()) {
-    if (Status may = notLocked(Lock::tissues, "The tissues are"); !may) return may;
+    if (Status may = notLocked(Lock::tissues, tr("The tissues are")); !may) return may;
   }
   const auto id = &Tissue::id;
   if (heldSession() && !std::ranges::equal(wanted_tissues.tissues, tissues().tissues, {}, id, id)) {
-    return Error{code::kBusy, "A running exercise keeps its list of tissues", "",
-                 "Stop it before tissues are added or removed"};
+    return Error{code::kBusy, tr("A running exercise keeps its list of tissues"), "",
+                 tr("Stop it before tissues are added or removed")};
   }
   if (wanted.controller != exercise_->controller) {
-    if (Status may = notLocked(Lock::controller, "The controller is"); !may) return may;
+    if (Status may = notLocked(Lock::controller, tr("The controller is")); !may) return may;
   }
   if (wanted.rate_hz != exercise_->rate_hz) {
-    if (Status may = notLocked(Lock::rate, "The rate is"); !may) return may;
+    if (Status may = notLocked(Lock::rate, tr("The rate is")); !may) return may;
   }
   const Exercise live = withLiveOf(wanted, *exercise_, isElsewhere());
   if (live == *exercise_) return {};
@@ -82,20 +83,22 @@ Status Desk::mayEdit(const Exercise& wanted) const {
   Exercise rest = live;
   rest.landmarks = exercise_->landmarks;
   if (anyLocked() && rest != *exercise_) {
-    return Error{code::kLocked, "Exercises are not changed while anything is locked", "",
+    return Error{code::kLocked, tr("Exercises are not changed while anything is locked"), "",
                  unlocking(policy_)};
   }
   if (phase() != Phase::ready && phase() != Phase::empty) {
-    return Error{code::kBusy, "This cannot be changed while an exercise runs", "", "Stop it first"};
+    return Error{code::kBusy, tr("This cannot be changed while an exercise runs"), "",
+                 tr("Stop it first")};
   }
   if (isOpening() && !isPlacing()) {
-    return Error{code::kBusy, "A case is being opened", "", "Try again in a moment"};
+    return Error{code::kBusy, tr("A case is being opened"), "", tr("Try again in a moment")};
   }
   return checkEdited(wanted);
 }
 
 Status Desk::edit(const Exercise& wanted, const std::string& what) {
-  if (!exercise_) return Error{code::kNoCase, "There is no exercise yet", "", "Open a case first"};
+  if (!exercise_)
+    return Error{code::kNoCase, tr("There is no exercise yet"), "", tr("Open a case first")};
   if (Status may = mayEdit(wanted); !may) return may;
   history_.note(wanted, what);
   if (put(wanted)) say(DeskChange::exercise);
@@ -232,7 +235,7 @@ void Desk::noteController(ControllerKind in_force) {
 void Desk::setController(ControllerKind kind) {
   if (!exercise_) return;
   if (kind != exercise_->controller) {
-    if (Status may = notLocked(Lock::controller, "The controller is"); !may) {
+    if (Status may = notLocked(Lock::controller, tr("The controller is")); !may) {
       fail(may.error());
       return say(DeskChange::controller);
     }
@@ -246,7 +249,7 @@ void Desk::applyController(ControllerKind kind) {
   history_.settle(*exercise_);
   if (!session()) noteController(kind);
   if (session() && !session()->setController(kind)) {
-    fail({code::kBusy, "Too many changes are waiting", "the haptic loop", "Try again"});
+    fail({code::kBusy, tr("Too many changes are waiting"), tr("the haptic loop"), tr("Try again")});
   }
 }
 

@@ -2,6 +2,7 @@
 #include <algorithm>
 
 #include "base/codes.h"
+#include "base/tr.h"
 #include "case/codes.h"
 #include "desk/codes.h"
 #include "desk/desk.h"
@@ -28,11 +29,12 @@ OpenRequest ofStructures(OpenRequest request, const Case& of) {
 
 bool Desk::mayOpen() {
   if (phase() != Phase::empty && phase() != Phase::ready) {
-    fail({code::kBusy, "An exercise is running", "", "Stop it, then open the other case"});
+    fail({code::kBusy, tr("An exercise is running"), "", tr("Stop it, then open the other case")});
     return false;
   }
   if (isOpening()) {
-    fail({code::kBusy, "Another case is being opened", "", "Wait for it or cancel it first"});
+    fail({code::kBusy, tr("Another case is being opened"), "",
+          tr("Wait for it or cancel it first")});
     return false;
   }
   return true;
@@ -163,8 +165,8 @@ void Desk::setStored(const std::string& id, const std::string& name) {
 void Desk::useLabels(const std::filesystem::path& file, const Answers& answers) {
   if (!mayOpen()) return;
   if (!placed_) {
-    fail({code::kNoCase, "There is no case that a label map could belong to", "",
-          "Open the case first, then its label map"});
+    fail({code::kNoCase, tr("There is no case that a label map could belong to"), "",
+          tr("Open the case first, then its label map")});
     return;
   }
   OpenRequest request = ofStructures(requestOf(*exercise_, exercise_file_), placed_->patient);
@@ -177,8 +179,8 @@ void Desk::answer(const std::string& option) {
   // Of the case that it was asked about.
   if (!question_ || placed_->patient.volume != question_->request.of->volume) {
     question_.reset();
-    return fail({code::kNotAsked, "What was asked about is not being opened any more", "",
-                 "Open the structures again"});
+    return fail({code::kNotAsked, tr("What was asked about is not being opened any more"), "",
+                 tr("Open the structures again")});
   }
   if (!mayOpen()) return;
   // On the exercise as it is by now.

@@ -2,6 +2,7 @@
 #include "base/codes.h"
 #include "base/file.h"
 #include "base/purpose.h"
+#include "base/tr.h"
 #include "desk/desk.h"
 #include "tissue/tissue_set.h"
 #include "volume/volume_files.h"
@@ -11,7 +12,7 @@ namespace trephine {
 namespace {
 
 Error busySaving() {
-  return {code::kBusy, "Another file is being saved", "", "Try again in a moment"};
+  return {code::kBusy, tr("Another file is being saved"), "", tr("Try again in a moment")};
 }
 
 }  // namespace
@@ -44,8 +45,8 @@ void Desk::saveVolume(const std::filesystem::path& file, const std::string& said
                       std::function<void()> then) {
   if (isSaving()) return fail(busySaving());
   if (phase() == Phase::starting) {  // the view still shows the cuts before, which are gone
-    return fail(
-        {code::kBusy, "An exercise is being started", "", "Save once it runs, or has ended"});
+    return fail({code::kBusy, tr("An exercise is being started"), "",
+                 tr("Save once it runs, or has ended")});
   }
   if (heldSession()) return saveOnceStill({file, said, std::move(then), {}});
   save(

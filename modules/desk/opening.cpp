@@ -5,6 +5,7 @@
 
 #include "base/memory.h"
 #include "base/system.h"
+#include "base/tr.h"
 #include "library/name_words.h"
 #include "volume/case_memory.h"
 #include "volume/volume.h"
@@ -113,13 +114,13 @@ Status addMirror(Opened& opened, const std::shared_ptr<const Volume>& shown) {
   const Volume& volume = *placed.patient.volume;
   const std::size_t voxels = volume.geometry.voxelCount();
   const double needed_mb = shownMb(voxels) + (placed.labels ? labelsMb(voxels) : 0.0);
-  if (Status enough = enoughMemory(needed_mb, "Showing the case", "the case"); !enough) {
+  if (Status enough = enoughMemory(needed_mb, tr("Showing the case"), tr("the case")); !enough) {
     return enough;
   }
   try {
     opened.mirror = copyOf(volume);
   } catch (const std::bad_alloc&) {
-    return outOfMemory("to show the case", "the case");
+    return outOfMemory(tr("to show the case"), tr("the case"));
   }
   return {};
 }

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "base/field.h"
+#include "base/tr.h"
 #include "device/arm_ranges.h"
 #include "device/trephine_device.h"
 
@@ -21,28 +22,29 @@ struct CapabilityNumber {
 };
 
 inline constexpr CapabilityNumber kCapabilityNumbers[] = {
-    {{"workspace_m", kWorkspace_m, Given::always, "full extent of x, y and z around the origin"},
+    {{"workspace_m", kWorkspace_m, Given::always,
+      trLater("full extent of x, y and z around the origin")},
      offsetof(TrephineCapabilities, workspace_m),
      3},
     {{"peak_force_N", kPeakForce_N, Given::always,
-      "the clamp: no more is sent, whatever the scene says"},
+      trLater("the clamp: no more is sent, whatever the scene says")},
      offsetof(TrephineCapabilities, peak_force_N)},
     {{"continuous_force_N", kPeakForce_N, Given::always,
-      "what is sent for good: the limit falls to it as the motors warm"},
+      trLater("what is sent for good: the limit falls to it as the motors warm")},
      offsetof(TrephineCapabilities, continuous_force_N)},
     {{"thermal_s", kThermal_s, Given::always,
-      "the time constant with which they warm; 0: the arm looks after itself"},
+      trLater("the time constant with which they warm; 0: the arm looks after itself")},
      offsetof(TrephineCapabilities, thermal_s)},
-    {{"apparent_mass_kg", kApparentMass_kg, Given::always, "what `bounded` goes by"},
+    {{"apparent_mass_kg", kApparentMass_kg, Given::always, trLater("what `bounded` goes by")},
      offsetof(TrephineCapabilities, apparent_mass_kg)},
     {{"rate_hz", kDeviceRate_hz, Given::always,
-      "of its samples; a scene that asks for more is refused"},
+      trLater("of its samples; a scene that asks for more is refused")},
      offsetof(TrephineCapabilities, rate_hz)},
     {{"encoder_step_m", kEncoderStep_m, Given::always,
-      "what `bounded` goes by; 0: finer than it sees"},
+      trLater("what `bounded` goes by; 0: finer than it sees")},
      offsetof(TrephineCapabilities, encoder_step_m)},
     {{"latency_s", kLatency_s, Given::always,
-      "from a sample to the force that answers it, p99; what `bounded` goes by"},
+      trLater("from a sample to the force that answers it, p99; what `bounded` goes by")},
      offsetof(TrephineCapabilities, latency_s)},
 };
 

@@ -8,6 +8,7 @@
 #include <set>
 #include <utility>
 
+#include "base/tr.h"
 #include "base/utf8.h"
 #include "device/arm_numbers.h"
 #include "device/codes.h"
@@ -27,19 +28,18 @@ bool isPluginName(const std::string& name) {
 }
 
 Error badPlugin(const std::string& what, const std::string& where) {
-  return {code::kBadPlugin, what, where, "Install the plugin that belongs to this Trephine"};
+  return {code::kBadPlugin, what, where, tr("Install the plugin that belongs to this Trephine")};
 }
 
 // Empty when the table is whole, else what is wrong with it.
 std::string tableFault(const TrephineDeviceApi& api) {
   if (api.version != TREPHINE_DEVICE_ABI) {
-    return "The plugin speaks version " + std::to_string(api.version) +
-           " of the device interface, and this program speaks " +
-           std::to_string(TREPHINE_DEVICE_ABI);
+    return tr("The plugin speaks version {} of the device interface, and this program speaks {}",
+              api.version, TREPHINE_DEVICE_ABI);
   }
   if (api.size < sizeof(TrephineDeviceApi)) {
-    return "The plugin's function table has " + std::to_string(api.size) + " bytes instead of " +
-           std::to_string(sizeof(TrephineDeviceApi));
+    return tr("The plugin's function table has {} bytes instead of {}", api.size,
+              sizeof(TrephineDeviceApi));
   }
   const std::pair<const char*, bool> functions[] = {
       {"enumerate", api.enumerate},   {"open", api.open},
@@ -51,7 +51,7 @@ std::string tableFault(const TrephineDeviceApi& api) {
       {"last_error", api.last_error},
   };
   for (const auto& [name, present] : functions) {
-    if (!present) return std::string("The plugin's function table lacks '") + name + "'";
+    if (!present) return tr("The plugin's function table lacks '{}'", name);
   }
   return {};
 }
@@ -64,7 +64,7 @@ std::string lastSentence(const TrephineDeviceApi& api, TrephineDevice* handle) {
     sentence.pop_back();
   }
   sentence = cleanUtf8(sentence);
-  return sentence.empty() ? "The plugin gave no reason" : sentence;
+  return sentence.empty() ? tr("The plugin gave no reason") : sentence;
 }
 
 // What a device says of itself may be any bytes.
@@ -98,16 +98,17 @@ LeftBehind& leftBehind() {
 Result<std::shared_ptr<const DevicePlugin>> DevicePlugin::load(
     const std::string& name, const std::filesystem::path& folder) {
   if (!isPluginName(name)) {
-    return Error{code::kNoPlugin, "'" + name.substr(0, 60) + "' is not the name of a device plugin",
-                 "device name", "Use lower-case letters, digits, '_' and '-', such as 'simulated'"};
+    return Error{code::kNoPlugin, tr("'{}' is not the name of a device plugin", name.substr(0, 60)),
+                 tr("device name"),
+                 tr("Use lower-case letters, digits, '_' and '-', such as 'simulated'")};
   }
   std::error_code ec;
   // Made absolute: dlopen searches the system for a name without a folder.
   const std::filesystem::path file =
       std::filesystem::absolute(folder / ("trephine_" + name + ".so"), ec);
   if (ec || !std::filesystem::exists(file, ec)) {
-    return Error{code::kNoPlugin, "There is no device plugin '" + name + "'", file.string(),
-                 "Check the device name, or install that plugin into this folder"};
+    return Error{code::kNoPlugin, tr("There is no device plugin '{}'", name), file.string(),
+                 tr("Check the device name, or install that plugin into this folder")};
   }
   if (Status whole = checkLibraryFile(file); !whole) return whole.error();
   std::shared_ptr<DevicePlugin> plugin(new DevicePlugin);
@@ -115,21 +116,21 @@ Result<std::shared_ptr<const DevicePlugin>> DevicePlugin::load(
   if (!plugin->library_) {
     const char* reason = ::dlerror();
     return Error{code::kNoPlugin,
-                 "The device plugin '" + name +
-                     "' cannot be loaded: " + (reason ? reason : "the system gave no reason"),
-                 file.string(), "Install it again, with the libraries that it needs"};
+                 tr("The device plugin '{}' cannot be loaded: {}", name,
+                    (reason ? reason : tr("the system gave no reason"))),
+                 file.string(), tr("Install it again, with the libraries that it needs")};
   }
   auto entry =
       reinterpret_cast<TrephineDeviceEntry>(::dlsym(plugin->library_, TREPHINE_DEVICE_ENTRY));
   if (!entry) {
-    return badPlugin("The library is no device plugin: it has no '" TREPHINE_DEVICE_ENTRY "'",
+    return badPlugin(tr("The library is no device plugin: it has no '{}'", TREPHINE_DEVICE_ENTRY),
                      file.string());
   }
   plugin->api_ = entry(TREPHINE_DEVICE_ABI);
   if (!plugin->api_) {
-    return badPlugin("The plugin does not speak version " + std::to_string(TREPHINE_DEVICE_ABI) +
-                         " of the device interface",
-                     file.string());
+    return badPlugin(
+        tr("The plugin does not speak version {} of the device interface", TREPHINE_DEVICE_ABI),
+        file.string());
   }
   if (std::string fault = tableFault(*plugin->api_); !fault.empty()) {
     return badPlugin(fault, file.string());
@@ -138,7 +139,7 @@ Result<std::shared_ptr<const DevicePlugin>> DevicePlugin::load(
 }
 
 Result<std::shared_ptr<const DevicePlugin>> DevicePlugin::builtIn(const TrephineDeviceApi& api) {
-  if (std::string fault = tableFault(api); !fault.empty()) return badPlugin(fault, "built in");
+  if (std::string fault = tableFault(api); !fault.empty()) return badPlugin(fault, tr("built in"));
   std::shared_ptr<DevicePlugin> plugin(new DevicePlugin);
   plugin->api_ = &api;
   return std::shared_ptr<const DevicePlugin>(std::move(plugin));
@@ -172,13 +173,13 @@ Result<std::unique_ptr<Device>> Device::open(std::shared_ptr<const DevicePlugin>
                                              const std::vector<std::uint32_t>& arms,
                                              const std::string& config) {
   const TrephineDeviceApi& api = plugin->api();
-  const std::string where = std::string("device '") + api.name + "'";
+  const std::string where = tr("device '{}'", api.name);
   {
     std::lock_guard lock(leftBehind().mutex);
     for (std::uint32_t arm : arms) {
       if (!leftBehind().arms.contains({api.name, arm})) continue;
-      return Error{code::kDeviceStuck, "This arm stopped answering before and was left behind",
-                   where, "Switch it off and on, then start Trephine again"};
+      return Error{code::kDeviceStuck, tr("This arm stopped answering before and was left behind"),
+                   where, tr("Switch it off and on, then start Trephine again")};
     }
   }
   std::unique_ptr<Device> device(new Device);
@@ -186,7 +187,7 @@ Result<std::unique_ptr<Device>> Device::open(std::shared_ptr<const DevicePlugin>
   device->places_ = arms;
   const auto notThere = [&](TrephineDevice* handle) {
     return Error{code::kNoDevice, lastSentence(api, handle), where,
-                 "Connect the arm and switch it on, or choose another device"};
+                 tr("Connect the arm and switch it on, or choose another device")};
   };
   if (api.open(arms.data(), std::uint32_t(arms.size()), &device->handle_) != TREPHINE_OK ||
       !device->handle_) {
@@ -197,18 +198,17 @@ Result<std::unique_ptr<Device>> Device::open(std::shared_ptr<const DevicePlugin>
   if (configured == TREPHINE_ERROR_NO_DEVICE) return notThere(device->handle_);
   if (configured != TREPHINE_OK) {
     return Error{code::kBadDeviceConfig, lastSentence(api, device->handle_),
-                 "configuration of " + where, "Correct that file"};
+                 tr("configuration of {}", where), tr("Correct that file")};
   }
   for (std::uint32_t arm = 0; arm < arms.size(); ++arm) {
     auto capabilities = sized<TrephineCapabilities>();
     if (api.capabilities(device->handle_, arm, &capabilities) != TREPHINE_OK) {
-      return badPlugin("The plugin does not say what arm " + std::to_string(arm) +
-                           " can do: " + lastSentence(api, device->handle_),
+      return badPlugin(tr("The plugin does not say what arm {} can do: {}", arm,
+                          lastSentence(api, device->handle_)),
                        where);
     }
     if (std::string wrong = impossibleCapability(capabilities); !wrong.empty()) {
-      return badPlugin(
-          "The plugin states for arm " + std::to_string(arm) + " an impossible " + wrong, where);
+      return badPlugin(tr("The plugin states for arm {} an impossible {}", arm, wrong), where);
     }
     device->capabilities_.push_back(capabilities);
   }
@@ -233,8 +233,8 @@ Status Device::start() {
   }
   started = started && api.start(handle_) == TREPHINE_OK;
   if (!started) {
-    return Error{code::kDeviceNotStarted, lastSentence(api, handle_),
-                 std::string("device '") + api.name + "'", "Check the arm and start again"};
+    return Error{code::kDeviceNotStarted, lastSentence(api, handle_), tr("device '{}'", api.name),
+                 tr("Check the arm and start again")};
   }
   refused_ = false;
   running_ = true;

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "base/system.h"
+#include "base/tr.h"
 #include "device/codes.h"
 #include "device/device.h"
 
@@ -56,10 +57,10 @@ FoundArms findArms(const fs::path& plugin_folder) {
         continue;
       }
       found.problems.push_back({code::kTwoPlugins,
-                                "The plugins '" + other->plugin + "' and '" + name +
-                                    "' both have the device at " + arm.bus_path,
+                                tr("The plugins '{}' and '{}' both have the device at {}",
+                                   other->plugin, name, arm.bus_path),
                                 (plugin_folder / ("trephine_" + name + ".so")).string(),
-                                "It is used by '" + other->plugin + "'; remove one of the two"});
+                                tr("It is used by '{}'; remove one of the two", other->plugin)});
     }
   }
   return found;

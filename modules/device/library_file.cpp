@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "base/tr.h"
 #include "device/codes.h"
 
 namespace trephine {
@@ -52,8 +53,8 @@ Status checkLibraryFile(const std::filesystem::path& file) {
     if (isWhole(in, bytes)) return {};
   }
   return Error{code::kNoPlugin,
-               "The device plugin cannot be loaded: its file is no library, or is cut short",
-               file.string(), "Install it again"};
+               tr("The device plugin cannot be loaded: its file is no library, or is cut short"),
+               file.string(), tr("Install it again")};
 }
 
 }  // namespace trephine

@@ -4,6 +4,7 @@
 
 #include "base/codes.h"
 #include "base/file.h"
+#include "base/tr.h"
 #include "case/case.h"
 #include "exchange/exercise_folder.h"
 #include "exchange/exercise_parts.h"
@@ -204,7 +205,7 @@ Result<fs::path> saveExercise(const Exercise& exercise, const fs::path& folder,
   if (Status written = part->writeText(kSceneFile, json.dump(1) + '\n'); !written) {
     return written.error();
   }
-  if (progress.cancelled()) return Error{code::kCancelled, "It was cancelled", "", ""};
+  if (progress.cancelled()) return Error{code::kCancelled, tr("It was cancelled"), "", ""};
   // Where there was nothing, what another program has put there meanwhile is not replaced.
   const Status done = fresh ? part->become() : part->becomeInstead(filesOf(folder));
   if (!done) return done.error();
@@ -222,7 +223,7 @@ Result<ExportedExercise> exportExercise(const fs::path& exercise_file,
   Result<PartFolder> part = PartFolder::make(folder);
   if (!part) return part.error();
   Exporter exporter(exercise_file, *exercise, *part);
-  progress.at(0.0, "Reading the case");
+  progress.at(0.0, tr("Reading the case"));
   if (Status copied = exporter.copyCase(*json, *exercise, case_source, hide,
                                         Progress(progress, 0.0, kCaseShare));
       !copied) {

@@ -6,6 +6,7 @@
 #include "base/disk_room.h"
 #include "base/file.h"
 #include "base/json.h"
+#include "base/tr.h"
 #include "base/utf8.h"
 #include "case/case.h"
 #include "exchange/exercise_folder.h"
@@ -33,8 +34,8 @@ bool staysWithin(const fs::path& file) {
 }
 
 Error namesOutside(const std::string& file, const std::string& name) {
-  return {code::kBadField, "It names '" + name + "', which is no part of the exercise", file,
-          "Export the exercise anew"};
+  return {code::kBadField, tr("It names '{}', which is no part of the exercise", name), file,
+          tr("Export the exercise anew")};
 }
 
 // Whether a part belongs to a volume or label map that is named: its list of names or sidecar,
@@ -63,7 +64,7 @@ Status namesPartsAlone(const fs::path& folder, const ExerciseCheck& check, Json&
   const Status all =
       eachNamedFile(exercise, [&](NamedFile kind, const std::string&, Json& name) -> Status {
         const std::string file = name.get<std::string>();
-        if (progress.cancelled()) return Error{code::kCancelled, "It was cancelled", "", ""};
+        if (progress.cancelled()) return Error{code::kCancelled, tr("It was cancelled"), "", ""};
         if (Status is = isPart(check.exercise, file); !is) return is;
         const fs::path path = (fs::path(check.exercise).parent_path() / file).lexically_normal();
         if (kind == NamedFile::caseVolume || kind == NamedFile::labels) volumes.insert(path);
@@ -81,8 +82,8 @@ Status namesPartsAlone(const fs::path& folder, const ExerciseCheck& check, Json&
         volumes, [&](const fs::path& volume) { return liesBeside(folder, part, volume); });
     if (!beside) {
       return Error{code::kBadField,
-                   "Nothing in the exercise names its part '" + part.string() + "'", kListFile,
-                   "Export the exercise anew"};
+                   tr("Nothing in the exercise names its part '{}'", part.string()), kListFile,
+                   tr("Export the exercise anew")};
     }
   }
   return {};
@@ -143,13 +144,14 @@ fs::path numbered(const fs::path& storage, const std::string& stem, int n) {
 Result<ExerciseCheck> listOf(const fs::path& folder) {
   std::error_code ec;
   if (fs::is_symlink(folder / kListFile, ec)) {
-    return Error{code::kMissingFile, "The exercise's list is a link to another file",
-                 (folder / kListFile).string(), "Give a folder that 'exercise export' wrote"};
+    return Error{code::kMissingFile, tr("The exercise's list is a link to another file"),
+                 (folder / kListFile).string(), tr("Give a folder that 'exercise export' wrote")};
   }
   Result<Json> json = readJsonFile(folder / kListFile);
   if (!json) {
     Error error = json.error();
-    if (error.code == code::kMissingFile) error.next = "Give a folder that 'exercise export' wrote";
+    if (error.code == code::kMissingFile)
+      error.next = tr("Give a folder that 'exercise export' wrote");
     return error;
   }
   ExerciseCheck check;
@@ -164,20 +166,19 @@ Result<ExerciseCheck> listOf(const fs::path& folder) {
     part.sha256 = item.text("sha256");
     part.bytes = std::uint64_t(item.integer("bytes", kBytes));
     if (item.ok() && !staysWithin(part.file)) {
-      item.fail("file", "'" + part.file + "' lies outside of the folder");
+      item.fail("file", tr("'{}' lies outside of the folder", part.file));
     } else if (item.ok() && part.file != cleanUtf8(part.file)) {
-      item.fail("file", "'" + cleanUtf8(part.file) + "' has letters that nobody sees");
+      item.fail("file", tr("'{}' has letters that nobody sees", cleanUtf8(part.file)));
     } else if (item.ok() && !listed.insert(part.file).second) {
-      item.fail("file", "'" + part.file + "' is listed twice");
+      item.fail("file", tr("'{}' is listed twice", part.file));
     }
     exercise_listed = exercise_listed || part.file == check.exercise;
     check.parts.push_back(std::move(part));
   }
   if (reader.ok() && check.exercise != kSceneFile) {
-    reader.fail("scene", "It must be '" + std::string(kSceneFile) + "'",
-                "Export the exercise anew");
+    reader.fail("scene", tr("It must be '{}'", kSceneFile), tr("Export the exercise anew"));
   }
-  if (reader.ok() && !exercise_listed) reader.fail("scene", "It is not among the parts");
+  if (reader.ok() && !exercise_listed) reader.fail("scene", tr("It is not among the parts"));
   if (Status read = reader.finish(); !read) return read.error();
   return check;
 }
@@ -187,7 +188,8 @@ Status verify(const fs::path& folder, ExerciseCheck& check, const Progress& prog
   std::uint64_t bytes = 0, done = 0;
   for (const ExercisePart& part : check.parts) bytes += part.bytes;
   for (const ExercisePart& part : check.parts) {
-    progress.at(double(done) / double(std::max<std::uint64_t>(1, bytes)), "Checking the exercise");
+    progress.at(double(done) / double(std::max<std::uint64_t>(1, bytes)),
+                tr("Checking the exercise"));
     const Result<ExercisePart> found = partOf(folder, part.file, progress, part.bytes);
     done += part.bytes;
     if (!found && found.error().code == code::kCancelled) return found.error();
@@ -214,7 +216,7 @@ Result<ImportedExercise> importExercise(const fs::path& folder, const fs::path& 
   Result<ExerciseCheck> check = listOf(folder);
   if (!check) return check.error();
   PartFolder::removeLeft(storage / "exercises");
-  if (Status room = enoughRoom(storage, bytesOf(*check), "the exercise"); !room) {
+  if (Status room = enoughRoom(storage, bytesOf(*check), tr("the exercise")); !room) {
     return room.error();
   }
   if (Status read = verify(folder, *check, Progress(progress, 0.0, 0.3)); !read) {
@@ -234,9 +236,9 @@ Result<ImportedExercise> importExercise(const fs::path& folder, const fs::path& 
   const std::string stem = plainName(parsed->name, "exercise");
   Result<PartFolder> part = PartFolder::make(numbered(storage, stem, 1));
   if (!part) return part.error();
-  progress.at(0.3, "Copying the exercise");
+  progress.at(0.3, tr("Copying the exercise"));
   for (const ExercisePart& one : imported.check.parts) {
-    if (progress.cancelled()) return Error{code::kCancelled, "It was cancelled", "", ""};
+    if (progress.cancelled()) return Error{code::kCancelled, tr("It was cancelled"), "", ""};
     if (Status copied = part->copy(folder / one.file, one.file); !copied) return copied.error();
   }
   if (Status copied = part->copy(folder / kListFile, kListFile); !copied) return copied.error();

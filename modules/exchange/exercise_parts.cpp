@@ -17,6 +17,7 @@
 #include "base/sha256.h"
 #include "base/shared_folder.h"
 #include "base/sync_folder.h"
+#include "base/tr.h"
 #include "exchange/codes.h"
 #include "volume/codes.h"
 
@@ -49,8 +50,8 @@ Status checkFreeFolder(const fs::path& folder) {
   const fs::file_status status = fs::symlink_status(folder, ec);
   if (!fs::exists(status)) return {};
   if (fs::is_directory(status) && fs::is_empty(folder, ec) && !ec) return {};
-  return Error{code::kCannotWrite, "Something is there already", folder.string(),
-               "Give a folder that is not there yet, or an empty one"};
+  return Error{code::kCannotWrite, tr("Something is there already"), folder.string(),
+               tr("Give a folder that is not there yet, or an empty one")};
 }
 
 Json toJson(const ExercisePart& part) {
@@ -67,27 +68,27 @@ Result<ExercisePart> partOf(const fs::path& folder, const std::string& file,
     linked = linked || fs::symlink_status(part_of, ec).type() == fs::file_type::symlink;
   }
   if (linked || fs::symlink_status(path, ec).type() != fs::file_type::regular) {
-    return Error{code::kMissingFile, "It is not there, or is no file", file, ""};
+    return Error{code::kMissingFile, tr("It is not there, or is no file"), file, ""};
   }
   // Of another size it is another file, whatever it holds.
   if (expected_bytes && fs::file_size(path, ec) != *expected_bytes) {
-    return Error{code::kOtherSize, "It has another size", file, ""};
+    return Error{code::kOtherSize, tr("It has another size"), file, ""};
   }
   std::ifstream in(path, std::ios::binary);
   Sha256 sha256;
   ExercisePart part{file, "", 0};
   std::vector<char> bytes(1 << 20);
   while (in) {
-    if (progress.cancelled()) return Error{code::kCancelled, "It was cancelled", "", ""};
+    if (progress.cancelled()) return Error{code::kCancelled, tr("It was cancelled"), "", ""};
     in.read(bytes.data(), std::streamsize(bytes.size()));
     sha256.add(bytes.data(), std::size_t(in.gcount()));
     part.bytes += std::uint64_t(in.gcount());
     if (expected_bytes && part.bytes > *expected_bytes) break;  // it grows meanwhile
   }
   if (expected_bytes && part.bytes != *expected_bytes) {
-    return Error{code::kOtherSize, "It has another size", file, ""};
+    return Error{code::kOtherSize, tr("It has another size"), file, ""};
   }
-  if (!in.eof()) return Error{code::kUnreadable, "It cannot be read", file, ""};
+  if (!in.eof()) return Error{code::kUnreadable, tr("It cannot be read"), file, ""};
   part.sha256 = sha256.hex();
   return part;
 }
@@ -125,8 +126,8 @@ Status PartFolder::writeText(const std::string& file, std::string_view text) {
 Status PartFolder::copy(const fs::path& from, const std::string& file) {
   std::error_code ec;
   if (!fs::is_regular_file(from, ec)) {
-    return Error{code::kMissingFile, "A file that the exercise names is not there", from.string(),
-                 "Check the name"};
+    return Error{code::kMissingFile, tr("A file that the exercise names is not there"),
+                 from.string(), tr("Check the name")};
   }
   return write(file, [&](const fs::path& path) {
     return replaceFile(path, [&](const fs::path& temporary) {
@@ -176,8 +177,8 @@ Status PartFolder::copyMesh(const fs::path& from, const std::string& file) {
   if (!stl) return copy(from, file);  // which says what is wrong with it
   const std::optional<std::string> plain = withoutHeader(*std::move(stl));
   if (plain) return writeText(file, *plain);
-  return Error{code::kNotStl, "A mesh of the exercise is not an STL file, or a damaged one",
-               from.string(), "Choose another mesh, or none"};
+  return Error{code::kNotStl, tr("A mesh of the exercise is not an STL file, or a damaged one"),
+               from.string(), tr("Choose another mesh, or none")};
 }
 
 Result<std::vector<ExercisePart>> PartFolder::writeList(const std::string& exercise,
@@ -193,7 +194,7 @@ Result<std::vector<ExercisePart>> PartFolder::writeList(const std::string& exerc
   std::vector<ExercisePart> parts;
   Json list = Json::array();
   for (const std::string& file : files) {
-    progress.at(double(parts.size()) / double(files.size()), "Checking what was written");
+    progress.at(double(parts.size()) / double(files.size()), tr("Checking what was written"));
     Result<ExercisePart> part = partOf(path(), file, progress);
     if (!part) return part.error();
     list.push_back(toJson(*part));

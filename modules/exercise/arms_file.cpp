@@ -5,6 +5,7 @@
 
 #include "base/json.h"
 #include "base/system.h"
+#include "base/tr.h"
 #include "exercise/codes.h"
 #include "exercise/exercise_fields.h"
 
@@ -22,7 +23,7 @@ ArmDevice readDevice(JsonReader& item, const fs::path& folder) {
   ArmDevice device;
   device.plugin = item.text("plugin");
   if (item.ok() && device.plugin.empty()) {
-    item.fail("plugin", "It names no plugin", "Name one, such as simulated");
+    item.fail("plugin", tr("It names no plugin"), tr("Name one, such as simulated"));
   }
   readFields(item, kDeviceFields, device);
   const std::string config = item.text("config", "");
@@ -30,7 +31,7 @@ ArmDevice readDevice(JsonReader& item, const fs::path& folder) {
   device.config = (folder / config).lexically_normal().string();
   std::error_code ec;
   if (!fs::is_regular_file(device.config, ec)) {
-    item.fail("config", "The file '" + config + "' is not there", "Check the name");
+    item.fail("config", tr("The file '{}' is not there", config), tr("Check the name"));
   }
   return device;
 }
@@ -45,11 +46,11 @@ Result<std::vector<NamedDevice>> readArmsFile(const fs::path& file) {
   for (JsonReader& item : reader.objects("arms", kMostArms)) {
     devices.push_back({item.text("name"), readDevice(item, file.parent_path())});
     if (devices.back().arm == kPedal) {
-      item.fail("name", "'pedal' is no arm", "Give the pedal beside 'arms', under 'pedal'");
+      item.fail("name", tr("'pedal' is no arm"), tr("Give the pedal beside 'arms', under 'pedal'"));
     }
     if (names.insert(devices.back().arm).second) continue;
-    item.fail("name", "The arm '" + devices.back().arm + "' stands twice in the list",
-              "Name each arm once");
+    item.fail("name", tr("The arm '{}' stands twice in the list", devices.back().arm),
+              tr("Name each arm once"));
   }
   if (reader.has(kPedal)) {
     JsonReader pedal = reader.object(kPedal);
@@ -72,8 +73,8 @@ Result<Rig> rigWith(const Exercise& exercise, const std::vector<NamedDevice>& de
     if (arm == exercise.arms.end()) {
       std::string names;
       for (const ExerciseArm& one : exercise.arms) names += (names.empty() ? "" : ", ") + one.name;
-      return Error{code::kNoSuchArm, "The scene has no arm '" + of.arm + "'", where,
-                   "Its arms are: " + names};
+      return Error{code::kNoSuchArm, tr("The scene has no arm '{}'", of.arm), where,
+                   tr("Its arms are: {}", names)};
     }
     ArmDevice& device = rig.arms[std::size_t(arm - exercise.arms.begin())].device;
     device = of.device;
@@ -97,14 +98,14 @@ Result<Rig> rigWith(const Exercise& exercise, const std::vector<NamedDevice>& de
       const ArmDevice& b = rig.arms[j].device;
       if (a.plugin != b.plugin || a.place != b.place) continue;
       return Error{code::kBadScene,
-                   "The arms '" + exercise.arms[i].name + "' and '" + exercise.arms[j].name +
-                       "' would have one device, '" + a.plugin + "' " + std::to_string(a.place),
-                   where, "Give each arm a device of its own"};
+                   tr("The arms '{}' and '{}' would have one device, '{}' {}",
+                      exercise.arms[i].name, exercise.arms[j].name, a.plugin, a.place),
+                   where, tr("Give each arm a device of its own")};
     }
     if (!rig.pedal || a.plugin != rig.pedal->plugin || a.place != rig.pedal->place) continue;
     return Error{code::kBadScene,
-                 "The arm '" + exercise.arms[i].name + "' and the pedal would have one device",
-                 where, "Give each a device of its own"};
+                 tr("The arm '{}' and the pedal would have one device", exercise.arms[i].name),
+                 where, tr("Give each a device of its own")};
   }
   return rig;
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "base/tr.h"
 #include "exercise/codes.h"
 
 namespace trephine {
@@ -50,9 +51,10 @@ Status checkLabels(const TissueSet& tissues, const LabelMap* labels) {
   for (const Tissue& tissue : tissues.tissues) {
     if (!tissue.label || !tissue.structure.empty() || labels) continue;
     return Error{code::kNoLabels,
-                 "The tissue '" + tissue.id + "' is restricted to label " +
-                     std::to_string(*tissue.label) + ", and no label map was given",
-                 "the label map", "Give the case's label map, or free the tissue from its label"};
+                 tr("The tissue '{}' is restricted to label {}, and no label map was given",
+                    tissue.id, *tissue.label),
+                 tr("the label map"),
+                 tr("Give the case's label map, or free the tissue from its label")};
   }
   return {};
 }

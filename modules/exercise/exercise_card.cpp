@@ -1,5 +1,6 @@
 #include "exercise/exercise_card.h"
 
+#include "base/tr.h"
 #include "base/utf8.h"
 #include "exercise/exercise_fields.h"
 
@@ -8,17 +9,17 @@ namespace trephine {
 namespace {
 
 void checkText(JsonReader& reader, const char* key, const std::string& text, std::size_t most) {
-  if (text.empty()) reader.fail(key, "The text is empty", "Say it, or leave the whole card out");
+  if (text.empty())
+    reader.fail(key, tr("The text is empty"), tr("Say it, or leave the whole card out"));
   if (cleanUtf8(text) != text) {
     reader.fail(key,
-                "The text is no plain line: it has line breaks, control characters or spaces "
-                "around it");
+                tr("The text is no plain line: it has line breaks, control characters or spaces "
+                   "around it"));
   }
   if (const std::size_t count = charactersOf(text); count > most) {
     reader.fail(key,
-                "The text has " + std::to_string(count) + " characters, at most " +
-                    std::to_string(most) + " can be read at a glance",
-                "Say it in fewer words");
+                tr("The text has {} characters, at most {} can be read at a glance", count, most),
+                tr("Say it in fewer words"));
   }
 }
 
@@ -27,7 +28,7 @@ CardText readText(JsonReader reader) {
   readFields(reader, kCardFields, text);
   if (!reader.ok()) return text;
   checkText(reader, "goal", text.goal, kCardGoal);
-  if (text.steps.empty()) reader.fail("steps", "There is no step", "Say at least one");
+  if (text.steps.empty()) reader.fail("steps", tr("There is no step"), tr("Say at least one"));
   for (const std::string& step : text.steps) checkText(reader, "steps", step, kCardStep);
   checkText(reader, "hands", text.hands, kCardHands);
   return text;

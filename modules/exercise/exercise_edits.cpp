@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "base/tr.h"
+
 namespace trephine {
 
 void ExerciseHistory::begin(Exercise exercise) {
@@ -67,9 +69,8 @@ NewTissues withTissues(Exercise exercise, const TissueSet& set) {
   for (Landmark& landmark : to.landmarks) {
     if (set.find(landmark.tissue)) continue;
     const Tissue* was = before.find(landmark.tissue);
-    out.notes.push_back("The landmark '" + landmark.id + "' was on " +
-                        (was ? was->name : landmark.tissue) + " and is on " + instead.name +
-                        " now");
+    out.notes.push_back(tr("The landmark '{}' was on {} and is on {} now", landmark.id,
+                           (was ? was->name : landmark.tissue), instead.name));
     landmark.tissue = instead.id;
   }
   std::erase_if(to.view.looks, [&](const auto& look) { return !set.find(look.first); });
@@ -77,7 +78,7 @@ NewTissues withTissues(Exercise exercise, const TissueSet& set) {
     for (const Landmark& landmark : to.landmarks) {
       if (to.tissues_elsewhere->find(landmark.tissue)) continue;
       to.tissues_elsewhere.reset();
-      out.notes.push_back("The exercise has these tissues on every case now");
+      out.notes.push_back(tr("The exercise has these tissues on every case now"));
       break;
     }
   }

@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "base/tr.h"
+
 namespace trephine {
 
 namespace {
@@ -15,7 +17,7 @@ Quat readRotation(JsonReader& item) {
   WorkspaceMap map;
   map.rotation = Quat(q[0], q[1], q[2], q[3]);
   if (item.ok() && !validate(map, "")) {
-    item.fail("rotation_wxyz", "Expected a unit quaternion, found " + Json(q).dump());
+    item.fail("rotation_wxyz", tr("Expected a unit quaternion, found {}", Json(q).dump()));
   }
   return map.rotation;
 }
@@ -42,7 +44,8 @@ Quat rotationOf(const MapTurn& turn) {
 
 std::string exerciseFieldsPage() {
   return schemaHead() + schemaLines<Exercise>("scene", kExerciseFields) +
-         schemaLines<Exercise>("scene", kTouchFields) + schemaLines<Exercise>("scene", kLockFields) +
+         schemaLines<Exercise>("scene", kTouchFields) +
+         schemaLines<Exercise>("scene", kLockFields) +
          schemaLines<ExerciseView>("`view`", kViewFields) +
          schemaLines<CardText>("`card`, a language", kCardFields) +
          schemaLines<ExerciseOutline>("`outline`", kOutlineFields) +
@@ -50,7 +53,7 @@ std::string exerciseFieldsPage() {
          schemaLines<Landmark>("landmark", kLandmarkFields) +
          schemaLines<ExerciseArm>("arm", kArmFields) +
          schemaLines<ExerciseMap>("arm, `map`", kExerciseMapFields) +
-         schemaLines<WorkspaceMap>("arm, fixed `map`", kWorkspaceMapFields) +
+         schemaLines<WorkspaceMap>(tr("arm, fixed `map`"), kWorkspaceMapFields) +
          schemaLines<ArmDevice>("arm, `device`", kDeviceFields) +
          schemaLines<ArmDynamics>("arm, `dynamics`", kArmDynamicsFields);
 }

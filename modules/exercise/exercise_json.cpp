@@ -2,6 +2,7 @@
 #include <set>
 
 #include "base/codes.h"
+#include "base/tr.h"
 #include "exercise/arms_file.h"
 #include "exercise/exercise_fields.h"
 #include "exercise/names.h"
@@ -55,8 +56,8 @@ Landmark readLandmark(JsonReader& item) {
   if (item.has("bulk_radius_mm")) landmark.bulk_radius_mm = kBulkRadius_mm.low;
   readFields(item, kLandmarkFields, landmark);
   if (item.ok() && isRay(landmark) && landmark.from == landmark.towards) {
-    item.fail("towards", "The ray of the landmark '" + landmark.id + "' goes nowhere",
-              "Let it go to another place than it begins at");
+    item.fail("towards", tr("The ray of the landmark '{}' goes nowhere", landmark.id),
+              tr("Let it go to another place than it begins at"));
   }
   return landmark;
 }
@@ -72,14 +73,14 @@ TissueLooks readLooks(JsonReader& view, const TissueSet& tissues) {
     if (const auto kind = kindOf(kTissueLookNames, look)) {
       looks[tissue.id] = *kind;
     } else {
-      named.fail(id, "Unknown look '" + look + "'", choices(kTissueLookNames));
+      named.fail(id, tr("Unknown look '{}'", look), choices(kTissueLookNames));
     }
   }
   const Json& all = view.raw("looks");
   for (auto item = all.begin(); all.is_object() && item != all.end(); ++item) {
     if (tissues.find(item.key())) continue;
-    named.fail(item.key().c_str(), "The view names the unknown tissue '" + item.key() + "'",
-               "Use the ids of the scene's tissues");
+    named.fail(item.key().c_str(), tr("The view names the unknown tissue '{}'", item.key()),
+               tr("Use the ids of the scene's tissues"));
   }
   return looks;
 }
@@ -91,7 +92,8 @@ void checkNamesDiffer(JsonReader& reader, const char* list, const Items& items, 
   for (const auto& item : items) {
     const std::string name = name_of(item);
     if (!seen.insert(name).second) {
-      reader.fail(list, "'" + name + "' stands twice in the list", "Give each a name of its own");
+      reader.fail(list, tr("'{}' stands twice in the list", name),
+                  tr("Give each a name of its own"));
     }
   }
 }
@@ -100,11 +102,11 @@ void checkToolsOf(JsonReader& reader, const Exercise& exercise, const ExerciseAr
   std::set<std::string> seen{arm.tool};
   for (const std::string& id : arm.other_tools) {
     if (seen.insert(id).second) continue;
-    reader.fail("arms", "The arm '" + arm.name + "' names the tool '" + id + "' twice");
+    reader.fail("arms", tr("The arm '{}' names the tool '{}' twice", arm.name, id));
   }
   for (const std::string& id : seen) {
     if (exercise.findTool(id)) continue;
-    reader.fail("arms", "The arm '" + arm.name + "' names the unknown tool '" + id + "'");
+    reader.fail("arms", tr("The arm '{}' names the unknown tool '{}'", arm.name, id));
   }
 }
 
@@ -115,11 +117,11 @@ void checkRig(JsonReader& reader, const Exercise& exercise, const Rig& rig) {
     const auto& [device, dynamics] = rig.arms[i];
     const std::string& name = exercise.arms[i].name;
     if (!devices.insert(device.plugin + "/" + std::to_string(device.place)).second) {
-      reader.fail("arms", "The arm '" + name + "' uses a device that another arm uses");
+      reader.fail("arms", tr("The arm '{}' uses a device that another arm uses", name));
     }
     if (!dynamics || kDelaySamples.holds(delaySamples(*dynamics, 1.0 / exercise.rate_hz))) continue;
-    reader.fail("arms", "The delay of the arm '" + name + "' is longer than " +
-                            std::to_string(kMaxDelayTicks) + " periods of the rate");
+    reader.fail("arms", tr("The delay of the arm '{}' is longer than {} periods of the rate", name,
+                           kMaxDelayTicks));
   }
 }
 
@@ -127,16 +129,17 @@ void checkRig(JsonReader& reader, const Exercise& exercise, const Rig& rig) {
 void checkReferences(JsonReader& reader, const Exercise& exercise) {
   for (const Landmark& landmark : exercise.landmarks) {
     if (!exercise.tissues.find(landmark.tissue)) {
-      reader.fail("landmarks", "The landmark '" + landmark.id + "' names the unknown tissue '" +
-                                   landmark.tissue + "'");
+      reader.fail("landmarks", tr("The landmark '{}' names the unknown tissue '{}'", landmark.id,
+                                  landmark.tissue));
     }
     if (exercise.tissues_elsewhere && !exercise.tissues_elsewhere->find(landmark.tissue)) {
-      reader.fail("tissues", "The set for other cases lacks the tissue '" + landmark.tissue +
-                                 "' of the landmark '" + landmark.id + "'");
+      reader.fail("tissues",
+                  tr("The set for other cases lacks the tissue '{}' of the landmark '{}'",
+                     landmark.tissue, landmark.id));
     }
   }
   if (exercise.arms.empty() || exercise.arms.size() > std::size_t(kMaxArms)) {
-    reader.fail("arms", "A scene has 1 to 4 arms, this one has " + std::to_string(exercise.arms.size()));
+    reader.fail("arms", tr("A scene has 1 to 4 arms, this one has {}", exercise.arms.size()));
   }
   checkNamesDiffer(reader, "landmarks", exercise.landmarks, [](const auto& l) { return l.id; });
   checkNamesDiffer(reader, "tools", exercise.tools, [](const auto& t) { return t.id; });
@@ -144,23 +147,23 @@ void checkReferences(JsonReader& reader, const Exercise& exercise) {
   for (const ExerciseArm& arm : exercise.arms) {
     checkToolsOf(reader, exercise, arm);
     if (!arm.map.fixed && !exercise.findLandmarkById(arm.map.landmark)) {
-      reader.fail("arms", "The arm '" + arm.name + "' names the unknown landmark '" +
-                              arm.map.landmark + "'");
+      reader.fail("arms",
+                  tr("The arm '{}' names the unknown landmark '{}'", arm.name, arm.map.landmark));
     }
   }
   if (!exercise.view.landmark.empty() && !exercise.findLandmarkById(exercise.view.landmark)) {
-    reader.fail("view", "The view names the unknown landmark '" + exercise.view.landmark + "'");
+    reader.fail("view", tr("The view names the unknown landmark '{}'", exercise.view.landmark));
   }
   if (!exercise.outline || !exercise.outline->frame) return;
   const std::string& of = exercise.outline->frame->landmark;
   if (!exercise.findLandmarkById(of)) {
-    reader.fail("outline", "Its frame names the unknown landmark '" + of + "'");
+    reader.fail("outline", tr("Its frame names the unknown landmark '{}'", of));
   }
 }
 
 Result<TissueSet> readTissues(const Json& value, const fs::path& folder, const std::string& file) {
   if (value.is_string()) return readTissueSet((folder / value.get<std::string>()).lexically_normal());
-  Result<TissueSet> set = parseTissueSet(value, file + ": tissues");
+  Result<TissueSet> set = parseTissueSet(value, tr("{}: tissues", file));
   if (set && !set->elsewhere_file.empty()) {
     set->elsewhere_file = (folder / set->elsewhere_file).lexically_normal().string();
   }
@@ -191,8 +194,8 @@ Result<Exercise> parse(const Json& json, const fs::path& file, Rig* rig) {
     if (!elsewhere) return elsewhere.error();
     exercise.tissues_elsewhere = *std::move(elsewhere);
   } else if (reader.has("tissues_elsewhere")) {
-    Result<TissueSet> elsewhere = parseTissueSet(reader.raw("tissues_elsewhere"),
-                                                 file.string() + ": tissues_elsewhere");
+    Result<TissueSet> elsewhere =
+        parseTissueSet(reader.raw("tissues_elsewhere"), tr("{}: tissues_elsewhere", file.string()));
     if (reader.ok() && !elsewhere) return elsewhere.error();
     if (elsewhere) exercise.tissues_elsewhere = *std::move(elsewhere);
   }
@@ -210,7 +213,7 @@ Result<Exercise> parse(const Json& json, const fs::path& file, Rig* rig) {
     exercise.operator_file = (folder / script).lexically_normal().string();
     std::error_code ec;
     if (!fs::is_regular_file(exercise.operator_file, ec)) {
-      reader.fail("operator", "The file '" + script + "' is not there", "Check the name");
+      reader.fail("operator", tr("The file '{}' is not there", script), tr("Check the name"));
     }
   }
   if (reader.has("view")) {
@@ -255,8 +258,8 @@ std::string namedFile(const Json& json) {
 
 Result<RecordedExercise> parseRecordedExercise(const Json& json, const std::string& where) {
   if (const std::string key = json.is_object() ? namedFile(json) : ""; !key.empty()) {
-    return Error{code::kBadField, "It names a file, which no scene of a recording does",
-                 where + ": " + key, "Choose a recording that this program made"};
+    return Error{code::kBadField, tr("It names a file, which no scene of a recording does"),
+                 where + ": " + key, tr("Choose a recording that this program made")};
   }
   RecordedExercise recorded;
   Result<Exercise> exercise = parse(json, where, &recorded.rig);
@@ -298,11 +301,11 @@ Json exerciseFile(const Exercise& exercise) {
 }
 
 Status checkEdited(const Exercise& exercise) {
-  const Result<Exercise> read = parseExercise(exerciseFile(exercise), "the exercise");
+  const Result<Exercise> read = parseExercise(exerciseFile(exercise), tr("the exercise"));
   if (read) return {};
   Error error = read.error();
   // Nobody wrote a file that a schema could help with.
-  if (error.next.find("schema") != std::string::npos) error.next = "It stays as it was";
+  if (pointsToSchema(error)) error.next = tr("It stays as it was");
   return error;
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/tr.h"
 #include "exercise/exercise.h"
 #include "exercise/exercise_fields.h"
 
@@ -54,8 +55,8 @@ ExerciseOutline readExerciseOutline(JsonReader reader) {
   ExerciseOutline outline;
   const Json& points = reader.raw("points");
   if (!points.is_array() || points.size() < 2 || points.size() > kOutlinePoints) {
-    reader.fail("points", "Expected a list of 2 to " + std::to_string(kOutlinePoints) +
-                              " places, each three numbers");
+    reader.fail("points",
+                tr("Expected a list of 2 to {} places, each three numbers", kOutlinePoints));
   } else {
     for (std::size_t i = 0; i < points.size() && reader.ok(); ++i) {
       outline.points_mm.push_back(readPoint(reader, points[i], i));
@@ -64,9 +65,8 @@ ExerciseOutline readExerciseOutline(JsonReader reader) {
   // A line that went with its landmark may be longer by a rounding.
   const double length_mm = lengthOf_mm(outline);
   if (reader.ok() && length_mm > kOutlineLength_mm + 1e-3) {
-    reader.fail("points", "The line is " + plainNumber(std::round(length_mm)) +
-                              " mm long, at most " + plainNumber(kOutlineLength_mm) +
-                              " can be drawn");
+    reader.fail("points", tr("The line is {} mm long, at most {} can be drawn",
+                             plainNumber(std::round(length_mm)), plainNumber(kOutlineLength_mm)));
   }
   readFields(reader, kOutlineFields, outline);
   if (reader.has("frame")) {

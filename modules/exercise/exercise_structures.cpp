@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "base/codes.h"
+#include "base/tr.h"
 #include "exercise/codes.h"
 
 namespace trephine {
@@ -44,15 +45,14 @@ Result<PlacedStructures> placeStructures(const Exercise& exercise,
   if (const std::string* name = lacking(exercise, placed.labels.get())) {
     if (!exercise.tissues_elsewhere) {
       return Error{code::kNoStructure,
-                   "The exercise needs the structure '" + *name + "', and the case has none",
-                   "the case", "Make it in the slices, or give a label map that names it"};
+                   tr("The exercise needs the structure '{}', and the case has none", *name),
+                   tr("the case"), tr("Make it in the slices, or give a label map that names it")};
     }
     placed.elsewhere = true;
     placed.warnings.push_back(
-        {code::kLacksStructure,
-         "The case has no structure '" + *name +
-             "': tissue is told by its HU alone, so that whatever has the same "
-             "HU is taken for it"});
+        {code::kLacksStructure, tr("The case has no structure '{}': tissue is told by its HU "
+                                   "alone, so that whatever has the same HU is taken for it",
+                                   *name)});
   }
   placed.labels = withShells(placed.elsewhere ? *exercise.tissues_elsewhere : exercise.tissues,
                              std::move(placed.labels));

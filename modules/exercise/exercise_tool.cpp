@@ -1,5 +1,6 @@
 #include "exercise/exercise_tool.h"
 
+#include "base/tr.h"
 #include "exercise/exercise_fields.h"
 
 namespace trephine {
@@ -32,7 +33,7 @@ ToolLook readLook(JsonReader& item, const std::filesystem::path& folder) {
   readFields(item, kLookFields, look);
   std::error_code ec;
   if (!std::filesystem::is_regular_file(look.mesh, ec)) {
-    item.fail("mesh", "The file '" + file + "' is not there", "Check the name");
+    item.fail("mesh", tr("The file '{}' is not there", file), tr("Check the name"));
   }
   return look;
 }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "base/codes.h"
+#include "base/tr.h"
 #include "exercise/codes.h"
 
 namespace trephine {
@@ -30,7 +31,7 @@ struct Sought {
 
   // Called a few hundred times a landmark. False: give up.
   bool goOn(double fraction) const {
-    progress.at(fraction, "Finding landmarks");
+    progress.at(fraction, tr("Finding landmarks"));
     return !progress.cancelled();
   }
   bool in(double hu, std::uint8_t label) const {
@@ -168,14 +169,14 @@ struct Ray {
 };
 
 std::string nameOf(const Landmark& landmark) {
-  return landmark.tissue.empty() ? "a body" : "the tissue '" + landmark.tissue + "'";
+  return landmark.tissue.empty() ? "a body" : tr("the tissue '{}'", landmark.tissue);
 }
 
 Result<Ray> rayOf(const Landmark& landmark, const Sought& sought) {
   const GridGeometry& g = sought.volume.geometry;
-  const Error none{code::kTissueNotFound, "The case has no voxel of " + nameOf(landmark),
-                   "landmark '" + landmark.id + "'",
-                   "Check the HU range and label, or choose a case of the scene's anatomy"};
+  const Error none{code::kTissueNotFound, tr("The case has no voxel of {}", nameOf(landmark)),
+                   tr("landmark '{}'", landmark.id),
+                   tr("Check the HU range and label, or choose a case of the scene's anatomy")};
   if (landmark.bulk_radius_mm > 0.0) {
     // A scan of a few slices has no room for the whole ball.
     for (const double part : {1.0, 0.5, 0.25}) {
@@ -249,33 +250,34 @@ Quat frameAlong(const Vec3& outward) {
 Result<LandmarkFrame> findLandmark(const Landmark& landmark, const Volume& volume,
                                    const TissueSet& tissues, const LabelMap* labels,
                                    const Progress& progress) {
-  const std::string where = "landmark '" + landmark.id + "'";
+  const std::string where = tr("landmark '{}'", landmark.id);
   if (landmark.is_place) {
     const Vec3 at = Vec3(volume.geometry.patientToVoxel() * glm::dvec4(landmark.at_mm, 1.0));
     const Index3& size = volume.geometry.size;
     const Vec3 high = Vec3(size[0], size[1], size[2]) - 0.5;
     if (!glm::all(glm::greaterThanEqual(at, Vec3(-0.5))) || !glm::all(glm::lessThan(at, high))) {
-      return Error{code::kNoPlace, "The place lies outside of the scan", where,
-                   "Give one inside, in the patient's frame (LPS, mm)"};
+      return Error{code::kNoPlace, tr("The place lies outside of the scan"), where,
+                   tr("Give one inside, in the patient's frame (LPS, mm)")};
     }
     return LandmarkFrame{landmark.at_mm, frameAlong(landmark.outward)};
   }
   const Tissue* tissue = tissues.find(landmark.tissue);
   if (!tissue && !landmark.tissue.empty()) {
     return Error{code::kNoSuchTissue,
-                 "The tissue '" + landmark.tissue + "' is not in the tissue set", where,
-                 "Name one of its tissues"};
+                 tr("The tissue '{}' is not in the tissue set", landmark.tissue), where,
+                 tr("Name one of its tissues")};
   }
   const Sought sought{volume, labels, tissueTable(tissues),
                       tissue ? int(tissue - tissues.tissues.data()) : kBody, progress};
   const Result<Ray> ray = rayOf(landmark, sought);
-  const Error cancelled{code::kCancelled, "Finding the landmarks was cancelled", where, ""};
+  const Error cancelled{code::kCancelled, tr("Finding the landmarks was cancelled"), where, ""};
   if (progress.cancelled()) return cancelled;
   if (!ray) return ray.error();
   const auto [from_mm, towards_mm, least_run_mm] = *ray;
   const double length_mm = glm::length(towards_mm - from_mm);
   if (!(length_mm > 0.0)) {
-    return Error{code::kNoSurface, "The ray has no direction", where, "Give two different points"};
+    return Error{code::kNoSurface, tr("The ray has no direction"), where,
+                 tr("Give two different points")};
   }
   const Vec3 along = (towards_mm - from_mm) / length_mm;
   constexpr double kStep_mm = 0.25;
@@ -292,8 +294,8 @@ Result<LandmarkFrame> findLandmark(const Landmark& landmark, const Volume& volum
       return LandmarkFrame{from_mm + (at_mm - run_mm + kStep_mm) * along, frameAlong(-along)};
     }
   }
-  return Error{code::kNoSurface, "The ray does not meet " + nameOf(landmark), where,
-               "Choose a case of the scene's anatomy, or another ray"};
+  return Error{code::kNoSurface, tr("The ray does not meet {}", nameOf(landmark)), where,
+               tr("Choose a case of the scene's anatomy, or another ray")};
 }
 
 std::vector<Vec3> ontoSurface(std::vector<Vec3> points_mm, const Vec3& outward, double reach_mm,

@@ -7,6 +7,8 @@
 #include <string_view>
 #include <utility>
 
+#include "base/tr.h"
+
 namespace trephine {
 
 template <class Kind, std::size_t N>
@@ -32,7 +34,7 @@ template <class Kind, std::size_t N>
 std::string choices(const Names<Kind, N>& names) {
   std::string text;
   for (const auto& [name, kind] : names) text += (text.empty() ? "" : ", ") + std::string(name);
-  return "Use one of: " + text;
+  return tr("Use one of: {}", text);
 }
 
 }  // namespace trephine

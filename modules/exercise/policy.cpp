@@ -11,6 +11,7 @@
 
 #include "base/descriptor.h"
 #include "base/system.h"
+#include "base/tr.h"
 #include "exercise/codes.h"
 #include "exercise/exercise_fields.h"
 
@@ -26,21 +27,22 @@ Policy allLocked(const fs::path& file, Error why) {
   Policy policy;
   for (const auto& [name, lock] : kLockNames) policy.locks.insert(lock);
   policy.folder = file.parent_path();
-  why.what = "Everything is locked: " + why.what;
+  why.what = tr("Everything is locked: {}", why.what);
   policy.problem = std::move(why);
   return policy;
 }
 
 Error unreadable(const fs::path& file, const std::string& why) {
-  return {code::kPolicyUnreadable, "The workstation's settings cannot be read: " + why,
-          file.string(), "An administrator must correct the file or take it away"};
+  return {code::kPolicyUnreadable, tr("The workstation's settings cannot be read: {}", why),
+          file.string(), tr("An administrator must correct the file or take it away")};
 }
 
 Error unsafe(const fs::path& path) {
-  return {code::kPolicyUnsafe,
-          "Others than an administrator could change the workstation's settings", path.string(),
-          "An administrator must make it root's own, and take from group and others the right to "
-          "write (chown root, chmod go-w)"};
+  return {
+      code::kPolicyUnsafe,
+      tr("Others than an administrator could change the workstation's settings"), path.string(),
+      tr("An administrator must make it root's own, and take from group and others the right to "
+         "write (chown root, chmod go-w)")};
 }
 
 bool safe(const struct stat& of) {
@@ -52,14 +54,14 @@ Result<std::string> contentOf(const fs::path& file) {
   // A link is not followed: it would lead to where nobody looked who may write. A pipe would wait.
   const Descriptor in(::open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK));
   if (!in.ok()) {
-    return unreadable(file, errno == ELOOP ? "it is a link" : std::strerror(errno));
+    return unreadable(file, errno == ELOOP ? tr("it is a link") : std::strerror(errno));
   }
   struct stat of {};
   if (::fstat(in.get(), &of) != 0) return unreadable(file, std::strerror(errno));
   if (!S_ISREG(of.st_mode))
-    return unreadable(file, "it is no file but a folder, a pipe or a device");
+    return unreadable(file, tr("it is no file but a folder, a pipe or a device"));
   if (!safe(of)) return unsafe(file);
-  if (of.st_size > kMostBytes) return unreadable(file, "it is larger than 1 MB");
+  if (of.st_size > kMostBytes) return unreadable(file, tr("it is larger than 1 MB"));
   std::string text(std::size_t(of.st_size), '\0');
   std::size_t done = 0;
   while (done < text.size()) {
@@ -125,8 +127,8 @@ Result<Policy> parsePolicy(const Json& json, const fs::path& file) {
   policy.storage = reader.text("storage", "");
   if (!policy.storage.empty() && !policy.storage.is_absolute()) {
     reader.fail("storage",
-                "The folder '" + policy.storage.string() + "' is not given from the root",
-                "Let it begin with /");
+                tr("The folder '{}' is not given from the root", policy.storage.string()),
+                tr("Let it begin with /"));
   }
   if (reader.has("locks")) {
     JsonReader locks = reader.object("locks");
@@ -134,12 +136,12 @@ Result<Policy> parsePolicy(const Json& json, const fs::path& file) {
       const std::string name = locks.text("controller");
       policy.controller = kindOf(kControllerNames, name);
       if (locks.ok() && !policy.controller) {
-        locks.fail("controller", "Unknown controller '" + name + "'",
-                   choices(kControllerNames) + ", true, false");
+        locks.fail("controller", tr("Unknown controller '{}'", name),
+                   tr("{}, true, false", choices(kControllerNames)));
       }
     });
     readLock(locks, "tissues", Lock::tissues, policy,
-             [&] { locks.fail("tissues", "Expected true or false"); });
+             [&] { locks.fail("tissues", tr("Expected true or false")); });
     readLock(locks, "rate", Lock::rate, policy,
              [&] { policy.rate_hz = locks.number("rate", kRate_hz); });
   }
@@ -196,8 +198,8 @@ std::string unlocking(const Policy& policy) {
   if (const std::optional<Error>& why = policy.problem) {
     return why->what + " (" + why->where + "): " + why->next;
   }
-  return policy.pin ? "An educator can unlock it with a PIN (menu File)"
-                    : "Nothing at this workstation unlocks it";
+  return policy.pin ? tr("An educator can unlock it with a PIN (menu File)")
+                    : tr("Nothing at this workstation unlocks it");
 }
 
 Locks locksOf(const Policy& policy, const Exercise& exercise) {
@@ -211,18 +213,18 @@ Status checkExercise(const Policy& policy, const Exercise& exercise,
   const auto locked = [&](const std::string& what) {
     return Error{code::kLocked, what, exercise_file.string(),
                  policy.problem ? policy.problem->what + ": " + policy.problem->next
-                 : policy.pin   ? "Choose an exercise of the workstation, or ask an educator to "
-                                  "unlock it"
-                                : "Choose an exercise of the workstation"};
+                 : policy.pin   ? tr("Choose an exercise of the workstation, or ask an educator to "
+                                       "unlock it")
+                                : tr("Choose an exercise of the workstation")};
   };
   const auto name = [](ControllerKind kind) { return std::string(controllerName(kind)); };
   if (policy.controller && exercise.controller != *policy.controller) {
-    return locked("The exercise has the controller '" + name(exercise.controller) +
-                  "', and this workstation allows '" + name(*policy.controller) + "' alone");
+    return locked(tr("The exercise has the controller '{}', and this workstation allows '{}' alone",
+                     name(exercise.controller), name(*policy.controller)));
   }
   if (policy.rate_hz && exercise.rate_hz != *policy.rate_hz) {
-    return locked("The exercise has a rate of " + plainNumber(exercise.rate_hz) +
-                  " Hz, and this workstation allows " + plainNumber(*policy.rate_hz) + " Hz alone");
+    return locked(tr("The exercise has a rate of {} Hz, and this workstation allows {} Hz alone",
+                     plainNumber(exercise.rate_hz), plainNumber(*policy.rate_hz)));
   }
   std::string own;
   const auto add = [&](Lock lock, bool prescribed, const char* what) {
@@ -232,8 +234,9 @@ Status checkExercise(const Policy& policy, const Exercise& exercise,
   add(Lock::controller, policy.controller.has_value(), "a controller");
   add(Lock::rate, policy.rate_hz.has_value(), "a rate");
   if (own.empty() || isOfTheWorkstation(policy, exercise_file)) return {};
-  return locked("The exercise is not one of the workstation's, and would bring what is locked: " +
-                own + " of its own");
+  return locked(tr(
+      "The exercise is not one of the workstation's, and would bring what is locked: {} of its own",
+      own));
 }
 
 }  // namespace trephine

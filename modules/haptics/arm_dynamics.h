@@ -3,6 +3,7 @@
 #pragma once
 
 #include "base/field.h"
+#include "base/tr.h"
 #include "device/arm_ranges.h"
 #include "haptics/workspace_map.h"
 
@@ -30,20 +31,20 @@ double delaySamples(const ArmDynamics& arm, double period_s);
 
 // Those that a recording keeps; the peak force is the exercise's `max_force_N`.
 inline constexpr FieldOf<ArmDynamics> kArmDynamicsFields[] = {
-    {{"apparent_mass_kg", kApparentMass_kg, Given::always, "at the tip"},
+    {{"apparent_mass_kg", kApparentMass_kg, Given::always, trLater("at the tip")},
      &ArmDynamics::apparent_mass_kg},
-    {{"encoder_step_m", kEncoderStep_m, Given::always, "of its position"},
+    {{"encoder_step_m", kEncoderStep_m, Given::always, trLater("of its position")},
      &ArmDynamics::encoder_step_m},
-    {{"delay_s", kDelay_s, Given::may_be, "from a sample to the force that answers it"},
+    {{"delay_s", kDelay_s, Given::may_be, trLater("from a sample to the force that answers it")},
      &ArmDynamics::delay_s},
-    {{"continuous_force_N", kPeakForce_N, Given::may_be, "what it can be sent for good"},
+    {{"continuous_force_N", kPeakForce_N, Given::may_be, trLater("what it can be sent for good")},
      &ArmDynamics::continuous_force_N},
     {{"thermal_s", kThermal_s, Given::may_be,
-      "the time constant with which its motors warm; 0: it looks after itself"},
+      trLater("the time constant with which its motors warm; 0: it looks after itself")},
      &ArmDynamics::thermal_s},
 };
 inline constexpr FieldRow kArmPeakForce{"peak_force_N", kPeakForce_N, Given::always,
-                                         "no more is sent"};
+                                        trLater("no more is sent")};
 
 // IMPOSSIBLE_NUMBER. What an arm is made of is checked where it comes from (a device's answer, a
 // file, and all of it once more before the loop's first tick): nothing later asks again.

@@ -1,6 +1,7 @@
 // The core's state as bytes, and back.
 #include "base/codes.h"
 #include "base/state_archive.h"
+#include "base/tr.h"
 #include "haptics/haptic_core.h"
 
 namespace trephine {
@@ -11,9 +12,9 @@ constexpr std::string_view kStateKind = "core";
 // Goes up with every change of what any visitState() below the core names, or of its order.
 constexpr std::uint32_t kStateVersion = 1;
 
-Error badState(const char* what) {
-  return {code::kBadState, what, "the state `" + std::string(kStateKind) + "`",
-          "Take the state, the volume and the log of the same moment of the same exercise."};
+Error badState(const std::string& what) {
+  return {code::kBadState, what, tr("the state `{}`", kStateKind),
+          tr("Take the state, the volume and the log of the same moment of the same exercise")};
 }
 
 }  // namespace
@@ -76,11 +77,11 @@ std::vector<std::byte> HapticCore::save() const {
 Status HapticCore::read(std::span<const std::byte> state) {
   StateReader reader(state);
   visitParameters(reader);
-  if (!reader.ok()) return badState("The state is of a core with other parameters.");
+  if (!reader.ok()) return badState(tr("The state is of a core with other parameters"));
   reader.same(journal_.hashOfPlace(writer_.grid()));
-  if (!reader.ok()) return badState("The state is of another place in the journal.");
+  if (!reader.ok()) return badState(tr("The state is of another place in the journal"));
   visitState(*this, reader);
-  if (!reader.ok() || !reader.atEnd()) return badState("The state holds what no core has.");
+  if (!reader.ok() || !reader.atEnd()) return badState(tr("The state holds what no core has"));
   carves_.clear();
   events_.clear();
   return {};

@@ -3,14 +3,15 @@
 #include <cmath>
 
 #include "base/codes.h"
+#include "base/tr.h"
 #include "haptics/codes.h"
 
 namespace trephine {
 
 namespace {
 
-constexpr FieldRow kPeriod{"period_s", {1e-5, 0.1, "s"}, Given::always, "of a tick"};
-constexpr FieldRow kMaxForce{"max_force_N", kPeakForce_N, Given::always, "on the arm"};
+constexpr FieldRow kPeriod{"period_s", {1e-5, 0.1, "s"}, Given::always, trLater("of a tick")};
+constexpr FieldRow kMaxForce{"max_force_N", kPeakForce_N, Given::always, trLater("on the arm")};
 
 }  // namespace
 
@@ -29,21 +30,21 @@ Status validate(const WorkspaceMap& map, const std::string& of) {
   const double length = glm::length(map.rotation);
   if (std::abs(length - 1.0) <= 1e-6) return {};
   return Error{code::kImpossibleNumber,
-               "The rotation has a length of " + plainNumber(length) + ", and a rotation has 1",
-               of + ": rotation_wxyz", "Correct it"};
+               tr("The rotation has a length of {}, and a rotation has 1", plainNumber(length)),
+               tr("{}: rotation_wxyz", of), tr("Correct it")};
 }
 
 Status validate(const HapticParameters& parameters) {
-  if (Status s = checkNumber(kPeriod, parameters.period_s, "the loop"); !s) return s;
+  if (Status s = checkNumber(kPeriod, parameters.period_s, tr("the loop")); !s) return s;
   if (parameters.arms.size() > std::size_t(kMaxArms)) {
-    return Error{code::kTooManyArms,
-                 "There are " + std::to_string(parameters.arms.size()) + " arms, and at most " +
-                     std::to_string(kMaxArms) + " are served",
-                 "the arms", "Take the others out"};
+    return Error{
+        code::kTooManyArms,
+        tr("There are {} arms, and at most {} are served", parameters.arms.size(), kMaxArms),
+        tr("the arms"), tr("Take the others out")};
   }
   for (std::size_t i = 0; i < parameters.arms.size(); ++i) {
     const ArmParameters& arm = parameters.arms[i];
-    const std::string of = "arm " + std::to_string(i);
+    const std::string of = tr("arm {}", i);
     if (Status s = validate(arm.dynamics, of); !s) return s;
     const double samples = delaySamples(arm.dynamics, parameters.period_s);
     if (!kDelaySamples.holds(samples)) {
@@ -53,15 +54,15 @@ Status validate(const HapticParameters& parameters) {
     if (Status s = checkNumber(kMaxForce, arm.max_force_N, of); !s) return s;
     if (arm.other_tools.size() >= kMostTools) {
       return Error{code::kTooManyTools,
-                   "An arm has " + std::to_string(1 + arm.other_tools.size()) +
-                       " tools, and at most " + std::to_string(kMostTools) + " are kept ready",
-                   of, "Take the others out"};
+                   tr("An arm has {} tools, and at most {} are kept ready",
+                      1 + arm.other_tools.size(), kMostTools),
+                   of, tr("Take the others out")};
     }
   }
   for (int c = 0; c < parameters.tissues.count; ++c) {
     for (const TissueNumber& number : kTissueNumbers) {
       const double value = parameters.tissues.classes[std::size_t(c)].*number.in_tick;
-      const std::string of = "tissue " + std::to_string(c);
+      const std::string of = tr("tissue {}", c);
       if (Status s = checkNumber(number.row(), value, of); !s) return s;
     }
   }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/tr.h"
 #include "haptics/codes.h"
 #include "haptics/spiral.h"
 
@@ -119,7 +120,7 @@ Tool makeBurr(double radius_m, int shell_points, int shaft_points, double length
 
 Result<Tool> makeTool(const ToolDescription& d) {
   const auto bad = [](const char* field, double value, const std::string& must) {
-    return Error{code::kBadTool, "The value " + plainNumber(value) + " must " + must, field, ""};
+    return Error{code::kBadTool, tr("The value {} must {}", plainNumber(value), must), field, ""};
   };
   const bool is_burr = d.kind == ToolKind::burr;
   const struct {
@@ -132,16 +133,16 @@ Result<Tool> makeTool(const ToolDescription& d) {
               {"motor_W", d.motor_W, kToolMotor_W},
               {"shaft_points", is_burr ? d.shaft_points : 0.0, kToolShaftPoints}};
   for (const auto& [field, value, range] : rows) {
-    if (!range.holds(value)) return bad(field, value, "lie " + range.words());
+    if (!range.holds(value)) return bad(field, value, tr("lie {}", range.words()));
   }
   if (!is_burr) return sharpTool(d);
   const bool cylinder = d.shape == BurrShape::cylinder;
   if (cylinder && !(d.head_mm >= 2.0 * d.radius_mm && d.head_mm <= kToolLength_mm.high)) {
     return bad("head_mm", d.head_mm,
-               "be at least twice the radius: a head is as long as it is thick");
+               tr("be at least twice the radius: a head is as long as it is thick"));
   }
   if (d.length_mm < (cylinder ? d.head_mm : 2.0 * d.radius_mm)) {
-    return bad("length_mm", d.length_mm, "be at least the length of the burr's head");
+    return bad("length_mm", d.length_mm, tr("be at least the length of the burr's head"));
   }
   return burr(d);
 }

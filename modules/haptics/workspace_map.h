@@ -2,8 +2,9 @@
 // bound and clamp at the device; this is the one crossing.
 #pragma once
 
-#include "base/math.h"
 #include "base/field.h"
+#include "base/math.h"
+#include "base/tr.h"
 
 namespace trephine {
 
@@ -39,11 +40,12 @@ struct WorkspaceMap {
 };
 
 inline constexpr FieldOf<WorkspaceMap> kWorkspaceMapFields[] = {
-    {{"centre_mm", kMapPlace_mm, Given::always, "where the device's origin lies in the patient"},
+    {{"centre_mm", kMapPlace_mm, Given::always,
+      trLater("where the device's origin lies in the patient")},
      &WorkspaceMap::centre_mm},
-    {{"motion_scale", kMapScale, Given::may_be, "the tool's travel by the arm's"},
+    {{"motion_scale", kMapScale, Given::may_be, trLater("the tool's travel by the arm's")},
      &WorkspaceMap::motion_scale},
-    {{"force_scale", kMapScale, Given::may_be, "the arm's force by the tissue's"},
+    {{"force_scale", kMapScale, Given::may_be, trLater("the arm's force by the tissue's")},
      &WorkspaceMap::force_scale},
 };
 

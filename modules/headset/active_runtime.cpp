@@ -5,6 +5,7 @@
 #include <sstream>
 #include <vector>
 
+#include "base/tr.h"
 #include "headset/codes.h"
 
 namespace trephine {
@@ -35,12 +36,12 @@ std::string toldOf() {
 
 Error noActiveRuntime(const std::string& where) {
   if (const std::string broken = toldOf(); !broken.empty()) {
-    return {code::kNoRuntime, "The active OpenXR runtime cannot be used", broken,
-            "Install the headset's software anew, or make another one the active runtime"};
+    return {code::kNoRuntime, tr("The active OpenXR runtime cannot be used"), broken,
+            tr("Install the headset's software anew, or make another one the active runtime")};
   }
-  return {code::kNoRuntime, "No OpenXR runtime is active on this computer", where,
-          "Install the headset's software, such as Monado or SteamVR, and make it the active "
-          "runtime"};
+  return {code::kNoRuntime, tr("No OpenXR runtime is active on this computer"), where,
+          tr("Install the headset's software, such as Monado or SteamVR, and make it the active "
+             "runtime")};
 }
 
 }  // namespace trephine

@@ -10,6 +10,7 @@
 #include "headset/openxr_session.h"
 // Xlib comes with it.
 #include "base/codes.h"
+#include "base/tr.h"
 #include "headset/codes.h"
 #include "headset/openxr_functions.h"
 
@@ -35,8 +36,8 @@ struct Headset::Engine : HeadsetShared {
       how = runOpenXr(*this, *context->extraFunctions());
       context->doneCurrent();
     } else {
-      how.why = Error{code::kNoOpengl, "The headset's thread got no OpenGL", "",
-                      "Update the graphics driver"};
+      how.why = Error{code::kNoOpengl, tr("The headset's thread got no OpenGL"), "",
+                      tr("Update the graphics driver")};
     }
     context->moveToThread(home);
     {
@@ -52,8 +53,8 @@ Result<std::unique_ptr<Headset>> Headset::start(QOpenGLContext& share,
                                                 std::function<void()> wake) {
   if (!share.nativeInterface<QNativeInterface::QGLXContext>()) {
     return Error{code::kNoGlx,
-                 "A headset needs the window to draw through GLX, and this one does not", "",
-                 "Start Trephine with QT_QPA_PLATFORM=xcb and QT_XCB_GL_INTEGRATION=xcb_glx"};
+                 tr("A headset needs the window to draw through GLX, and this one does not"), "",
+                 tr("Start Trephine with QT_QPA_PLATFORM=xcb and QT_XCB_GL_INTEGRATION=xcb_glx")};
   }
   const Result<const OpenXr*> loader = OpenXr::load();
   if (!loader) return loader.error();
@@ -64,8 +65,9 @@ Result<std::unique_ptr<Headset>> Headset::start(QOpenGLContext& share,
   engine->context->setFormat(share.format());
   engine->context->setShareContext(&share);
   if (!engine->context->create() || !QOpenGLContext::areSharing(engine->context.get(), &share)) {
-    return Error{code::kNoOpengl, "The graphics driver shares no textures with a second context",
-                 "", "Update the graphics driver"};
+    return Error{code::kNoOpengl,
+                 tr("The graphics driver shares no textures with a second context"), "",
+                 tr("Update the graphics driver")};
   }
   engine->surface = std::make_unique<QOffscreenSurface>();
   engine->surface->setFormat(engine->context->format());

@@ -1,6 +1,7 @@
 #include "headset/lens_profile.h"
 
 #include "base/json.h"
+#include "base/tr.h"
 
 namespace trephine {
 
@@ -36,7 +37,8 @@ Result<LensProfile> readLensProfile(const std::filesystem::path& file) {
   for (double r = 0.01; reader.ok() && r <= kCorner; r += 0.01) {
     const double now = bent(lens, r);
     if (now <= last)
-      reader.fail("k", "These numbers fold the picture over itself", "Check the lens's numbers");
+      reader.fail("k", tr("These numbers fold the picture over itself"),
+                  tr("Check the lens's numbers"));
     last = now;
   }
   if (Status read = reader.finish(); !read) return read.error();

@@ -4,6 +4,7 @@
 
 #include <mutex>
 
+#include "base/tr.h"
 #include "headset/codes.h"
 
 namespace trephine {
@@ -43,8 +44,8 @@ Result<const OpenXr*> OpenXr::load() {
   const std::lock_guard lock(one_at_a_time);
   if (!loaded.createInstance) loaded = open();
   if (loaded.createInstance) return &loaded;
-  return Error{code::kNoLoader, "No headset can be used: OpenXR's loader is not installed",
-               "libopenxr_loader.so.1", "Install the package libopenxr-loader1 and try again"};
+  return Error{code::kNoLoader, tr("No headset can be used: OpenXR's loader is not installed"),
+               "libopenxr_loader.so.1", tr("Install the package libopenxr-loader1 and try again")};
 }
 
 bool OpenXr::loadFor(XrInstance instance) {

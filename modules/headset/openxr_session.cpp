@@ -11,6 +11,7 @@
 #include <thread>
 #include <vector>
 
+#include "base/tr.h"
 #include "headset/active_runtime.h"
 #include "headset/room_place.h"
 //
@@ -124,28 +125,28 @@ void OpenXrSession::end(Status why, bool again) {
 
 void OpenXrSession::check(XrResult result, const char* function) {
   if (XR_SUCCEEDED(result) && result != XR_SESSION_LOSS_PENDING) return;
-  const std::string where = std::string(function) + ", XrResult " + std::to_string(int(result));
+  const std::string where = tr("{}, XrResult {}", function, int(result));
   switch (result) {
     case XR_ERROR_RUNTIME_UNAVAILABLE:
       end(noActiveRuntime(where), false);
     case XR_ERROR_FORM_FACTOR_UNAVAILABLE:
     case XR_ERROR_FORM_FACTOR_UNSUPPORTED:
-      end(Error{code::kNoHeadset, "No headset is found", where,
-                "Plug it in, switch it on, try again"},
+      end(Error{code::kNoHeadset, tr("No headset is found"), where,
+                tr("Plug it in, switch it on, try again")},
           true);
     case XR_ERROR_LIMIT_REACHED:
-      end(Error{code::kHeadsetInUse, "Another program has the headset", where,
-                "Close it, try again"},
+      end(Error{code::kHeadsetInUse, tr("Another program has the headset"), where,
+                tr("Close it, try again")},
           true);
     case XR_ERROR_INSTANCE_LOST:
     case XR_ERROR_SESSION_LOST:
     case XR_SESSION_LOSS_PENDING:
-      end(Error{code::kHeadsetLost, "The headset went away", where,
-                "The exercise goes on in the window; put the headset on again when it is back"},
+      end(Error{code::kHeadsetLost, tr("The headset went away"), where,
+                tr("The exercise goes on in the window; put the headset on again when it is back")},
           true);
     default:
-      end(Error{code::kHeadsetFailed, "The headset's software reports an error", where,
-                "Start that software anew and try again"},
+      end(Error{code::kHeadsetFailed, tr("The headset's software reports an error"), where,
+                tr("Start that software anew and try again")},
           true);
   }
 }
@@ -173,9 +174,9 @@ void OpenXrSession::createInstance() {
     return std::strcmp(each.extensionName, XR_KHR_OPENGL_ENABLE_EXTENSION_NAME) == 0;
   });
   if (!opengl) {
-    end(Error{code::kNoRuntime, "The active OpenXR runtime takes no pictures of OpenGL",
+    end(Error{code::kNoRuntime, tr("The active OpenXR runtime takes no pictures of OpenGL"),
               XR_KHR_OPENGL_ENABLE_EXTENSION_NAME,
-              "Use another runtime, such as Monado or SteamVR"},
+              tr("Use another runtime, such as Monado or SteamVR")},
         false);
   }
   const char* const names[] = {XR_KHR_OPENGL_ENABLE_EXTENSION_NAME};
@@ -188,8 +189,8 @@ void OpenXrSession::createInstance() {
   if (!xr_.loadFor(instance_)) {
     // Then xrDestroyInstance may be missing too.
     if (!xr_.destroyInstance) instance_ = XR_NULL_HANDLE;
-    end(Error{code::kNoRuntime, "The active OpenXR runtime lacks a function", "",
-              "Update the headset's software"},
+    end(Error{code::kNoRuntime, tr("The active OpenXR runtime lacks a function"), "",
+              tr("Update the headset's software")},
         false);
   }
 }
@@ -243,8 +244,8 @@ void OpenXrSession::createSession() {
         "xrGetOpenGLGraphicsRequirementsKHR");
   const XrGraphicsBindingOpenGLXlibKHR graphics = binding();
   if (!graphics.glxFBConfig) {
-    end(Error{code::kNoGlx, "The graphics driver tells nothing of its windows", "glXChooseFBConfig",
-              "Update the graphics driver"},
+    end(Error{code::kNoGlx, tr("The graphics driver tells nothing of its windows"),
+              "glXChooseFBConfig", tr("Update the graphics driver")},
         false);
   }
   const XrSessionCreateInfo info{XR_TYPE_SESSION_CREATE_INFO, &graphics, 0, system_};
@@ -272,8 +273,8 @@ void OpenXrSession::createSession() {
     if (std::ranges::find(formats, usable) != formats.end()) format_ = usable;
   }
   if (format_ == 0) {
-    end(Error{code::kHeadsetFailed, "The headset's software takes no 8-bit pictures", "",
-              "Update the headset's software"},
+    end(Error{code::kHeadsetFailed, tr("The headset's software takes no 8-bit pictures"), "",
+              tr("Update the headset's software")},
         false);
   }
   for (Chain& each : eyes_) each = createChain(state_.width, state_.height);
@@ -325,11 +326,11 @@ void OpenXrSession::changeState(XrSessionState state) {
         ended_ = true;
         break;
       }
-      end(Error{code::kHeadsetEnded, "The headset's software has ended the picture", "",
-                "The exercise goes on in the window; put the headset on again when you like"},
+      end(Error{code::kHeadsetEnded, tr("The headset's software has ended the picture"), "",
+                tr("The exercise goes on in the window; put the headset on again when you like")},
           true);
     case XR_SESSION_STATE_LOSS_PENDING:
-      check(XR_SESSION_LOSS_PENDING, "a loss that is announced");
+      check(XR_SESSION_LOSS_PENDING, tr("a loss that is announced"));
       break;
     default:
       break;
@@ -344,7 +345,7 @@ bool OpenXrSession::pollEvents() {
     if (result == XR_EVENT_UNAVAILABLE) break;
     check(result, "xrPollEvent");
     if (event.type == XR_TYPE_EVENT_DATA_INSTANCE_LOSS_PENDING) {
-      check(XR_ERROR_INSTANCE_LOST, "a loss that is announced");
+      check(XR_ERROR_INSTANCE_LOST, tr("a loss that is announced"));
     }
     if (event.type == XR_TYPE_EVENT_DATA_REFERENCE_SPACE_CHANGE_PENDING) {
       const auto& change = reinterpret_cast<const XrEventDataReferenceSpaceChangePending&>(event);

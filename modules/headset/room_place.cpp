@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "base/tr.h"
 #include "headset/codes.h"
 
 namespace trephine {
@@ -125,15 +126,15 @@ double apart_mm(const RoomPlace& place, const Pose& room_from_device_m, const Ar
 // Horn, "Closed-form solution of absolute orientation using unit quaternions", 1987.
 Result<Registration> registerArm(std::span<const Vec3> device_m, std::span<const Vec3> room_m) {
   if (device_m.size() < 3 || device_m.size() != room_m.size()) {
-    return Error{code::kTooFewMarks, "Three marks are needed to know where the arm stands",
-                 std::to_string(std::min(device_m.size(), room_m.size())) + " marks",
-                 "Touch all of them with the arm's tip"};
+    return Error{code::kTooFewMarks, tr("Three marks are needed to know where the arm stands"),
+                 tr("{} marks", std::min(device_m.size(), room_m.size())),
+                 tr("Touch all of them with the arm's tip")};
   }
   const bool finite = std::ranges::all_of(device_m, [](const Vec3& p) { return isFinite(p); }) &&
                       std::ranges::all_of(room_m, [](const Vec3& p) { return isFinite(p); });
   if (!finite || 1e3 * std::min(spread_m(device_m), spread_m(room_m)) < kLeastSpread_mm) {
-    return Error{code::kBadMarks, "The marks lie on one line, or were touched at one place",
-                 "marks", "Touch them one after the other, each at its place"};
+    return Error{code::kBadMarks, tr("The marks lie on one line, or were touched at one place"),
+                 "marks", tr("Touch them one after the other, each at its place")};
   }
   const Vec3 device_mean = meanOf(device_m), room_mean = meanOf(room_m);
   Mat3 s(0.0);  // s[b][a]: sum of device a times room b

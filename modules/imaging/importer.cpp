@@ -8,9 +8,10 @@
 #include "base/codes.h"
 #include "base/memory.h"
 #include "base/system.h"
+#include "base/tr.h"
+#include "imaging/codes.h"
 #include "imaging/common/detail/source_watch.h"
 #include "imaging/common/detail/text.h"
-#include "imaging/codes.h"
 #include "imaging/common/workers.h"
 #include "imaging/dicom/detail/dicom_pixels.h"
 #include "imaging/dicom/detail/transfer_syntax.h"
@@ -39,14 +40,14 @@ double secondsSince(Clock::time_point start) {
 std::optional<Error> folderError(const ImportReport& report) {
   const auto is_ct = [](const SeriesReport& s) { return s.modality == "CT"; };
   if (report.files_seen == 0) {
-    return Error{code::kEmptyFolder, "The folder holds no files", report.path,
-                 "Choose another folder"};
+    return Error{code::kEmptyFolder, tr("The folder holds no files"), report.path,
+                 tr("Choose another folder")};
   }
   if (std::ranges::none_of(report.series, is_ct)) {
-    std::string what = report.files_seen == 1 ? "The only file is no CT series"
-                                              : "There is no CT series among the " +
-                                                    counted(report.files_seen, "file");
-    const auto isPacked = [](const SkippedFiles& s) { return s.reason.ends_with(kUnpackFirst); };
+    std::string what = report.files_seen == 1 ? tr("The only file is no CT series")
+                                              : tr("There is no CT series among the {}",
+                                                   counted(report.files_seen, "file"));
+    const auto isPacked = [](const SkippedFiles& s) { return s.packed; };
     auto most = std::ranges::find_if(report.skipped, isPacked);
     const bool packed = most != report.skipped.end();
     if (!packed) most = std::ranges::max_element(report.skipped, {}, &SkippedFiles::count);
@@ -55,16 +56,16 @@ std::optional<Error> folderError(const ImportReport& report) {
     if (std::ranges::count_if(report.series, isFile) == 1) {
       const SeriesReport& one = *std::ranges::find_if(report.series, isFile);
       const Finding& why = *std::ranges::find(one.findings, Severity::refusal, &Finding::severity);
-      return Error{code::kNoCt, "The only volume file cannot be used: " + why.text, report.path,
-                   why.action};
+      return Error{code::kNoCt, tr("The only volume file cannot be used: {}", why.text),
+                   report.path, why.action};
     }
     if (most != report.skipped.end()) {
       what += "; " + std::to_string(most->count) +
-              (most->count == 1 ? " was skipped: " : " were skipped: ") + most->reason;
+              (most->count == 1 ? tr(" was skipped: ") : tr(" were skipped: ")) + most->reason;
     }
     return Error{code::kNoCt, what, report.path,
-                 packed ? "Unpack it, and choose the folder that then holds the CT"
-                        : "Choose the folder that holds the CT"};
+                 packed ? tr("Unpack it, and choose the folder that then holds the CT")
+                        : tr("Choose the folder that holds the CT")};
   }
   const SeriesReport* largest = nullptr;
   for (const SeriesReport& series : report.series) {
@@ -74,48 +75,51 @@ std::optional<Error> folderError(const ImportReport& report) {
   }
   const auto refusal = std::ranges::find(largest->findings, Severity::refusal, &Finding::severity);
   const bool only = std::ranges::count_if(report.series, is_ct) == 1;
-  return Error{
-      code::kAllRefused,
-      (only ? "The CT series cannot be used: " : "No CT series can be used; of the largest: ") +
-          refusal->text,
-      report.path, refusal->action};
+  return Error{code::kAllRefused,
+               (only ? tr("The CT series cannot be used: ")
+                     : tr("No CT series can be used; of the largest: ")) +
+                   refusal->text,
+               report.path, refusal->action};
 }
 
 void addValueFindings(const HuCounts& counts, SeriesReport& report) {
-  const auto add = [&](Code code, Severity severity, std::uint64_t voxels, const char* what,
-                       const char* action) {
+  const auto add = [&](Code code, Severity severity, std::uint64_t voxels, const std::string& what,
+                       const std::string& action) {
     if (voxels == 0) return;
     report.findings.push_back({code, severity, counted(voxels, "voxel") + what, {}, action});
   };
-  add(code::kPaddingToAir, Severity::notice, counts.padding, " of padding", "Padding became air");
-  add(code::kHuRounded, Severity::repair, counts.rounded, " had HU that are not whole numbers",
-      "Rounded to the nearest");
-  add(code::kHuClamped, Severity::repair, counts.clamped, " had HU outside -32768..32767",
-      "Set to the nearest limit");
+  add(code::kPaddingToAir, Severity::notice, counts.padding, tr(" of padding"),
+      tr("Padding became air"));
+  add(code::kHuRounded, Severity::repair, counts.rounded, tr(" had HU that are not whole numbers"),
+      tr("Rounded to the nearest"));
+  add(code::kHuClamped, Severity::repair, counts.clamped, tr(" had HU outside -32768..32767"),
+      tr("Set to the nearest limit"));
 }
 
 // Bits of compressed pixels above those that the header says are stored, where no overlay explains
 // them: values, or debris.
 void askAboutHighBits(const DicomHeader& slice, const Answers& answers, SeriesReport& report) {
   const std::string bits = std::to_string(slice.format.bits_stored);
-  const std::string text = "The header says " + bits +
-                           " bits a pixel, and the pixels have more bits than that, which no "
-                           "overlay explains";
+  const std::string text =
+      tr("The header says {} bits a pixel, and the pixels have more bits than that, which no "
+         "overlay explains",
+         bits);
   const std::string answer =
       ask({code::kHighBits,
-           "The pixels have more bits than the header says. Are these a part of the values?",
+           tr("The pixels have more bits than the header says. Are these a part of the values?"),
            {"refuse", "use", "mask"},
-           {"Do not use the series", "They are: take all bits",
-            "They are none: take " + bits + " bits, as the header says"}},
+           {tr("Do not use the series"), tr("They are: take all bits"),
+            tr("They are none: take {} bits, as the header says", bits)}},
           answers, report.choices);
   report.findings.push_back(
       {code::kHighBits,
        answer == "refuse" ? Severity::refusal : Severity::repair,
        text,
        {},
-       answer == "use"    ? "All bits were taken, as was chosen"
-       : answer == "mask" ? "The others were left out, as was chosen"
-                          : "Look at the slices: with the wrong answer bright tissue turns dark"});
+       answer == "use" ? tr("All bits were taken, as was chosen")
+       : answer == "mask"
+           ? tr("The others were left out, as was chosen")
+           : tr("Look at the slices: with the wrong answer bright tissue turns dark")});
 }
 
 Error refusalOf(const SeriesReport& series) {
@@ -124,8 +128,8 @@ Error refusalOf(const SeriesReport& series) {
 }
 
 Error noSuchSeries(const std::string& uid, std::size_t listed) {
-  return Error{code::kNoSuchSeries, "There is no such series in the folder", cleanUtf8(uid),
-               listed == 0 ? "Choose another folder" : "Choose one that the report lists"};
+  return Error{code::kNoSuchSeries, tr("There is no such series in the folder"), cleanUtf8(uid),
+               listed == 0 ? tr("Choose another folder") : tr("Choose one that the report lists")};
 }
 
 Provenance provenanceOf(const SeriesReport& series, const ImportRequest& request) {
@@ -164,7 +168,8 @@ bool looksLikeLabels(const SeriesReport& series) {
 void sayWhatLabelsAreFor(SeriesReport& series) {
   for (Finding& finding : series.findings) {
     if (finding.code != code::kLabelMap && finding.code != code::kNamedAsLabels) continue;
-    finding.action = "Import the CT beside it: this file can be opened with it, as its label map";
+    finding.action =
+        tr("Import the CT beside it: this file can be opened with it, as its label map");
   }
 }
 
@@ -186,12 +191,12 @@ void addStoppedScan(const ScannedFiles& files, Series& series) {
   });
   keepFinding(series, {code::kScanStopped,
                        beside ? Severity::refusal : Severity::repair,
-                       (left == 1 ? "1 file was" : std::to_string(left) + " files were") +
-                           " not looked at, since the search was ended early: " +
-                           (beside ? "the rest of this series is probably among them"
-                                   : "slices of this series may be among them"),
+                       tr("{} not looked at, since the search was ended early: {}",
+                          (left == 1 ? tr("1 file was") : tr("{} files were", left)),
+                          (beside ? tr("the rest of this series is probably among them")
+                                  : tr("slices of this series may be among them"))),
                        {},
-                       "Open the folder again and let the search come to its end"});
+                       tr("Open the folder again and let the search come to its end")});
 }
 
 // Beside its files some are empty: slices that were not copied, perhaps. A gap that they leave is
@@ -207,11 +212,11 @@ void addEmptyFiles(const ScannedFiles& files, Series& series) {
   if (empty == 0) return;
   keepFinding(series, {code::kIncomplete,
                        Severity::notice,
-                       counted(std::uint64_t(empty), "file", "lies", "lie") +
-                           " beside its slices that are empty or cut short: slices, perhaps, that "
-                           "were not copied to their end",
+                       tr("{} beside its slices that are empty or cut short: slices, perhaps, that "
+                          "were not copied to their end",
+                          counted(std::uint64_t(empty), "file", "lies", "lie")),
                        {},
-                       "Copy all files of the series again if the scan ends too early"});
+                       tr("Copy all files of the series again if the scan ends too early")});
 }
 
 // Where a folder holds CT of several patients, or of several days of one: which of them each series
@@ -236,12 +241,12 @@ void saySeveral(std::vector<Series>& all) {
   }
   const auto say = [](Series& series, Code code, const char* what, std::size_t number,
                       std::size_t of) {
-    keepFinding(series, {code,
-                         Severity::notice,
-                         "The folder holds CT of " + std::to_string(of) + " " + what +
-                             ": this one is of number " + std::to_string(number + 1),
-                         {},
-                         "Make sure that it is the one that is wanted"});
+    keepFinding(series,
+                {code,
+                 Severity::notice,
+                 tr("The folder holds CT of {} {}: this one is of number {}", of, what, number + 1),
+                 {},
+                 tr("Make sure that it is the one that is wanted")});
   };
   for (std::size_t n = 0; n < scans.size(); ++n) {
     if (patients.size() > 1)
@@ -260,11 +265,12 @@ void addNotWhole(const UnpackedArchives& unpacked, Series& series) {
     });
     if (!from_it) continue;
     return keepFinding(
-        series, {code::kArchiveNotWhole,
-                 Severity::refusal,
-                 "It comes from " + archive.why + ": some of its slices may not be there",
-                 {},
-                 "Copy or download the archive again, or unpack it by hand and import the folder"});
+        series,
+        {code::kArchiveNotWhole,
+         Severity::refusal,
+         tr("It comes from {}: some of its slices may not be there", archive.why),
+         {},
+         tr("Copy or download the archive again, or unpack it by hand and import the folder")});
   }
 }
 
@@ -272,16 +278,16 @@ void addNotWhole(const UnpackedArchives& unpacked, Series& series) {
 Error refuseVanished(SeriesReport& series) {
   series.findings.push_back({code::kSourceVanished,
                              Severity::refusal,
-                             "The source vanished while it was read",
+                             tr("The source vanished while it was read"),
                              {},
-                             "Plug it in or connect it again, then open the folder again"});
+                             tr("Plug it in or connect it again, then open the folder again")});
   series.verdict = Verdict::refused;
   const Finding& finding = series.findings.back();
   return Error{finding.code, finding.text, cleanUtf8(series.description), finding.action};
 }
 
 Status roomToRead(const SeriesReport& series, const ImportRequest& request) {
-  return enoughToRead(readingMb(series, request), "Reading the series", "",
+  return enoughToRead(readingMb(series, request), tr("Reading the series"), "",
                       request.most_memory_mb.value_or(usableMemoryMb()));
 }
 
@@ -375,7 +381,7 @@ Status CtFolder::Contents::unpackInto(ScannedFiles& files, std::filesystem::path
   if (within->headers.empty() && within->volume_files.empty()) {
     // Why, where that is more than that it is packed.
     for (const auto& archive : some->not_whole) {
-      if (archive.why.find("damaged") == archive.why.npos) ++files.skipped[archive.why];
+      if (!archive.damaged) ++files.skipped[archive.why];
     }
     return {};
   }
@@ -453,10 +459,12 @@ Result<CtFolder> CtFolder::scan(const std::filesystem::path& path, const Progres
   contents.came_upon = std::move(files->came_upon);
   report.files_seen = files->files_seen;
   report.files_read = files->dicom_files + int(files->volume_files.size());
-  for (const auto& [reason, count] : files->skipped) report.skipped.push_back({reason, count});
+  for (const auto& [reason, count] : files->skipped) {
+    report.skipped.push_back({reason, count, files->packed.contains(reason)});
+  }
   if (files->not_looked_at > 0) {
     report.skipped.push_back(
-        {"not looked at, since the search was ended early", files->not_looked_at});
+        {tr("not looked at, since the search was ended early"), files->not_looked_at});
   }
   std::vector<Series> grouped = groupSeries(std::move(files->headers), progress);
   saySeveral(grouped);
@@ -466,11 +474,12 @@ Result<CtFolder> CtFolder::scan(const std::filesystem::path& path, const Progres
     if (contents.unpacked) addNotWhole(*contents.unpacked, series);
     contents.sources.push_back({std::move(series), {}});
   }
-  if (progress.cancelled()) return Error{code::kCancelled, "The import was cancelled", "", ""};
+  if (progress.cancelled()) return Error{code::kCancelled, tr("The import was cancelled"), "", ""};
   std::error_code error;
   const bool one_file = std::filesystem::is_regular_file(scanned, error);
   for (const std::filesystem::path& file : files->volume_files) {
-    if (progress.cancelled()) return Error{code::kCancelled, "The import was cancelled", "", ""};
+    if (progress.cancelled())
+      return Error{code::kCancelled, tr("The import was cancelled"), "", ""};
     const auto name = one_file ? file.filename() : file.lexically_relative(scanned);
     Source source;
     source.series.report = assessFile(file, name.string());
@@ -580,7 +589,7 @@ Result<SlicePicture> CtFolder::slice(const std::string& uid, int index,
                                      const Progress& progress) const {
   Source* source = contents_->find(uid);
   if (!source) return noSuchSeries(uid, contents_->report.series.size());
-  const Error no_slice{code::kNoSuchSlice, "There is no such slice", std::to_string(index), ""};
+  const Error no_slice{code::kNoSuchSlice, tr("There is no such slice"), std::to_string(index), ""};
   if (!source->file.empty()) return fileSlice(source->file, index, progress);
   const std::vector<DicomHeader>& slices = source->series.slices;
   if (index < 0 || std::size_t(index) >= slices.size()) return no_slice;
@@ -588,10 +597,10 @@ Result<SlicePicture> CtFolder::slice(const std::string& uid, int index,
   const StoredFormat& format = header.format;
   if (!header.has_pixels || !header.holdsGreyWords() || header.rescale_bad ||
       !findTransferSyntax(header.transfer_syntax)) {
-    return Error{code::kNoPicture, "The slice holds no grey pixels that can be shown", "", ""};
+    return Error{code::kNoPicture, tr("The slice holds no grey pixels that can be shown"), "", ""};
   }
   if (header.defect != Defect::none) {
-    return Error{code::kUnreadable, "The slice cannot be read: " + header.defect_text, "", ""};
+    return Error{code::kUnreadable, tr("The slice cannot be read: {}", header.defect_text), "", ""};
   }
   SlicePicture picture;
   picture.columns = header.columns;
@@ -607,7 +616,7 @@ Result<SlicePicture> CtFolder::slice(const std::string& uid, int index,
   });
   if (!done) return done.error();
   if (!read) {
-    return Error{code::kUnreadable, "The slice cannot be read: " + read.error().what, "", ""};
+    return Error{code::kUnreadable, tr("The slice cannot be read: {}", read.error().what), "", ""};
   }
   return picture;
 }

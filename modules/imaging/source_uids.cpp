@@ -6,6 +6,7 @@
 
 #include "base/codes.h"
 #include "base/memory.h"
+#include "base/tr.h"
 #include "imaging/codes.h"
 #include "imaging/common/source_ids.h"
 #include "imaging/series/detail/scan.h"
@@ -42,13 +43,13 @@ Result<RawSourceUids> sourceUids(const std::filesystem::path& source, const Prov
                                  const GridGeometry& on, const Progress& progress) {
   const SourceIds& ids = of.source_ids;
   if (ids.unreadable) {
-    return badSource("Which CT the case is of cannot be checked: this account may not read it",
-                     "Ask whoever imported the case");
+    return badSource(tr("Which CT the case is of cannot be checked: this account may not read it"),
+                     tr("Ask whoever imported the case"));
   }
   if (of.source != "DICOM" || ids.series.empty() || ids.study.empty() ||
       ids.frame_of_reference.empty()) {
-    return badSource("The case is of no DICOM series whose UIDs are known",
-                     "Write the CT anew with the structures, or give the CT's DICOM folder");
+    return badSource(tr("The case is of no DICOM series whose UIDs are known"),
+                     tr("Write the CT anew with the structures, or give the CT's DICOM folder"));
   }
   try {
     Result<ScannedFiles> files = scanFiles(source, progress, nullptr);
@@ -65,10 +66,10 @@ Result<RawSourceUids> sourceUids(const std::filesystem::path& source, const Prov
       if (used.size() > best.size()) best = std::move(used);
     }
     if (progress.cancelled())
-      return Error{code::kCancelled, "Reading the CT was cancelled", "", ""};
+      return Error{code::kCancelled, tr("Reading the CT was cancelled"), "", ""};
     if (best.empty()) {
-      return badSource("The CT of the case is not in this folder",
-                       "Give the DICOM folder that the case was made from");
+      return badSource(tr("The CT of the case is not in this folder"),
+                       tr("Give the DICOM folder that the case was made from"));
     }
     RawSourceUids uids{best.front().study_uid, best.front().series_uid,
                        best.front().frame_of_reference};
@@ -78,7 +79,7 @@ Result<RawSourceUids> sourceUids(const std::filesystem::path& source, const Prov
     }
     return uids;
   } catch (const std::bad_alloc&) {
-    return outOfMemory("to look at the CT", "");
+    return outOfMemory(tr("to look at the CT"), "");
   }
 }
 

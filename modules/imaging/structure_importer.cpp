@@ -5,9 +5,10 @@
 #include <optional>
 #include <utility>
 
-#include "imaging/common/detail/text.h"
 #include "base/codes.h"
+#include "base/tr.h"
 #include "imaging/codes.h"
+#include "imaging/common/detail/text.h"
 #include "imaging/dicom/seg_reader.h"
 #include "imaging/report/answers.h"
 #include "volume/codes.h"
@@ -48,9 +49,9 @@ Status match(const DicomSegmentation& seg, const Volume& ct, const StructureRequ
     if (liesOn(seg.segmentation.geometry, ct.geometry)) return {};
     return Error{
         code::kOtherFrame,
-        "Whether the segmentation was made from this CT cannot be checked by this account, "
-        "and it does not lie on it",
-        "the segmentation", "Choose the one that was made from this CT"};
+        tr("Whether the segmentation was made from this CT cannot be checked by this account, "
+           "and it does not lie on it"),
+        tr("the segmentation"), tr("Choose the one that was made from this CT")};
   }
   const bool frames = !of.frame_of_reference.empty() && !to.frame_of_reference.empty();
   if (to.standsFor(to.frame_of_reference, of.frame_of_reference)) return {};
@@ -60,22 +61,22 @@ Status match(const DicomSegmentation& seg, const Volume& ct, const StructureRequ
   if (!frames && !other_study) return {};
   if (!liesOn(seg.segmentation.geometry, ct.geometry)) {
     const std::string whose =
-        other_study ? "of another study, of this patient or another," : "of another scan";
+        other_study ? tr("of another study, of this patient or another,") : tr("of another scan");
     return Error{other_study ? code::kOtherPatient : code::kOtherFrame,
-                 "The segmentation is " + whose + " and does not lie on this CT",
-                 "the segmentation", "Choose the one that was made from this CT"};
+                 tr("The segmentation is {} and does not lie on this CT", whose),
+                 tr("the segmentation"), tr("Choose the one that was made from this CT")};
   }
-  Choice choice{code::kOtherFrame,
-                std::string("The segmentation is of another ") +
-                    (other_study ? "study, perhaps of another patient," : "frame of reference") +
-                    " though its voxels lie on those of this CT",
-                {"refuse", "keep"},
-                {"Do not use the segmentation", "Use it: it is of this patient"}};
+  Choice choice{
+      code::kOtherFrame,
+      tr("The segmentation is of another {} though its voxels lie on those of this CT",
+         (other_study ? tr("study, perhaps of another patient,") : tr("frame of reference"))),
+      {"refuse", "keep"},
+      {tr("Do not use the segmentation"), tr("Use it: it is of this patient")}};
   const auto given = request.answers.find(choice.code);
   const bool keep = given != request.answers.end() ? given->second == "keep" : !request.ask_all;
   if (!keep) {
-    const Error refused{choice.code, choice.question, "the segmentation",
-                        "Choose another file, or answer OTHER_FRAME=keep"};
+    const Error refused{choice.code, choice.question, tr("the segmentation"),
+                        tr("Choose another file, or answer OTHER_FRAME=keep")};
     if (given == request.answers.end()) open = std::move(choice);
     return refused;
   }
@@ -110,7 +111,7 @@ std::string formOf(const VolumeFileHeader& header, const Volume& ct, const Answe
                  Severity::notice,
                  header.contradiction,
                  {},
-                 "The " + nearest + " puts it on the CT's voxels, and was taken"};
+                 tr("The {} puts it on the CT's voxels, and was taken", nearest)};
   return nearest;
 }
 
@@ -119,7 +120,7 @@ int hideNames(Segmentation& segmentation, const StructureRequest& request) {
 }
 
 Error cancelled() {
-  return {code::kCancelled, "Reading the segmentation was cancelled", "", ""};
+  return {code::kCancelled, tr("Reading the segmentation was cancelled"), "", ""};
 }
 
 // Of DICOM that holds something else.
@@ -127,11 +128,11 @@ Error noSegmentation(const std::string& kind, const std::filesystem::path& file)
   constexpr const char* kContours = "1.2.840.10008.5.1.4.1.1.481.3";
   if (kind == kContours) {
     return {code::kContours,
-            "The file holds contours (an RT Structure Set), which are not read yet", file.string(),
-            "Export the structures as a DICOM Segmentation or as a label map"};
+            tr("The file holds contours (an RT Structure Set), which are not read yet"),
+            file.string(), tr("Export the structures as a DICOM Segmentation or as a label map")};
   }
-  return {code::kNotSegmentation, "The file is DICOM, but no segmentation", file.string(),
-          "Choose a file of modality SEG, or a label map"};
+  return {code::kNotSegmentation, tr("The file is DICOM, but no segmentation"), file.string(),
+          tr("Choose a file of modality SEG, or a label map")};
 }
 
 void sayHidden(StructureFit& fit, int hidden) {
@@ -139,11 +140,10 @@ void sayHidden(StructureFit& fit, int hidden) {
   fit.findings.push_back(
       {code::kRenamedStructure,
        Severity::notice,
-       hidden == 1
-           ? "The name of a structure told who the patient is"
-           : "The names of " + std::to_string(hidden) + " structures told who the patient is",
+       hidden == 1 ? tr("The name of a structure told who the patient is")
+                   : tr("The names of {} structures told who the patient is", hidden),
        {},
-       hidden == 1 ? "It is called by its label" : "They are called by their labels"});
+       hidden == 1 ? tr("It is called by its label") : tr("They are called by their labels")});
 }
 
 }  // namespace
@@ -248,23 +248,23 @@ Result<StructureFit> StructureFile::Read::fitDicom(const Volume& ct,
     fit->findings.push_back(
         {code::kFractional,
          Severity::notice,
-         "The file says how much of each voxel a structure has",
+         tr("The file says how much of each voxel a structure has"),
          {},
-         "It has a voxel from a share of " + plainNumber(request.threshold) + " on"});
+         tr("It has a voxel from a share of {} on", plainNumber(request.threshold))});
   }
   sayHidden(*fit, hidden);
   if (request.ct.unreadable) {
-    fit->findings.push_back(
-        {code::kSourceUnchecked,
-         Severity::notice,
-         "Whether the segmentation was made from this CT cannot be checked: what the case was made "
-         "from is kept where this account may not read it",
-         {},
-         "Its place alone was compared"});
+    fit->findings.push_back({code::kSourceUnchecked,
+                             Severity::notice,
+                             tr("Whether the segmentation was made from this CT cannot be checked: "
+                                "what the case was made "
+                                "from is kept where this account may not read it"),
+                             {},
+                             tr("Its place alone was compared")});
   }
   if (answered) {
     fit->findings.push_back(
-        {answered->code, Severity::notice, answered->question, {}, "It was kept"});
+        {answered->code, Severity::notice, answered->question, {}, tr("It was kept")});
     fit->choices.push_back(*std::move(answered));
   }
   return fit;
@@ -312,7 +312,7 @@ Result<StructureAnswer> StructureFile::fit(const Volume& ct, const StructureRequ
     if (*fractional) {
       return StructureAnswer(StructureAsked{
           StructureAsked::Kind::threshold,
-          Choice{kThreshold, "From which share of a voxel on has a structure it?", {}, {}}});
+          Choice{kThreshold, tr("From which share of a voxel on has a structure it?"), {}, {}}});
     }
   }
   std::optional<Choice> open;

@@ -18,6 +18,7 @@
 #include "base/json.h"
 #include "base/shared_folder.h"
 #include "base/stretched_hash.h"
+#include "base/tr.h"
 #include "library/codes.h"
 
 namespace trephine::case_folders {
@@ -86,8 +87,8 @@ Result<FileLock> FileLock::waitFor(const fs::path& file) {
     if (errno == EINTR) continue;
     if (errno != EWOULDBLOCK) return writeError(file, errno);
     if (std::chrono::steady_clock::now() > until) {
-      return Error{code::kBusy, "Another program does not let go of the storage folder's lock",
-                   file.string(), "End that program, then try again"};
+      return Error{code::kBusy, tr("Another program does not let go of the storage folder's lock"),
+                   file.string(), tr("End that program, then try again")};
     }
     std::this_thread::sleep_for(2ms);
   }
@@ -115,10 +116,11 @@ Status Folders::make() const {
 
 Status Folders::mayChange() const {
   if (!isGroups(cases()) || ::access(cases().c_str(), W_OK) == 0) return {};
-  return Error{code::kCannotWrite, "This account may look at the cases here, and not change them",
+  return Error{code::kCannotWrite,
+               tr("This account may look at the cases here, and not change them"),
                storage_.string(),
-               "Ask whoever keeps this workstation for the group of those who make cases, or "
-               "choose a folder of your own under Settings"};
+               tr("Ask whoever keeps this workstation for the group of those who make cases, or "
+                  "choose a folder of your own under Settings")};
 }
 
 Result<FileLock> Folders::lock() const {
@@ -151,7 +153,7 @@ void Folders::sweep() const {
 }
 
 Status Folders::roomFor(std::uint64_t bytes) const {
-  return enoughRoom(storage_, double(bytes), "the case");
+  return enoughRoom(storage_, double(bytes), tr("the case"));
 }
 
 void Folders::removePrivate(const std::string& key) const {
@@ -243,11 +245,12 @@ Status removeCase(const Folders& folders, const std::string& id) {
   std::error_code none;
   fs::rename(folder, *part, ec);
   if (ec && fs::symlink_status(folder, none).type() == fs::file_type::not_found) {
-    return Error{code::kNoSuchCase, "The case is not there any more", id, "Look at the list again"};
+    return Error{code::kNoSuchCase, tr("The case is not there any more"), id,
+                 tr("Look at the list again")};
   }
   if (ec) {
     Error error = writeError(folder, ec.value());
-    error.what = "The case could not be deleted: " + ec.message();
+    error.what = tr("The case could not be deleted: {}", ec.message());
     return error;
   }
   const Status synced = syncFolder(folders.cases());

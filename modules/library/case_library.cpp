@@ -10,6 +10,7 @@
 #include "base/local_time.h"
 #include "base/memory.h"
 #include "base/stretched_hash.h"
+#include "base/tr.h"
 #include "imaging/codes.h"
 #include "imaging/report/provenance.h"
 #include "imaging/report/report_page.h"
@@ -31,22 +32,23 @@ namespace {
 constexpr std::uint64_t kRoomForTheRest = 4 << 20;  // bytes: report, picture, JSON, folders
 
 Error noSuchCase(const std::string& id) {
-  return Error{code::kNoSuchCase, "The case is not there any more", id, "Look at the list again"};
+  return Error{code::kNoSuchCase, tr("The case is not there any more"), id,
+               tr("Look at the list again")};
 }
 
 Error wrongGrid() {
-  return Error{code::kWrongGrid, "The structures lie on another grid than the case", "",
-               "Fit them to the case first"};
+  return Error{code::kWrongGrid, tr("The structures lie on another grid than the case"), "",
+               tr("Fit them to the case first")};
 }
 
 Error partMissing(const std::string& id, const char* file, const char* what) {
-  return Error{code::kCasePartMissing, std::string("The case's ") + what + " is not there any more",
-               id + "/" + file, "Put the file back, or import the CT again"};
+  return Error{code::kCasePartMissing, tr("The case's {} is not there any more", what),
+               id + "/" + file, tr("Put the file back, or import the CT again")};
 }
 
 Error caseChanged(const std::string& id, const char* file, const char* what) {
-  return Error{code::kCaseChanged, std::string("The case's ") + what + " is not as it was saved",
-               id + "/" + file, "Put the file back as it was, or import the CT again"};
+  return Error{code::kCaseChanged, tr("The case's {} is not as it was saved", what),
+               id + "/" + file, tr("Put the file back as it was, or import the CT again")};
 }
 
 // By what their file keeps whole.
@@ -57,7 +59,7 @@ bool alike(const std::vector<CaseStructure>& a, const std::vector<CaseStructure>
 }
 
 Error nameTaken() {
-  return Error{code::kNameTaken, "Another case has this name", "", "Choose another name"};
+  return Error{code::kNameTaken, tr("Another case has this name"), "", tr("Choose another name")};
 }
 
 // A case's folder, and none that a name could lead to from there.
@@ -123,10 +125,9 @@ LabelMap withoutIdentity(LabelMap map, const SourceKeys& source, std::vector<War
       name = "label " + std::to_string(s.label) + " " + std::to_string(n);
     }
     s.name = name;
-    warnings.push_back({code::kRenamedStructure,
-                        "The name of a structure told who the patient is: it is "
-                        "now called '" +
-                            name + "'"});
+    warnings.push_back(
+        {code::kRenamedStructure,
+         tr("The name of a structure told who the patient is: it is now called '{}'", name)});
   }
   return map;
 }
@@ -141,7 +142,7 @@ Error ofStorage(Error error, const Folders& folders, std::uint64_t needed) {
 }
 
 Error savingCancelled() {
-  return Error{code::kCancelled, "Saving was cancelled", "", ""};
+  return Error{code::kCancelled, tr("Saving was cancelled"), "", ""};
 }
 
 }  // namespace
@@ -177,13 +178,13 @@ Result<CaseRecord> CaseLibrary::record(const std::string& id) const {
   const std::string where = id + "/" + kCaseFile;
   const fs::file_status file = fs::status(folder / kCaseFile, ec);
   if (file.type() == fs::file_type::none) {
-    return Error{code::kMissingFile, "The case's folder cannot be read: " + ec.message(), id,
-                 "Let its owner allow it, or delete the case"};
+    return Error{code::kMissingFile, tr("The case's folder cannot be read: {}", ec.message()), id,
+                 tr("Let its owner allow it, or delete the case")};
   }
   if (!fs::is_regular_file(file)) {  // a pipe would be waited for
     if (!fs::is_directory(folder, ec)) return noSuchCase(id);
-    return Error{code::kCasePartMissing, "The folder has no case.json, so it is no whole case",
-                 where, "Put the file back, or delete the case"};
+    return Error{code::kCasePartMissing, tr("The folder has no case.json, so it is no whole case"),
+                 where, tr("Put the file back, or delete the case")};
   }
   Result<Json> json = readJsonFile(folder / kCaseFile, Progress(), kMostWrittenBytes);
   if (!json) {
@@ -278,7 +279,7 @@ Result<SavedCase> CaseLibrary::save(const NewCase& of, const Progress& progress)
     return ofStorage(error, folders_, needed);
   };
 
-  progress.at(0.0, "Saving the case");
+  progress.at(0.0, tr("Saving the case"));
   record.volume_sha256 = volumeSha256(volume);
   record.region = of.region;
   record.grid = volume.geometry;
@@ -295,7 +296,7 @@ Result<SavedCase> CaseLibrary::save(const NewCase& of, const Progress& progress)
         writeSegmentation(map, part / kStructuresFile, false, Progress(progress, 0.7, 0.8));
     if (!written) return failed(written.error());
   }
-  progress.at(0.8, "Drawing the case's picture");
+  progress.at(0.8, tr("Drawing the case's picture"));
   const std::string picture = pngOf(casePicture(volume, of.region));
   std::vector<std::pair<const char*, std::string>> texts{{kPictureFile, picture}};
   if (of.report) {
@@ -309,7 +310,7 @@ Result<SavedCase> CaseLibrary::save(const NewCase& of, const Progress& progress)
   }
   if (progress.cancelled()) return savingCancelled();
 
-  progress.at(0.9, "Keeping what the case may not be called");
+  progress.at(0.9, tr("Keeping what the case may not be called"));
   NameGuard guard;
   const SourceIds ids = of.provenance ? of.provenance->source_ids : SourceIds();
   if (!source.keys.empty() || !ids.empty()) {
@@ -346,13 +347,13 @@ Result<SavedCase> CaseLibrary::save(const NewCase& of, const Progress& progress)
     if (!kept) return failed(kept.error());
   }
   if (Status there = part.becomeCase(record.folder); !there) return failed(there.error());
-  progress.at(1.0, "The case is saved");
+  progress.at(1.0, tr("The case is saved"));
   Result<CaseRecord> as_listed = this->record(record.id);
   if (!as_listed) return as_listed.error();
   record = *std::move(as_listed);
   return saved;
 } catch (const std::bad_alloc&) {
-  return outOfMemory("to save the case", "");
+  return outOfMemory(tr("to save the case"), "");
 }
 
 Result<LoadedCase> CaseLibrary::load(const std::string& id, const Progress& progress) try {
@@ -376,13 +377,13 @@ Result<LoadedCase> CaseLibrary::load(const std::string& id, const Progress& prog
   if (!has(kVolumeFile)) return failed(partMissing(id, kVolumeFile, "volume"), kVolumeFile);
   Result<Volume> volume = readVolume(folder / kVolumeFile, Progress(progress, 0.0, 0.7));
   if (!volume) return failed(volume.error(), kVolumeFile);
-  progress.at(0.7, "Checking the volume");
+  progress.at(0.7, tr("Checking the volume"));
   if (!sameGrid(volume->geometry, loaded.record.grid) ||
       volumeSha256(*volume) != loaded.record.volume_sha256) {
     return caseChanged(id, kVolumeFile, "volume");
   }
   if (progress.cancelled())
-    return Error{code::kCancelled, "Opening the case was cancelled", "", ""};
+    return Error{code::kCancelled, tr("Opening the case was cancelled"), "", ""};
   if (has(kStructuresFile)) {
     Result<LabelMap> map =
         structuresOn(volume->geometry, id, folder / kStructuresFile, Progress(progress, 0.8, 0.95));
@@ -400,8 +401,8 @@ Result<LoadedCase> CaseLibrary::load(const std::string& id, const Progress& prog
       if (json) loaded.tissues = *std::move(json);
       if (!json) loaded.tissues_problem = failed(json.error(), file);
       if (json && isNone(loaded.tissues)) {
-        loaded.tissues_problem = Error{code::kMissingFile, "The file holds no tissues",
-                                       id + "/" + file, "Save the case's tissues again"};
+        loaded.tissues_problem = Error{code::kMissingFile, tr("The file holds no tissues"),
+                                       id + "/" + file, tr("Save the case's tissues again")};
       }
       continue;
     }
@@ -418,10 +419,10 @@ Result<LoadedCase> CaseLibrary::load(const std::string& id, const Progress& prog
   if (!loaded.structures_problem && !alike(listed, loaded.record.structures)) {
     mendRows(loaded.record);
   }
-  progress.at(1.0, "The case is open");
+  progress.at(1.0, tr("The case is open"));
   return loaded;
 } catch (const std::bad_alloc&) {
-  return outOfMemory("for the case", id);
+  return outOfMemory(tr("for the case"), id);
 }
 
 // Which CT a case is of, as far as this account may know.
@@ -456,9 +457,9 @@ Result<CaseRecord> CaseLibrary::rename(const std::string& id, const std::string&
     if (!guard) {
       return Error{
           code::kNameUnchecked,
-          "Whether this name tells who the patient is cannot be checked: what the case may "
-          "not be called is not on this computer",
-          id, "Keep the name, or import the CT again"};
+          tr("Whether this name tells who the patient is cannot be checked: what the case may "
+             "not be called is not on this computer"),
+          id, tr("Keep the name, or import the CT again")};
     }
     if (Status told = guard->check(*name); !told) return told.error();
   }
@@ -536,7 +537,7 @@ Result<CaseRecord> CaseLibrary::saveStructures(const std::string& id, const Labe
   if (!done) return ofStorage(done.error(), folders_, needed);
   return record(id);
 } catch (const std::bad_alloc&) {
-  return outOfMemory("to save the structures", id);
+  return outOfMemory(tr("to save the structures"), id);
 }
 
 Status CaseLibrary::saveTissues(const std::string& id, const Json& tissues) {

@@ -2,6 +2,8 @@
 
 #include <array>
 
+#include "base/tr.h"
+
 namespace trephine {
 
 namespace {
@@ -75,7 +77,7 @@ Result<CaseRecord> caseRecordFrom(const Json& json, const std::string& file) {
   record.name = reader.text("name");
   record.imported = reader.text("imported");
   const auto region = regionFrom(reader.text("region"));
-  if (!region) reader.fail("region", "The region is none that is known");
+  if (!region) reader.fail("region", tr("The region is none that is known"));
   record.region = region.value_or(BodyRegion::not_sure);
   GridGeometry& g = record.grid;
   const std::vector<std::int64_t> size = reader.integers("size", 3, kSize);
@@ -83,23 +85,23 @@ Result<CaseRecord> caseRecordFrom(const Json& json, const std::string& file) {
   g.spacing_mm = reader.vec3("spacing_mm", kSpacing_mm);
   g.origin_mm = reader.vec3("origin_mm", kPlace_mm);
   const Json& axes = reader.raw("direction");
-  if (!axes.is_array() || axes.size() != 3) reader.fail("direction", "Expected three axes");
+  if (!axes.is_array() || axes.size() != 3) reader.fail("direction", tr("Expected three axes"));
   for (int axis = 0; axes.is_array() && axis < 3 && axis < int(axes.size()); ++axis) {
     const Json& of = axes[std::size_t(axis)];
     for (int n = 0; n < 3; ++n) {
       const bool good = of.is_array() && of.size() == 3 && of[std::size_t(n)].is_number() &&
                         kCosines.holds(of[std::size_t(n)].get<double>());
-      if (!good) reader.fail("direction", "Expected three numbers from -1 to 1 for each axis");
+      if (!good) reader.fail("direction", tr("Expected three numbers from -1 to 1 for each axis"));
       if (good) g.direction[axis][n] = of[std::size_t(n)].get<double>();
     }
   }
   record.volume_sha256 = reader.text("volume_sha256");
-  if (!isHex(record.volume_sha256, 64)) reader.fail("volume_sha256", "The hash is none");
+  if (!isHex(record.volume_sha256, 64)) reader.fail("volume_sha256", tr("The hash is none"));
   const std::string verdict = reader.text("verdict");
   for (const Verdict one : {Verdict::pass, Verdict::repaired}) {
     if (verdict == verdictName(one)) record.verdict = one;
   }
-  if (!record.verdict && !verdict.empty()) reader.fail("verdict", "The verdict is none");
+  if (!record.verdict && !verdict.empty()) reader.fail("verdict", tr("The verdict is none"));
   for (JsonReader& item : reader.objects("structures", kMostStructures)) {
     CaseStructure s;
     s.name = item.text("name");
@@ -109,7 +111,7 @@ Result<CaseRecord> caseRecordFrom(const Json& json, const std::string& file) {
   }
   record.names_key = reader.text("names_key", "");
   if (!record.names_key.empty() && !isHex(record.names_key, 16)) {
-    reader.fail("names_key", "The key is none");
+    reader.fail("names_key", tr("The key is none"));
   }
   if (Status status = reader.finish(); !status) return status.error();
   return record;

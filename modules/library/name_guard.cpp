@@ -6,6 +6,7 @@
 
 #include "base/codes.h"
 #include "base/stretched_hash.h"
+#include "base/tr.h"
 #include "volume/two_threads.h"
 
 namespace trephine {
@@ -17,7 +18,7 @@ constexpr std::size_t kMostHashes = 4096;
 constexpr Range kIterations{1, 1e7}, kWords{1, 16}, kLengths{1, 64};
 
 Error checkCancelled() {
-  return Error{code::kCancelled, "Checking the name was cancelled", "", ""};
+  return Error{code::kCancelled, tr("Checking the name was cancelled"), "", ""};
 }
 
 }  // namespace
@@ -61,18 +62,18 @@ Result<NameGuard> NameGuard::read(const std::filesystem::path& file) {
   guard.iterations_ = int(reader.integer("iterations", kIterations));
   guard.most_words_ = int(reader.integer("most_words", kWords));
   const Json& lengths = reader.raw("lengths");
-  if (!lengths.is_array()) reader.fail("lengths", "Expected a list of whole numbers");
+  if (!lengths.is_array()) reader.fail("lengths", tr("Expected a list of whole numbers"));
   for (const Json& length : lengths) {
     if (length.is_number_integer() && kLengths.holds(length.get<double>())) {
       guard.lengths_.insert(length.get<int>());
     } else {
-      reader.fail("lengths", "Expected whole numbers from 1 to 64");
+      reader.fail("lengths", tr("Expected whole numbers from 1 to 64"));
     }
   }
   for (JsonReader& item : reader.objects("refused", kMostHashes)) {
     const std::string hash = item.text("hash"), kind = item.text("kind");
     const std::optional<IdentityKind> known = identityKindNamed(kind);
-    if (!known) item.fail("kind", "The kind of text is not known");
+    if (!known) item.fail("kind", tr("The kind of text is not known"));
     if (known) guard.hashes_[hash] = *known;
   }
   if (reader.has("source")) {
@@ -139,7 +140,7 @@ Status NameGuard::checkPatient(const std::vector<std::string>& names,
       const auto found = hashes_.find(by_key.at(key));
       if (found == hashes_.end() || !tellsPatient(found->second)) continue;
       Error error = identityError(found->second);
-      error.where = "name " + std::to_string(n + 1) + " of " + std::to_string(names.size());
+      error.where = tr("name {} of {}", n + 1, names.size());
       return error;
     }
   }

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 
+#include "base/tr.h"
 #include "base/utf8.h"
 #include "library/codes.h"
 #include "volume/label_map.h"
@@ -231,17 +232,18 @@ std::vector<std::string> wordsOf(std::string_view text) {
 Result<std::string> caseNameFrom(std::string_view text) {
   const auto bad = [](const std::string& what) {
     return Error{code::kBadName, what, "",
-                 "Give it one line of at most " + std::to_string(kLongestCaseName) + " characters"};
+                 tr("Give it one line of at most {} characters", kLongestCaseName)};
   };
-  if (!isUtf8(text)) return bad("The name is no valid text");
+  if (!isUtf8(text)) return bad(tr("The name is no valid text"));
   const std::u32string given = ucs4(fromUtf8(text));
   constexpr char32_t kJoiner = 0x200D, kNonJoiner = 0x200C;  // within words of some scripts
   const bool hidden = std::ranges::any_of(
       given, [&](char32_t c) { return !QChar::isPrint(c) && c != kJoiner && c != kNonJoiner; });
-  if (hidden) return bad("The name holds characters that cannot be seen, or more than one line");
+  if (hidden)
+    return bad(tr("The name holds characters that cannot be seen, or more than one line"));
   const QString name = fromUcs4(given).simplified();
-  if (ucs4(name).size() > std::size_t(kLongestCaseName)) return bad("The name is too long");
-  if (wordsOf(name.toStdString()).empty()) return bad("The name holds no letter and no number");
+  if (ucs4(name).size() > std::size_t(kLongestCaseName)) return bad(tr("The name is too long"));
+  if (wordsOf(name.toStdString()).empty()) return bad(tr("The name holds no letter and no number"));
   return name.toStdString();
 }
 
@@ -342,28 +344,28 @@ bool tellsPatient(IdentityKind kind) {
 }
 
 Error identityError(IdentityKind told) {
-  const char* what = "";
+  std::string what;
   switch (told) {
     case IdentityKind::patient_name:
-      what = "The name holds the patient's name, or a part of it";
+      what = tr("The name holds the patient's name, or a part of it");
       break;
     case IdentityKind::patient_id:
-      what = "The name holds the patient's ID";
+      what = tr("The name holds the patient's ID");
       break;
     case IdentityKind::accession:
-      what = "The name holds the study's accession number";
+      what = tr("The name holds the study's accession number");
       break;
     case IdentityKind::study_id:
-      what = "The name is the study's ID";
+      what = tr("The name is the study's ID");
       break;
     case IdentityKind::folder:
-      what = "The name is that of a folder that the CT came from";
+      what = tr("The name is that of a folder that the CT came from");
       break;
     case IdentityKind::file:
-      what = "The name is that of a file that the CT came from";
+      what = tr("The name is that of a file that the CT came from");
       break;
   }
-  return Error{code::kNameIsIdentity, what, "", "Choose one that tells nothing of the patient"};
+  return Error{code::kNameIsIdentity, what, "", tr("Choose one that tells nothing of the patient")};
 }
 
 const char* identityKindName(IdentityKind kind) {

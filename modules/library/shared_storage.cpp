@@ -15,6 +15,7 @@
 #include "base/descriptor.h"
 #include "base/file.h"
 #include "base/shared_folder.h"
+#include "base/tr.h"
 #include "base/utf8.h"
 #include "library/case_folders.h"
 #include "library/codes.h"
@@ -49,8 +50,8 @@ constexpr StoragePart kStorageParts[] = {{"cases", Holds::entries, 02775},
 Result<gid_t> groupOf(const std::string& name) {
   const group* found = ::getgrnam(name.c_str());
   if (found) return found->gr_gid;
-  return Error{code::kNoGroup, "There is no such group on this machine", name,
-               "Install Trephine's package, or make it: addgroup --system " + name};
+  return Error{code::kNoGroup, tr("There is no such group on this machine"), name,
+               tr("Install Trephine's package, or make it: addgroup --system {}", name)};
 }
 
 // "/srv/a/../trephine/" is /srv/trephine.
@@ -61,29 +62,30 @@ fs::path withoutDots(const fs::path& given) {
 
 Error notAStorage(const std::string& what, const fs::path& where) {
   return {code::kNotAStorage, what, where.string(),
-          "Name a folder of its own, such as /srv/trephine; it is made where it is missing"};
+          tr("Name a folder of its own, such as /srv/trephine; it is made where it is missing")};
 }
 
 // Where it lies: in no folder of the system, and where no link leads.
 Status checkPlace(const fs::path& storage) {
   if (!storage.is_absolute()) {
-    return notAStorage("The folder must be given from the root on", storage);
+    return notAStorage(tr("The folder must be given from the root on"), storage);
   }
   if (storage.string() != cleanUtf8(storage.string())) {
-    return notAStorage("The name of this folder holds what settings cannot name", storage);
+    return notAStorage(tr("The name of this folder holds what settings cannot name"), storage);
   }
   std::error_code ec;
   // Where a link lies on the way another folder would be shared than the one that was checked.
   const fs::path reached = fs::weakly_canonical(storage, ec);
-  if (ec) return notAStorage("This folder cannot be reached: " + ec.message(), storage);
-  if (reached != storage) return notAStorage("There is a link on the way to this folder", storage);
+  if (ec) return notAStorage(tr("This folder cannot be reached: {}", ec.message()), storage);
+  if (reached != storage)
+    return notAStorage(tr("There is a link on the way to this folder"), storage);
   constexpr const char* kSystem[] = {"bin", "boot", "dev", "etc",  "lib", "lib32", "lib64",
                                      "opt", "proc", "run", "sbin", "sys", "usr",   "root"};
   const auto top = std::next(storage.begin());
   const int least = *top == "var" ? 4 : 3;  // names, with the root's
   if (std::distance(storage.begin(), storage.end()) < least ||
       std::ranges::find(kSystem, top->string()) != std::end(kSystem)) {
-    return notAStorage("This folder is the system's", storage);
+    return notAStorage(tr("This folder is the system's"), storage);
   }
   return {};
 }
@@ -91,10 +93,10 @@ Status checkPlace(const fs::path& storage) {
 // A file of two names is perhaps another's, and a link leads elsewhere.
 Status checkEntry(const struct stat& at, const fs::path& path) {
   if (!S_ISDIR(at.st_mode) && !S_ISREG(at.st_mode)) {
-    return notAStorage("This is neither a file nor a folder", path);
+    return notAStorage(tr("This is neither a file nor a folder"), path);
   }
   if (S_ISREG(at.st_mode) && at.st_nlink > 1) {
-    return notAStorage("This file has another name elsewhere", path);
+    return notAStorage(tr("This file has another name elsewhere"), path);
   }
   return {};
 }
@@ -112,7 +114,7 @@ Status checkInside(const fs::path& folder, Holds holds) {
     std::error_code unknown;
     if (holds == Holds::entries && inside.depth() == 0 &&
         inside->symlink_status(unknown).type() != fs::file_type::directory) {
-      return notAStorage("This is none of Trephine's files", inside->path());
+      return notAStorage(tr("This is none of Trephine's files"), inside->path());
     }
     if (Status good = checkEntry(inside->path()); !good) return good;
   }
@@ -127,13 +129,13 @@ Status checkContents(const fs::path& storage) {
     const auto part = std::ranges::find(kStorageParts, at->path().filename(),
                                         [](const StoragePart& p) { return fs::path(p.name); });
     if (part == std::end(kStorageParts)) {
-      return notAStorage("There is something else in this folder", at->path());
+      return notAStorage(tr("There is something else in this folder"), at->path());
     }
     const bool file = part->holds == Holds::nothing;
     std::error_code unknown;
     if (at->symlink_status(unknown).type() !=
         (file ? fs::file_type::regular : fs::file_type::directory)) {
-      return notAStorage("This is none of Trephine's files", at->path());
+      return notAStorage(tr("This is none of Trephine's files"), at->path());
     }
     any = true;
     if (part->holds == Holds::of_their_owners) continue;
@@ -143,10 +145,10 @@ Status checkContents(const fs::path& storage) {
   struct stat own {};
   if (::stat(storage.c_str(), &own) != 0) return {};
   if (!any && own.st_gid != 0) {
-    return notAStorage("This folder is empty, and of a group of the system", storage);
+    return notAStorage(tr("This folder is empty, and of a group of the system"), storage);
   }
   if (own.st_mode & (S_IWOTH | S_ISVTX)) {
-    return notAStorage("All accounts of this machine may write into this folder", storage);
+    return notAStorage(tr("All accounts of this machine may write into this folder"), storage);
   }
   return {};
 }
@@ -156,10 +158,10 @@ Status checkWay(const fs::path& storage) {
   for (fs::path on = storage.parent_path();; on = on.parent_path()) {
     struct stat at {};
     const bool there = ::stat(on.c_str(), &at) == 0;
-    if (there && !S_ISDIR(at.st_mode)) return notAStorage("This is a file, not a folder", on);
+    if (there && !S_ISDIR(at.st_mode)) return notAStorage(tr("This is a file, not a folder"), on);
     if (there && (at.st_mode & S_IXOTH) == 0) {
-      return Error{code::kCannotReach, "Other accounts may not pass this folder on the way",
-                   on.string(), "Let them pass it (chmod o+x), or name another"};
+      return Error{code::kCannotReach, tr("Other accounts may not pass this folder on the way"),
+                   on.string(), tr("Let them pass it (chmod o+x), or name another")};
     }
     if (on == on.parent_path()) return {};
   }
@@ -192,7 +194,7 @@ Status giveInside(int folder, const StoragePart& part, gid_t group, const fs::pa
     struct stat at {};
     if (!one.ok() && errno == ENOENT) continue;
     if (!one.ok() && (errno == ELOOP || errno == ENXIO)) {
-      return notAStorage("This is neither a file nor a folder", at_path);
+      return notAStorage(tr("This is neither a file nor a folder"), at_path);
     }
     if (!one.ok() || ::fstat(one.get(), &at) != 0) return writeError(at_path, errno);
     if (Status good = checkEntry(at, at_path); !good) return good;
@@ -229,8 +231,8 @@ Status givePart(int storage, const StoragePart& part, gid_t group, const fs::pat
 
 Result<fs::path> shareStorage(const fs::path& given, const StorageGroups& groups) {
   if (::geteuid() != 0) {
-    return Error{code::kNotRoot, "Only an administrator can give a folder to groups",
-                 given.string(), "Run it with sudo"};
+    return Error{code::kNotRoot, tr("Only an administrator can give a folder to groups"),
+                 given.string(), tr("Run it with sudo")};
   }
   const fs::path storage = withoutDots(given);
   for (const auto check : {checkPlace, checkContents, checkWay}) {
@@ -244,7 +246,7 @@ Result<fs::path> shareStorage(const fs::path& given, const StorageGroups& groups
   if (!folder.ok()) return writeError(storage, errno);
   std::error_code ec;
   if (fs::read_symlink("/proc/self/fd/" + std::to_string(folder.get()), ec) != storage) {
-    return notAStorage("There is a link on the way to this folder", storage);
+    return notAStorage(tr("There is a link on the way to this folder"), storage);
   }
   constexpr mode_t kLook = 0750;
   if (Status done = give(folder.get(), *readers, kLook, storage); !done) return done.error();

@@ -5,6 +5,7 @@
 #include <functional>
 
 #include "base/codes.h"
+#include "base/tr.h"
 
 namespace trephine::plot {
 
@@ -31,28 +32,29 @@ bool ascending(const std::vector<double>& values) {
 
 Status checked(const Plot& plot) {
   const auto bad = [](const std::string& what) {
-    return Error{code::kBadArgument, what, "the plot", ""};
+    return Error{code::kBadArgument, what, tr("the plot"), ""};
   };
   if (std::min(plot.width_px, plot.height_px) < 200 ||
       std::max(plot.width_px, plot.height_px) > 8192) {
-    return bad("The picture's edges must have 200 to 8192 pixels");
+    return bad(tr("The picture's edges must have 200 to 8192 pixels"));
   }
   if (!possible(plot.x) || !possible(plot.y)) {
-    return bad("An axis must go from a lower to a higher number, told apart by their first digits");
+    return bad(
+        tr("An axis must go from a lower to a higher number, told apart by their first digits"));
   }
   for (const Line& line : plot.lines) {
     if (!possible(line)) {
-      return bad("A line has a width above 0, its dashes come in pairs of 1 pixel or more");
+      return bad(tr("A line has a width above 0, its dashes come in pairs of 1 pixel or more"));
     }
   }
   if (!plot.heat_map) return {};
   if (!ascending(plot.heat_map->columns) || !ascending(plot.heat_map->rows)) {
-    return bad("The columns and rows of cells ascend");
+    return bad(tr("The columns and rows of cells ascend"));
   }
   for (const HeatMap::Cell& cell : plot.heat_map->cells) {
-    if (cell.level >= plot.heat_map->levels.size()) return bad("A cell has a level of its own");
+    if (cell.level >= plot.heat_map->levels.size()) return bad(tr("A cell has a level of its own"));
     if (!plot.x.holds(cell.at.x) || !plot.y.holds(cell.at.y)) {
-      return bad("A cell lies outside of the axes");
+      return bad(tr("A cell lies outside of the axes"));
     }
   }
   return {};

@@ -9,6 +9,7 @@
 #include "base/codes.h"
 #include "base/file.h"
 #include "base/purpose.h"
+#include "base/tr.h"
 #include "plot/canvas.h"
 #include "plot/checks.h"
 #include "plot/clip.h"
@@ -102,9 +103,9 @@ class Sheet {
 
   static Error tooSmall(const char* how, double least_px) {
     return {code::kBadArgument,
-            "The picture has no room for its texts and axes: it must be " +
-                number(std::ceil(least_px)) + " pixels " + how,
-            "the plot", ""};
+            tr("The picture has no room for its texts and axes: it must be {} pixels {}",
+               number(std::ceil(least_px)), how),
+            tr("the plot"), ""};
   }
 
   void grid() {
@@ -423,8 +424,8 @@ Result<Drawing> draw(const Plot& plot, Theme theme) {
   if (Status ready = readyFonts(); !ready) return ready.error();
   QImage image(plot.width_px, plot.height_px, QImage::Format_RGB32);
   if (image.isNull()) {
-    return Error{code::kOutOfMemory, "There is no memory for a picture", "the plot",
-                 "Close other programs"};
+    return Error{code::kOutOfMemory, tr("There is no memory for a picture"), tr("the plot"),
+                 tr("Close other programs")};
   }
   return Sheet(plot, image, theme).drawn(image);
 }
@@ -435,8 +436,8 @@ Status writePng(const Plot& plot, Theme theme, const std::filesystem::path& file
   drawing->image.setText("Description", kPurpose);
   return replaceFile(file, [&](const std::filesystem::path& target) -> Status {
     if (drawing->image.save(QString::fromStdString(target.string()), "PNG")) return {};
-    return Error{code::kWriteFailed, "The picture could not be written", file.string(),
-                 "Check the folder's rights and the space left on the disk"};
+    return Error{code::kWriteFailed, tr("The picture could not be written"), file.string(),
+                 tr("Check the folder's rights and the space left on the disk")};
   });
 }
 

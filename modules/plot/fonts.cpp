@@ -8,6 +8,7 @@
 #include <mutex>
 #include <string>
 
+#include "base/tr.h"
 #include "plot/codes.h"
 
 namespace trephine::plot {
@@ -19,8 +20,8 @@ Status makeApplication() {
   QPluginLoader platform("platforms/libqoffscreen");
   if (!platform.load()) {
     return Error{code::kCannotDraw,
-                 "Qt's offscreen platform, which pictures are drawn on, is missing",
-                 "platforms/libqoffscreen", "Install the package libqt6gui6 again"};
+                 tr("Qt's offscreen platform, which pictures are drawn on, is missing"),
+                 "platforms/libqoffscreen", tr("Install the package libqt6gui6 again")};
   }
   static char name[] = "trephine", option[] = "-platform", value[] = "offscreen";
   static char* arguments[] = {name, option, value, nullptr};
@@ -46,12 +47,13 @@ Status readyFonts() {
     if (Status made = makeApplication(); !made) return made;
   }
   if (!qobject_cast<QGuiApplication*>(QCoreApplication::instance())) {
-    return Error{code::kCannotDraw, "This program draws no pictures", "its application object", ""};
+    return Error{code::kCannotDraw, tr("This program draws no pictures"),
+                 tr("its application object"), ""};
   }
   // Without any, Qt lists families all the same and draws boxes of a family without a name.
   if (QFontInfo(QFont()).family().isEmpty()) {
-    return Error{code::kCannotDraw, "There is no font to write with", "fontconfig",
-                 "Install the package fonts-dejavu-core"};
+    return Error{code::kCannotDraw, tr("There is no font to write with"), "fontconfig",
+                 tr("Install the package fonts-dejavu-core")};
   }
   ready = true;
   return {};

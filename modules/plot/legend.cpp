@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/tr.h"
+
 namespace trephine::plot {
 
 namespace {
@@ -36,7 +38,7 @@ bool hasValues(const Band& band) {
 std::vector<Item> itemsOf(const Plot& plot, const Seen& seen) {
   const auto textOf = [](const auto& one, bool is_seen) {
     if (is_seen) return one.legend;
-    return one.legend + (hasValues(one) ? ": outside of these axes" : ": no values");
+    return one.legend + (hasValues(one) ? tr(": outside of these axes") : tr(": no values"));
   };
   std::vector<Item> items;
   for (std::size_t i = 0; i < plot.lines.size(); ++i) {

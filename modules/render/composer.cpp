@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "base/tr.h"
 #include "render/composer.h"
 #include "render/gl_program.h"
 
@@ -147,7 +148,8 @@ unsigned int Composer::build(const char* fragment, const char* vertex) {
   const Result<unsigned int> linked =
       linkProgram(vertex, fragment, {"place", "edge", "tint", "reach"});
   if (linked) return *linked;
-  failure_ = linked.error().where.empty() ? "a shader could not be linked" : linked.error().where;
+  failure_ =
+      linked.error().where.empty() ? tr("a shader could not be linked") : linked.error().where;
   return 0;
 }
 

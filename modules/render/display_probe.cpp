@@ -24,6 +24,7 @@
 #include <thread>
 
 #include "base/codes.h"
+#include "base/tr.h"
 #include "render/codes.h"
 #include "render/display_probe.h"
 
@@ -102,9 +103,8 @@ Result<Answer> askChild() {
   const bool piped = ::pipe2(ends, O_CLOEXEC) == 0;
   const pid_t child = piped ? ::fork() : -1;
   if (child < 0) {
-    const Error refused{code::kNoOpengl,
-                        std::string("OpenGL cannot be tried: ") + std::strerror(errno),
-                        "graphics driver", "Close other programs and start again"};
+    const Error refused{code::kNoOpengl, tr("OpenGL cannot be tried: {}", std::strerror(errno)),
+                        tr("graphics driver"), tr("Close other programs and start again")};
     for (const int descriptor : ends) ::close(descriptor);
     return refused;
   }
@@ -138,13 +138,13 @@ int openGlVersion() {
 }
 
 Error openGlTooOld(const std::string& driver) {
-  return {code::kNoOpengl, "OpenGL 3.2 is needed, the driver offers " + driver, "graphics driver",
-          "Update the driver, or start with LIBGL_ALWAYS_SOFTWARE=1"};
+  return {code::kNoOpengl, tr("OpenGL 3.2 is needed, the driver offers {}", driver),
+          tr("graphics driver"), tr("Update the driver, or start with LIBGL_ALWAYS_SOFTWARE=1")};
 }
 
 Status probeDisplay() {
-  const Error no_display{code::kNoDisplay, "There is no display to draw on", "DISPLAY",
-                         "Start inside a desktop session, or under xvfb-run"};
+  const Error no_display{code::kNoDisplay, tr("There is no display to draw on"), "DISPLAY",
+                         tr("Start inside a desktop session, or under xvfb-run")};
   const char* name = std::getenv("DISPLAY");
   if (!name || !*name) return no_display;
   static bool usable = false;
@@ -153,8 +153,9 @@ Status probeDisplay() {
   if (!answer) return answer.error();
   if (!answer->display) return no_display;
   if (!answer->done || !*answer->driver) {
-    return Error{code::kNoOpengl, "The display offers no OpenGL that works", "graphics driver",
-                 "Install the graphics driver, or libgl1-mesa-dri for drawing in software"};
+    return Error{code::kNoOpengl, tr("The display offers no OpenGL that works"),
+                 tr("graphics driver"),
+                 tr("Install the graphics driver, or libgl1-mesa-dri for drawing in software")};
   }
   if (answer->version < kOpenGlNeeded) return openGlTooOld(answer->driver);
   usable = true;

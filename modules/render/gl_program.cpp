@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "base/codes.h"
+#include "base/tr.h"
 #include "render/gl_program.h"
 
 namespace trephine {
@@ -33,8 +34,8 @@ Result<unsigned int> linkProgram(const char* vertex, const char* fragment,
   char why[512] = {};
   glGetProgramInfoLog(program, sizeof why, nullptr, why);
   glDeleteProgram(program);
-  return Error{code::kNoOpengl, "The graphics driver refuses a shader", why,
-               "Update the graphics driver"};
+  return Error{code::kNoOpengl, tr("The graphics driver refuses a shader"), why,
+               tr("Update the graphics driver")};
 }
 
 }  // namespace trephine

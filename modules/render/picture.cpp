@@ -13,6 +13,7 @@
 #include "base/codes.h"
 #include "base/file.h"
 #include "base/purpose.h"
+#include "base/tr.h"
 #include "render/codes.h"
 
 namespace trephine {
@@ -137,7 +138,7 @@ double psnr_dB(const Picture& a, const Picture& b) {
 
 Status writePng(const Picture& picture, const std::filesystem::path& file) {
   if (!complete(picture)) {
-    return Error{code::kBadPicture, "There is no picture to write", file.string(), ""};
+    return Error{code::kBadPicture, tr("There is no picture to write"), file.string(), ""};
   }
   vtkNew<vtkImageData> image;
   image->SetDimensions(picture.width, picture.height, 1);
@@ -156,8 +157,8 @@ Status writePng(const Picture& picture, const std::filesystem::path& file) {
     writer->SetInputData(image);
     writer->Write();
     if (error.raised() || writer->GetErrorCode() != 0) {
-      return Error{code::kWriteFailed, "The picture could not be written", file.string(),
-                   "Check the folder's rights and the space left on the disk"};
+      return Error{code::kWriteFailed, tr("The picture could not be written"), file.string(),
+                   tr("Check the folder's rights and the space left on the disk")};
     }
     return {};
   });

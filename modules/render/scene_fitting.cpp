@@ -10,6 +10,7 @@
 #include <algorithm>
 
 #include "base/log.h"
+#include "base/tr.h"
 #include "render/codes.h"
 #include "render/scene_parts.h"
 
@@ -88,8 +89,8 @@ void SceneRenderer::Parts::fit() {
     }
   }
   refused = true;
-  refusal = Error{code::kVolumeRefused, "The graphics card cannot show this volume", "3-D view",
-                  "Close other programs, or import the case with a part or fewer voxels"};
+  refusal = Error{code::kVolumeRefused, tr("The graphics card cannot show this volume"), "3-D view",
+                  tr("Close other programs, or import the case with a part or fewer voxels")};
   spdlog::warn("The graphics card refused a volume: {}", volume.complaint());
 }
 

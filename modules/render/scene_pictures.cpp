@@ -21,6 +21,7 @@
 
 #include "base/codes.h"
 #include "base/log.h"
+#include "base/tr.h"
 #include "render/orientation_cue.h"
 #include "render/scene_parts.h"
 
@@ -155,8 +156,8 @@ bool SceneRenderer::View::work(double budget_ms) {
   scene_stale |= changed;
   const std::string& shader = of.composer.failure();
   if (of.refusal && (!pictures.allocated() || !shader.empty())) {
-    of.refusal = Error{code::kNoOpengl, "The graphics card refused to draw a picture", "3-D view",
-                       "Make the window smaller, or update the graphics driver"};
+    of.refusal = Error{code::kNoOpengl, tr("The graphics card refused to draw a picture"),
+                       "3-D view", tr("Make the window smaller, or update the graphics driver")};
     spdlog::warn("No picture could be made: {}", shader.empty() ? "no memory" : shader);
   }
   return changed;

@@ -18,6 +18,7 @@
 #include <utility>
 
 #include "base/codes.h"
+#include "base/tr.h"
 #include "render/display_probe.h"
 #include "render/scene_parts.h"
 
@@ -49,8 +50,8 @@ Result<std::unique_ptr<SceneRenderer>> SceneRenderer::offscreen(int width, int h
   renderer->resize(width, height);
   vtkNew<vtkRenderWindow> window;
   p.window = vtkOpenGLRenderWindow::SafeDownCast(window);
-  const Error no_opengl{code::kNoOpengl, "OpenGL 3.2 could not be started", "hidden window",
-                        "Update the graphics driver, or install libgl1-mesa-dri"};
+  const Error no_opengl{code::kNoOpengl, tr("OpenGL 3.2 could not be started"), tr("hidden window"),
+                        tr("Update the graphics driver, or install libgl1-mesa-dri")};
   if (!p.window) return no_opengl;
   p.window->SetOffScreenRendering(1);
   p.window->SetMultiSamples(0);

@@ -17,6 +17,7 @@
 #include <vtksys/SystemTools.hxx>
 
 #include "base/codes.h"
+#include "base/tr.h"
 #include "render/codes.h"
 
 namespace trephine {
@@ -24,12 +25,12 @@ namespace trephine {
 namespace {
 
 Error meshError(Code code, std::string what, const std::filesystem::path& file,
-                std::string next = "Export it again as STL, in millimetres") {
+                std::string next = tr("Export it again as STL, in millimetres")) {
   return Error{code, std::move(what), file.string(), std::move(next)};
 }
 
 Error notStl(const std::filesystem::path& file) {
-  return meshError(code::kNotStl, "The mesh is not an STL file, or a damaged one", file);
+  return meshError(code::kNotStl, tr("The mesh is not an STL file, or a damaged one"), file);
 }
 
 // What VTK's reader does not ask: of a binary file that was cut short it takes what is there, and
@@ -37,19 +38,18 @@ Error notStl(const std::filesystem::path& file) {
 Status checkFile(const std::filesystem::path& file) {
   std::error_code ec;
   if (!std::filesystem::is_regular_file(file, ec)) {
-    return meshError(code::kMissingFile, "There is no such mesh", file,
-                     "Put it beside the tool's data file");
+    return meshError(code::kMissingFile, tr("There is no such mesh"), file,
+                     tr("Put it beside the tool's data file"));
   }
   const std::uintmax_t size = std::filesystem::file_size(file, ec);
   std::ifstream stream(file, std::ios::binary);
   if (ec || !stream) {
-    return meshError(code::kCannotRead, "The mesh could not be read", file,
-                     "Check that you may read it");
+    return meshError(code::kCannotRead, tr("The mesh could not be read"), file,
+                     tr("Check that you may read it"));
   }
   if (size > kLargestToolMesh_bytes) {
-    return meshError(code::kMeshTooLarge,
-                     "The mesh has " + std::to_string(size >> 20) + " MiB, more than 64", file,
-                     "Reduce its triangles");
+    return meshError(code::kMeshTooLarge, tr("The mesh has {} MiB, more than 64", size >> 20), file,
+                     tr("Reduce its triangles"));
   }
   using vtksys::SystemTools;  // as the reader asks
   if (SystemTools::DetectFileType(file.c_str()) == SystemTools::FileTypeText) return {};
@@ -87,22 +87,22 @@ Result<ToolMesh> readToolMesh(const std::filesystem::path& file) {
   vtkPolyData* read = reader->GetOutput();
   for (vtkIdType first = 0; first + 2 < read->GetNumberOfPoints(); first += 3) {
     const auto fault = [&](Code code, const char* what) {
-      return meshError(code, "A corner of triangle " + std::to_string(first / 3 + 1) + " " + what,
-                       file);
+      return meshError(code, tr("A corner of triangle {} {}", first / 3 + 1, what), file);
     };
     Vec3 corners[3];
     for (int i = 0; i < 3; ++i) {
       Vec3& p = corners[i];
       read->GetPoint(first + i, &p.x);
-      if (!isFinite(p)) return fault(code::kMeshNotFinite, "is not finite");
+      if (!isFinite(p)) return fault(code::kMeshNotFinite, tr("is not finite"));
       if (std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)}) > kFarthestToolMesh_mm) {
-        return fault(code::kMeshTooFar, "lies more than 10 m off");
+        return fault(code::kMeshTooFar, tr("lies more than 10 m off"));
       }
     }
     if (glm::cross(corners[1] - corners[0], corners[2] - corners[0]) == Vec3(0.0)) continue;
     mesh.corners.insert(mesh.corners.end(), corners, corners + 3);
   }
-  if (mesh.corners.empty()) return meshError(code::kMeshEmpty, "The mesh has no triangles", file);
+  if (mesh.corners.empty())
+    return meshError(code::kMeshEmpty, tr("The mesh has no triangles"), file);
   return mesh;
 }
 
@@ -118,8 +118,8 @@ Result<ToolMesh> inToolFrame(const ToolMesh& mesh, const Vec3& tip_mm, const Vec
                     std::abs(tip_mm.z) <= kFarthestToolMesh_mm;
   if (!near || !isFinite(length) || length < 1e-6) {
     return Error{code::kBadToolFrame,
-                 near ? "The axis has no direction" : "The tip does not lie within 10 m",
-                 near ? "axis" : "tip_mm", "Correct it in the tool's data file"};
+                 near ? tr("The axis has no direction") : tr("The tip does not lie within 10 m"),
+                 near ? "axis" : "tip_mm", tr("Correct it in the tool's data file")};
   }
   const Vec3 a = axis / length, z(0, 0, 1);
   const Quat turn =

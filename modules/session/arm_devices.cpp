@@ -8,6 +8,7 @@
 #include "base/json.h"
 #include "base/range.h"
 #include "base/system.h"
+#include "base/tr.h"
 #include "device/codes.h"
 #include "exercise/arms_file.h"
 #include "exercise/codes.h"
@@ -81,16 +82,17 @@ Status openDevices(Exercise& exercise, Rig& rig, std::vector<LoopDevice>& device
       capabilities[arms[i]] = (*device)->capabilities(i);
       if (capabilities[arms[i]].input_dof == 0) {
         return Error{code::kNoDevice,
-                     "The " + exercise.arms[arms[i]].name + " arm's device '" + name +
-                         "' is a pedal: it has no place",
-                     "", "Choose an arm for it"};
+                     tr("The {} arm's device '{}' is a pedal: it has no place",
+                        exercise.arms[arms[i]].name, name),
+                     "", tr("Choose an arm for it")};
       }
       if (exercise.rate_hz > capabilities[arms[i]].rate_hz) {
-        return Error{code::kBadScene,
-                     "The scene asks for " + plainNumber(exercise.rate_hz) + " Hz, and the " +
-                         exercise.arms[arms[i]].name + " arm's device '" + name +
-                         "' keeps at most " + plainNumber(capabilities[arms[i]].rate_hz) + " Hz",
-                     "rate_hz", "Lower the scene's rate_hz, or use another device"};
+        return Error{
+            code::kBadScene,
+            tr("The scene asks for {} Hz, and the {} arm's device '{}' keeps at most {} Hz",
+               plainNumber(exercise.rate_hz), exercise.arms[arms[i]].name, name,
+               plainNumber(capabilities[arms[i]].rate_hz)),
+            "rate_hz", tr("Lower the scene's rate_hz, or use another device")};
       }
     }
     const bool real = !(*device)->takesTargets();
@@ -101,8 +103,8 @@ Status openDevices(Exercise& exercise, Rig& rig, std::vector<LoopDevice>& device
     Result<std::unique_ptr<Device>> pedal = openDevice(of.plugin, {of.place}, of.config);
     if (!pedal) return pedal.error();
     if ((*pedal)->capabilities(0).input_dof != 0) {
-      return Error{code::kNoDevice, "The pedal's device '" + of.plugin + "' is an arm", "",
-                   "Choose a pedal for it"};
+      return Error{code::kNoDevice, tr("The pedal's device '{}' is an arm", of.plugin), "",
+                   tr("Choose a pedal for it")};
     }
     devices.push_back({*std::move(pedal), {}});
   }
@@ -115,11 +117,11 @@ Status openDevices(Exercise& exercise, Rig& rig, std::vector<LoopDevice>& device
       const double delay_s = delayOf(of, able);
       if (delay_s * exercise.rate_hz > kMaxDelayTicks) {
         return Error{code::kBadScene,
-                     "The " + arm.name + " arm's device '" + moved.device.plugin + "' answers " +
-                         plainNumber(1e3 * delay_s) + " ms late, more than " +
-                         std::to_string(kMaxDelayTicks) + " periods of the scene's " +
-                         plainNumber(exercise.rate_hz) + " Hz",
-                     "rate_hz", "Lower the scene's rate_hz, or use another device"};
+                     tr("The {} arm's device '{}' answers {} ms late, more than {} periods of the "
+                        "scene's {} Hz",
+                        arm.name, moved.device.plugin, plainNumber(1e3 * delay_s), kMaxDelayTicks,
+                        plainNumber(exercise.rate_hz)),
+                     "rate_hz", tr("Lower the scene's rate_hz, or use another device")};
       }
       arm.max_force_N = std::min(arm.max_force_N, able.peak_force_N);
       moved.dynamics =
@@ -140,9 +142,9 @@ Result<ArmDevice> deviceOf(const FoundArm& wanted, const std::string& arm, const
   const auto problem = std::ranges::find_if(here.problems, of_plugin);
   if (problem != here.problems.end()) return *problem;
   return Error{code::kNoDevice,
-               "The device of the " + arm + " arm is not there: " +
-                   (wanted.model.empty() ? wanted.plugin : wanted.model) + " at " + wanted.bus_path,
-               "", "Plug it in, or choose another under Devices"};
+               tr("The device of the {} arm is not there: {} at {}", arm,
+                  (wanted.model.empty() ? wanted.plugin : wanted.model), wanted.bus_path),
+               "", tr("Plug it in, or choose another under Devices")};
 }
 
 Status readArmDynamics(const Exercise& exercise, Rig& rig, std::vector<Vec3>* workspaces_mm) {

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "base/rt/thread.h"
+#include "base/tr.h"
 #include "haptics/device_calls.h"
 #include "haptics/device_rules.h"
 #include "haptics/loop_clock.h"

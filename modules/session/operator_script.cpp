@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/tr.h"
 #include "exercise/codes.h"
 #include "exercise/names.h"
 
@@ -35,16 +36,16 @@ ScriptHand readHand(JsonReader& item, const Exercise& exercise) {
   hand.arm = item.text("arm");
   const bool known = std::any_of(exercise.arms.begin(), exercise.arms.end(),
                                  [&](const ExerciseArm& arm) { return arm.name == hand.arm; });
-  if (!known) item.fail("arm", "The scene has no arm '" + hand.arm + "'");
+  if (!known) item.fail("arm", tr("The scene has no arm '{}'", hand.arm));
   for (JsonReader& point : item.objects("waypoints", kMostWaypoints)) {
     ScriptWaypoint waypoint{point.number("t", kScriptTime_s), point.vec3("at_mm", kWaypoint_mm)};
     if (!hand.waypoints.empty() && waypoint.time_s <= hand.waypoints.back().time_s) {
-      point.fail("t", "The time " + Json(waypoint.time_s).dump() +
-                          " is not after the waypoint before it");
+      point.fail(
+          "t", tr("The time {} is not after the waypoint before it", Json(waypoint.time_s).dump()));
     }
     hand.waypoints.push_back(waypoint);
   }
-  if (hand.waypoints.empty()) item.fail("waypoints", "A hand needs at least one waypoint");
+  if (hand.waypoints.empty()) item.fail("waypoints", tr("A hand needs at least one waypoint"));
   return hand;
 }
 
@@ -55,7 +56,7 @@ void readTissueChange(JsonReader changes, const Json& names, TissueSet& set) {
                                [&](const Tissue& t) { return t.id == it.key(); });
     JsonReader change = changes.object(it.key().c_str());
     if (tissue == set.tissues.end()) {
-      changes.fail(it.key().c_str(), "The scene has no tissue '" + it.key() + "'");
+      changes.fail(it.key().c_str(), tr("The scene has no tissue '{}'", it.key()));
       return;
     }
     tissue->hu_min = int(change.integer("hu_min", kHuRange, tissue->hu_min));
@@ -78,7 +79,7 @@ void readTool(JsonReader& item, const Exercise& exercise, Command& command) {
   if (found != arm.other_tools.end()) {
     command.value = std::int32_t(1 + (found - arm.other_tools.begin()));
   } else if (id != arm.tool) {
-    item.fail("tool", "The arm '" + arm.name + "' has no tool '" + id + "'");
+    item.fail("tool", tr("The arm '{}' has no tool '{}'", arm.name, id));
   }
 }
 
@@ -88,14 +89,14 @@ void readArmCommand(JsonReader& item, const Exercise& exercise, Command& command
   for (std::size_t i = 0; i < exercise.arms.size(); ++i) {
     if (exercise.arms[i].name == name) command.arm = std::int32_t(i);
   }
-  if (command.arm < 0) item.fail("arm", "The scene has no arm '" + name + "'");
+  if (command.arm < 0) item.fail("arm", tr("The scene has no arm '{}'", name));
   if (command.kind == CommandKind::tool) readTool(item, exercise, command);
   if (command.kind != CommandKind::clutch_off || !item.has("rotation_xyzw")) return;
   const auto q = item.numbers("rotation_xyzw", 4, {-1, 1});
   const Quat rotation(q[3], q[0], q[1], q[2]);
   constexpr double kUnit = 1e-3;
   if (std::abs(glm::length(rotation) - 1.0) > kUnit) {
-    item.fail("rotation_xyzw", "This is no rotation: its four numbers are not of length 1");
+    item.fail("rotation_xyzw", tr("This is no rotation: its four numbers are not of length 1"));
     return;
   }
   command.value = 1;
@@ -108,7 +109,7 @@ ScriptCommand readCommand(JsonReader& item, const Exercise& exercise, TissueSet&
   const std::string name = item.text("do");
   const auto kind = kindOf(kCommandNames, name);
   if (!kind) {
-    item.fail("do", "Unknown command '" + name + "'");
+    item.fail("do", tr("Unknown command '{}'", name));
     return out;
   }
   out.command.kind = *kind;
@@ -117,7 +118,7 @@ ScriptCommand readCommand(JsonReader& item, const Exercise& exercise, TissueSet&
     if (const auto controller = kindOf(kControllerNames, wanted)) {
       out.command.value = std::int32_t(*controller);
     } else {
-      item.fail("controller", "Unknown controller '" + wanted + "'");
+      item.fail("controller", tr("Unknown controller '{}'", wanted));
     }
   }
   if (out.command.kind >= CommandKind::clutch_on) readArmCommand(item, exercise, out.command);
@@ -130,7 +131,7 @@ ScriptCommand readCommand(JsonReader& item, const Exercise& exercise, TissueSet&
     if (names.is_object()) {
       readTissueChange(item.object("tissues"), names, tissues);
     } else {
-      item.fail("tissues", "Expected an object of tissues");
+      item.fail("tissues", tr("Expected an object of tissues"));
     }
     if (Status valid = validate(tissues, item.file()); !valid) {
       item.fail("tissues", valid.error().what + " (" + valid.error().where + ")");
@@ -161,7 +162,7 @@ Result<OperatorScript> parseOperatorScript(const Json& json, const std::string& 
   for (JsonReader& item : reader.objects("arms", std::size_t(kMaxArms))) {
     ScriptHand hand_track = readHand(item, exercise);
     for (const ScriptHand& other : script.hands) {
-      if (other.arm == hand_track.arm) item.fail("arm", "The arm '" + other.arm + "' stands twice");
+      if (other.arm == hand_track.arm) item.fail("arm", tr("The arm '{}' stands twice", other.arm));
     }
     script.hands.push_back(std::move(hand_track));
   }
@@ -170,7 +171,7 @@ Result<OperatorScript> parseOperatorScript(const Json& json, const std::string& 
     for (JsonReader& item : reader.objects("commands", kMostCommands)) {
       ScriptCommand command = readCommand(item, exercise, tissues);
       if (!script.commands.empty() && command.time_s < script.commands.back().time_s) {
-        item.fail("t", "Commands stand in order of time");
+        item.fail("t", tr("Commands stand in order of time"));
       }
       script.commands.push_back(command);
     }
@@ -192,10 +193,9 @@ Status checkLocks(const OperatorScript& script, const Locks& locks) {
     const bool tissues = kind == CommandKind::tissues && locks.contains(Lock::tissues);
     if (!controller && !tissues) continue;
     return Error{code::kLocked,
-                 std::string("The script would change the ") +
-                     (controller ? "controller" : "tissues") +
-                     ", which the workstation or the exercise locks",
-                 "script '" + script.name + "'", "Choose another script, or ask an educator"};
+                 tr("The script would change the {}, which the workstation or the exercise locks",
+                    (controller ? "controller" : "tissues")),
+                 tr("script '{}'", script.name), tr("Choose another script, or ask an educator")};
   }
   return {};
 }

@@ -2,6 +2,7 @@
 
 #include <cstdio>
 
+#include "base/tr.h"
 #include "base/utf8.h"
 #include "session/codes.h"
 
@@ -15,15 +16,18 @@ struct FaultName {
   const char* words;  // what it did to the arm
 };
 constexpr FaultName kFaultNames[] = {
-    {kFaultNonFinite, "non_finite", "a pose or a force was not a number: no force from then on"},
-    {kFaultLate, "late", "a step came more than 20 ms late: no force for a second or more"},
-    {kFaultDeviceLost, "lost", "the arm did not answer: no force from then on"},
+    {kFaultNonFinite, "non_finite",
+     trLater("a pose or a force was not a number: no force from then on")},
+    {kFaultLate, "late",
+     trLater("a step came more than 20 ms late: no force for a second or more")},
+    {kFaultDeviceLost, "lost", trLater("the arm did not answer: no force from then on")},
     {kFaultStalled, "stalled",
-     "the third such stall within 30 s, or one of over 2 s: no force from then on"},
+     trLater("the third such stall within 30 s, or one of over 2 s: no force from then on")},
     {kFaultDevice, "device_error",
-     "the arm reported an error that passes: no force until a second after it"},
-    {kFaultDeviceOften, "device_errors", "the third such error within 10 s: no force from then on"},
-    {kFaultStuck, "stuck", "the arm stopped answering for good and was left behind"},
+     trLater("the arm reported an error that passes: no force until a second after it")},
+    {kFaultDeviceOften, "device_errors",
+     trLater("the third such error within 10 s: no force from then on")},
+    {kFaultStuck, "stuck", trLater("the arm stopped answering for good and was left behind")},
 };
 
 const FaultName& nameOf(std::uint32_t fault) {
@@ -36,12 +40,14 @@ const FaultName& nameOf(std::uint32_t fault) {
 }  // namespace
 
 Error memoryNotLocked(const std::string& reason) {
-  return {code::kMemoryNotLocked,
-          "The haptic thread's memory is not held in place (" + reason +
-              "), so ticks may come late when the system is short of memory",
-          "the limit on locked memory",
-          "Add the account to the group trephine, which the package gives it, or set 'memlock' to "
-          "'unlimited' for it in /etc/security/limits.d, and log in again"};
+  return {
+      code::kMemoryNotLocked,
+      tr("The haptic thread's memory is not held in place ({}), so ticks may come late when the "
+         "system is short of memory",
+         reason),
+      tr("the limit on locked memory"),
+      tr("Add the account to the group trephine, which the package gives it, or set 'memlock' to "
+         "'unlimited' for it in /etc/security/limits.d, and log in again")};
 }
 
 Json toJson(const RunReport& report) {
@@ -105,9 +111,9 @@ std::string toText(const RunReport& report) {
       report.done.rate_hz, report.done.controllers.front().c_str());
   constexpr std::size_t kNamed = 4;
   for (std::size_t i = 1; i < report.done.controllers.size() && i < kNamed; ++i) {
-    text += ", later '" + report.done.controllers[i] + "'";
+    text += tr(", later '{}'", report.done.controllers[i]);
   }
-  if (report.done.controllers.size() > kNamed) text += " and so on";
+  if (report.done.controllers.size() > kNamed) text += tr(" and so on");
   text += "\n";
   for (const RunMetrics::Arm& arm : report.done.arms) {
     add("  %-6s  in tissue %.1f s, at most %.2f N, removed %.0f mm3\n", arm.name.c_str(),
@@ -136,15 +142,15 @@ std::string toText(const RunReport& report) {
     text += "  " + memoryNotLocked(report.machine.memory_not_locked).sentence() + "\n";
   }
   if (!report.recording.empty()) {
-    text += "  session: " + cleanUtf8(report.recording) + "\n";
+    text += tr("  session: {}\n", cleanUtf8(report.recording));
     constexpr double kUsual_ms = 500.0;  // it is written in slices of 0.25 s
     if (report.machine.recorder_behind_ms > kUsual_ms) {
       add("  the recording was at most %.0f ms behind\n", report.machine.recorder_behind_ms);
     }
   }
-  if (!report.picture.empty()) text += "  picture: " + cleanUtf8(report.picture) + "\n";
-  if (!report.volume.empty()) text += "  volume: " + cleanUtf8(report.volume) + "\n";
-  if (!report.table.empty()) text += "  table: " + cleanUtf8(report.table) + "\n";
+  if (!report.picture.empty()) text += tr("  picture: {}\n", cleanUtf8(report.picture));
+  if (!report.volume.empty()) text += tr("  volume: {}\n", cleanUtf8(report.volume));
+  if (!report.table.empty()) text += tr("  table: {}\n", cleanUtf8(report.table));
   return text;
 }
 

@@ -13,6 +13,7 @@
 #include "base/memory.h"
 #include "base/rt/thread.h"
 #include "base/system.h"
+#include "base/tr.h"
 #include "device/codes.h"
 #include "session/arm_devices.h"
 #include "session/codes.h"
@@ -72,7 +73,7 @@ Result<std::unique_ptr<Session>> Session::create(const Placement& placed,
   try {
     if (Status set = session->set(placed, options); !set) return set.error();
   } catch (const std::bad_alloc&) {
-    return outOfMemory("for the exercise", "the case");
+    return outOfMemory(tr("for the exercise"), tr("the case"));
   }
   return session;
 }
@@ -82,8 +83,8 @@ Status Session::set(const Placement& placed, const SessionOptions& options) {
   const Case& of = placed.patient;
   const Volume& volume = *of.volume;
   if (volume.geometry.voxelCount() > std::numeric_limits<std::uint32_t>::max()) {
-    return Error{code::kTooLarge, "The case has more than 2^32 voxels", "the case",
-                 "Crop it or export it at a lower resolution"};
+    return Error{code::kTooLarge, tr("The case has more than 2^32 voxels"), tr("the case"),
+                 tr("Crop it or export it at a lower resolution")};
   }
   if (Status known = checkLabels(placed.exercise.tissues, placed.labels.get());
       !known) return known;
@@ -108,7 +109,8 @@ Status Session::set(const Placement& placed, const SessionOptions& options) {
   if (Status opened = openDevices(exercise_, rig_, devices, capabilities_); !opened) return opened;
 
   const double needed_mb = exerciseMb(volume.geometry.voxelCount(), rt::LockedMemory::wasHeld());
-  if (Status enough = enoughMemory(needed_mb, "The exercise", "the case"); !enough) return enough;
+  if (Status enough = enoughMemory(needed_mb, tr("The exercise"), tr("the case")); !enough)
+    return enough;
   sha256_before_ = of.sha256;
   before_ = of.volume;
   structures_ = of.structures;
@@ -178,7 +180,7 @@ Status Session::start(double seconds) {
     engine_->watchdog.end();
     if (recorder_thread_.joinable()) recorder_thread_.join();
     watchdog_thread_.end(0ms, [] { return false; });
-    return outOfMemory("for the threads of the exercise", "the system");
+    return outOfMemory(tr("for the threads of the exercise"), tr("the system"));
   }
   running_ = true;
   if (recorder_) noteRecording(recording_file_);
@@ -293,19 +295,19 @@ void Session::leaveBehind(std::size_t held, bool watchdog_ended) {
   if (loop_->silenceIsPending()) add({tick, EventKind::silenced, -1, 0, {}});
   for (std::size_t arm : stuck.arms) {
     add({tick, EventKind::fault, std::int32_t(arm), kFaultStuck, {}});
-    names += (names.empty() ? "'" : " and '") + exercise_.arms[arm].name + "'";
+    names += (names.empty() ? "'" : tr(" and '")) + exercise_.arms[arm].name + "'";
   }
   const bool pedal = stuck.arms.empty();
   const std::string plugin =
       pedal ? rig_.pedal->plugin : rig_.arms[stuck.arms.front()].device.plugin;
   left_behind_ = Error{
       code::kDeviceStuck,
-      (pedal                   ? "The pedal stopped answering and was left behind"
-       : stuck.arms.size() > 1 ? "The arms " + names + " stopped answering and were left behind"
-                               : "The arm " + names + " stopped answering and was left behind"),
-      "device '" + plugin + "'",
-      "What was done until then is recorded. Switch the arm off and on, then "
-      "start Trephine again"};
+      (pedal                   ? tr("The pedal stopped answering and was left behind")
+       : stuck.arms.size() > 1 ? tr("The arms {} stopped answering and were left behind", names)
+                               : tr("The arm {} stopped answering and was left behind", names)),
+      tr("device '{}'", plugin),
+      tr("What was done until then is recorded. Switch the arm off and on, then "
+         "start Trephine again")};
   // A watchdog that a device holds as well still knows the others; they are silent, and close with
   // the engine.
   if (watchdog_ended) loop_->closeOthers(held);
@@ -319,7 +321,7 @@ Status Session::freewheel(double seconds, const Progress& progress) {
   }
   const bool cancelled = !finished();
   Status ended = stop();
-  if (cancelled) return Error{code::kCancelled, "The run was cancelled", "", ""};
+  if (cancelled) return Error{code::kCancelled, tr("The run was cancelled"), "", ""};
   return ended;
 }
 
@@ -396,15 +398,16 @@ Status Session::setTissues(const TissueSet& wanted) {
       tissues.tissues.begin(), tissues.tissues.end(), exercise_.tissues.tissues.begin(),
       exercise_.tissues.tissues.end(), [](const Tissue& a, const Tissue& b) { return a.id == b.id; });
   if (!same_ids) {
-    return Error{code::kOtherTissues, "A running exercise keeps its list of tissues", "tissues",
-                 "Stop it before tissues are added or removed"};
+    return Error{code::kOtherTissues, tr("A running exercise keeps its list of tissues"), "tissues",
+                 tr("Stop it before tissues are added or removed")};
   }
   // Colours, opacities and names are the window's alone: the tick hears of what it uses.
   const TissueTable table = tissueTable(tissues);
   if (table != tissueTable(exercise_.tissues) &&
       !loop_->commands().push({CommandKind::tissues, 0, &engine_->tissues.emplace_back(table)})) {
     engine_->tissues.pop_back();
-    return Error{code::kBusy, "Too many changes are waiting", "the haptic loop", "Try again"};
+    return Error{code::kBusy, tr("Too many changes are waiting"), tr("the haptic loop"),
+                 tr("Try again")};
   }
   exercise_.tissues = tissues;
   return {};

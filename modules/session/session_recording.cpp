@@ -7,6 +7,7 @@
 #include "base/log.h"
 #include "base/memory.h"
 #include "base/rt/thread.h"
+#include "base/tr.h"
 #include "session/session.h"
 #include "volume/voxel_slabs.h"
 
@@ -49,8 +50,9 @@ void Session::drain() {
       while (loop_->events().pop(event)) tellSinks([&](RecordSink& sink) { sink.event(event); });
       logWarnings();
     } catch (const std::exception&) {
-      const Error error{code::kOutOfMemory, "The recorder ran out of memory", "the recording",
-                        "Close other programs; what was recorded until now is kept"};
+      const Error error{code::kOutOfMemory, tr("The recorder ran out of memory"),
+                        tr("the recording"),
+                        tr("Close other programs; what was recorded until now is kept")};
       if (recorder_) recorder_->abandon(error);
       noteFailure(error);
     }
@@ -118,7 +120,7 @@ Status Session::finishRecording() {
     sha256_after_ = loop_->ticks() == 0 ? sha256_before_ : slabsSha256(slabsOf(*grid_));
     if (structures_) structures_cut_ = cutStructures(*structures_, *before_, *grid_);
   } catch (const std::bad_alloc&) {
-    const Error error = outOfMemory("to end the recording", "the recording");
+    const Error error = outOfMemory(tr("to end the recording"), tr("the recording"));
     if (recorder_) recorder_->abandon(error);
     noteFailure(error);
   }

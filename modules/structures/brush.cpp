@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "base/codes.h"
+#include "base/tr.h"
 #include "structures/label_edits.h"
 #include "structures/shape_tools.h"
 #include "volume/codes.h"
@@ -219,24 +220,24 @@ Result<LabelEdit> brushEdit(const LabelMap& map, int label, std::span<const Vec3
                             const Brush& brush, const Volume* volume) {
   const GridGeometry& g = map.geometry;
   if (Status good = checkMap(map, label); !good) return good.error();
-  if (Status good = checkMm(brush.radius_mm, 0.05, 200.0, "The brush's radius"); !good) {
+  if (Status good = checkMm(brush.radius_mm, 0.05, 200.0, tr("The brush's radius")); !good) {
     return good.error();
   }
   if (brush.across < 0 || brush.across > 2) {
-    return Error{code::kBadArgument, "Slices lie across axis 0, 1 or 2", "across", ""};
+    return Error{code::kBadArgument, tr("Slices lie across axis 0, 1 or 2"), "across", ""};
   }
   if (!std::all_of(path_mm.begin(), path_mm.end(), [](const Vec3& p) { return isFinite(p); })) {
-    return Error{code::kBadArgument, "A point of the stroke is no place", "path", ""};
+    return Error{code::kBadArgument, tr("A point of the stroke is no place"), "path", ""};
   }
   if (brush.hu && !(brush.hu->low <= brush.hu->high)) {
-    return Error{code::kBadArgument, "The HU range ends below where it begins", "hu", ""};
+    return Error{code::kBadArgument, tr("The HU range ends below where it begins"), "hu", ""};
   }
   if (brush.hu && !volume) {
-    return Error{code::kBadArgument, "A range of HU needs the CT", "hu", ""};
+    return Error{code::kBadArgument, tr("A range of HU needs the CT"), "hu", ""};
   }
   if (brush.hu && volume->geometry.size != g.size) {
-    return Error{code::kOtherGrid, "The label map and the CT have other sizes", "",
-                 "Fit the label map to the CT"};
+    return Error{code::kOtherGrid, tr("The label map and the CT have other sizes"), "",
+                 tr("Fit the label map to the CT")};
   }
   const std::uint8_t own = std::uint8_t(label);
   try {
@@ -267,7 +268,7 @@ Result<LabelEdit> brushEdit(const LabelMap& map, int label, std::span<const Vec3
     });
     return edit.take();
   } catch (const std::bad_alloc&) {
-    return outOfMemory("for the stroke", "");
+    return outOfMemory(tr("for the stroke"), "");
   }
 }
 

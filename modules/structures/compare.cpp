@@ -5,6 +5,7 @@
 #include <limits>
 #include <vector>
 
+#include "base/tr.h"
 #include "structures/work_grid.h"
 #include "volume/codes.h"
 #include "volume/grid_place.h"
@@ -82,8 +83,8 @@ Result<Likeness> likeness(const LabelMap& a, std::uint8_t of_a, const LabelMap& 
       const Result<LabelMap> turned = fitTo(b, a.geometry);
       return turned ? likeness(a, of_a, *turned, of_b) : turned.error();
     }
-    return Error{code::kOtherGrid, "The two label maps are not of the same grid", "",
-                 "Compare label maps of one CT"};
+    return Error{code::kOtherGrid, tr("The two label maps are not of the same grid"), "",
+                 tr("Compare label maps of one CT")};
   }
   std::size_t in_a = 0, in_b = 0, both = 0;
   for (std::size_t n = 0; n < a.labels.size(); ++n) {

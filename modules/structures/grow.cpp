@@ -7,6 +7,7 @@
 #include "base/codes.h"
 #include "base/formatted.h"
 #include "base/memory.h"
+#include "base/tr.h"
 #include "structures/block_border.h"
 #include "structures/codes.h"
 #include "structures/voxel_runs.h"
@@ -208,11 +209,11 @@ bool reachesBorder(const LabelMap& mask) {
 }
 
 Error nothingGrown(const HuSpan& hu, double open_mm) {
-  return {code::kNothingGrown,
-          formatted("There is no organ at this place: within 20 mm nothing of %.0f to %.0f HU",
-                    hu.low, hu.high) +
-              formatted(" is as wide as %.0f mm", 2.0 * open_mm),
-          "seed", "Choose a place well inside, a wider range of HU or a smaller ball"};
+  return {
+      code::kNothingGrown,
+      tr("There is no organ at this place: within 20 mm nothing of {} to {} HU is as wide as {} mm",
+         formatted("%.0f", hu.low), formatted("%.0f", hu.high), formatted("%.0f", 2.0 * open_mm)),
+      "seed", tr("Choose a place well inside, a wider range of HU or a smaller ball")};
 }
 
 // From the seed to the nearest voxel of the mask; infinity beyond kMostOff_mm.
@@ -265,7 +266,7 @@ bool isBeside(const BlockMask& found, const WorkGrid& grid, const Index3& at) {
 // Steps 1 to 3, in blocks; what they found of the range and what they did goes to `growth`.
 Result<BlockMask> growBlocks(const Volume& volume, const WorkGrid& grid, const Index3& voxel,
                              const GrowOptions& options, const Progress& progress, Growth& growth) {
-  const Error cancelled{code::kCancelled, "Growing was cancelled", "", ""};
+  const Error cancelled{code::kCancelled, tr("Growing was cancelled"), "", ""};
   const auto on = [&](double fraction, const char* step) {
     progress.at(fraction, step);
     return !progress.cancelled();
@@ -361,9 +362,10 @@ Result<BlockMask> growBlocks(const Volume& volume, const WorkGrid& grid, const I
     if (seed_HU < growth.hu.low - far_HU || seed_HU > growth.hu.high + far_HU) {
       return Error{
           code::kNothingGrown,
-          formatted("The seed is of %.0f HU, and what has room near it", seed_HU) +
-              formatted(" of %.0f to %.0f HU: another thing", growth.hu.low, growth.hu.high),
-          "seed", "Choose a place well inside, another range of HU or a smaller ball"};
+          tr("The seed is of {} HU, and what has room near it of {} to {} HU: another thing",
+             formatted("%.0f", seed_HU), formatted("%.0f", growth.hu.low),
+             formatted("%.0f", growth.hu.high)),
+          "seed", tr("Choose a place well inside, another range of HU or a smaller ball")};
     }
   }
   return found;
@@ -375,10 +377,10 @@ Result<Growth> grow(const Volume& volume, const Vec3& seed_mm, const GrowOptions
                     const Progress& progress) {
   const GridGeometry& g = volume.geometry;
   if (!(options.open_mm >= 0.0 && options.open_mm <= 50.0)) {
-    return Error{code::kBadArgument, "The opening's radius is from 0 to 50 mm", "open", ""};
+    return Error{code::kBadArgument, tr("The opening's radius is from 0 to 50 mm"), "open", ""};
   }
   if (options.hu && !(options.hu->low <= options.hu->high)) {
-    return Error{code::kBadArgument, "The HU range ends below where it begins", "hu", ""};
+    return Error{code::kBadArgument, tr("The HU range ends below where it begins"), "hu", ""};
   }
   const Vec3 place = Vec3(g.patientToVoxel() * glm::dvec4(seed_mm, 1.0)) + 0.5;
   const VoxelBox whole{{0, 0, 0}, g.size};
@@ -387,20 +389,20 @@ Result<Growth> grow(const Volume& volume, const Vec3& seed_mm, const GrowOptions
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const double at = place[int(axis)];
     if (!(at >= inside.low[axis] && at < inside.high[axis])) {
-      return Error{
-          code::kBadSeed,
-          options.box ? "The seed lies outside of the box" : "The seed lies outside of the scan",
-          "seed", "Give x, y and z in the patient's frame (LPS, mm)"};
+      return Error{code::kBadSeed,
+                   options.box ? tr("The seed lies outside of the box")
+                               : tr("The seed lies outside of the scan"),
+                   "seed", tr("Give x, y and z in the patient's frame (LPS, mm)")};
     }
     voxel[axis] = int(at);
   }
   if (options.others && (options.others->geometry.size != g.size ||
                          options.others->labels.size() != g.voxelCount())) {
-    return Error{code::kOtherGrid, "The other structures are of another grid than the scan", "",
+    return Error{code::kOtherGrid, tr("The other structures are of another grid than the scan"), "",
                  ""};
   }
   const double needed_mb = 1.5 * double(g.voxelCount()) / (1 << 20) + 100.0;
-  if (Status enough = enoughMemory(needed_mb, "Growing a structure", ""); !enough) {
+  if (Status enough = enoughMemory(needed_mb, tr("Growing a structure"), ""); !enough) {
     return enough.error();
   }
   Growth growth;
@@ -413,7 +415,7 @@ Result<Growth> grow(const Volume& volume, const Vec3& seed_mm, const GrowOptions
     growth.mask.labels = voxelsOf(*found, grid, volume, growth.hu, options.box);
     if (options.others) leaveToOthers(growth.mask, *options.others);
   } catch (const std::bad_alloc&) {
-    return outOfMemory("for the structure", "");
+    return outOfMemory(tr("for the structure"), "");
   }
   for (const std::uint8_t label : growth.mask.labels) growth.voxels += label;
   growth.ml = double(growth.voxels) * g.voxelVolume_mm3() / 1000.0;
@@ -423,10 +425,10 @@ Result<Growth> grow(const Volume& volume, const Vec3& seed_mm, const GrowOptions
   growth.seed_off_mm = offFrom(growth.mask, seed_mm, voxel);
   if (std::isinf(growth.seed_off_mm)) {
     return Error{code::kNothingGrown,
-                 "The place is of no organ as wide as " +
-                     formatted("%.0f mm: what was found lies more than %.0f mm beside it",
-                               2.0 * options.open_mm, kMostOff_mm),
-                 "seed", "Choose a place well inside, another range of HU or a smaller ball"};
+                 tr("The place is of no organ as wide as {}",
+                    formatted("%.0f mm: what was found lies more than %.0f mm beside it",
+                              2.0 * options.open_mm, kMostOff_mm)),
+                 "seed", tr("Choose a place well inside, another range of HU or a smaller ball")};
   }
   if (growth.seed_off_mm > 0.0) {
     growth.steps.push_back(formatted("the seed itself lies %.1f mm beside it", growth.seed_off_mm));

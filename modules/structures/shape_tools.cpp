@@ -13,6 +13,7 @@
 #include <limits>
 
 #include "base/codes.h"
+#include "base/tr.h"
 #include "structures/codes.h"
 #include "structures/label_edits.h"
 #include "volume/codes.h"
@@ -24,12 +25,12 @@ namespace {
 constexpr int kSlabSlices = 24;  // that are grown at a time, beside those that they look at
 
 Error cancelled() {
-  return {code::kCancelled, "The tool was cancelled", "", ""};
+  return {code::kCancelled, tr("The tool was cancelled"), "", ""};
 }
 
 Error noStructure(int label) {
-  return {code::kNoStructure, "No voxel has the label " + std::to_string(label), "label",
-          "Choose a structure that has voxels"};
+  return {code::kNoStructure, tr("No voxel has the label {}", label), "label",
+          tr("Choose a structure that has voxels")};
 }
 
 Index3 sizeOf(const VoxelBox& box) {
@@ -175,7 +176,7 @@ std::optional<Index3> voxelAt(const LabelMap& map, int label, const Vec3& at_mm)
 Result<LabelEdit> pieceEdit(const LabelMap& map, int label, const Vec3& at_mm, Touching touching,
                             bool keeps) {
   if (Status good = checkMap(map, label); !good) return good.error();
-  if (!isFinite(at_mm)) return Error{code::kBadArgument, "The click is no place", "at", ""};
+  if (!isFinite(at_mm)) return Error{code::kBadArgument, tr("The click is no place"), "at", ""};
   const std::uint8_t own = std::uint8_t(label);
   try {
     const GridGeometry& g = map.geometry;
@@ -183,8 +184,8 @@ Result<LabelEdit> pieceEdit(const LabelMap& map, int label, const Vec3& at_mm, T
     if (!box) return noStructure(label);
     const std::optional<Index3> voxel = voxelAt(map, label, at_mm);
     if (!voxel) {
-      return Error{code::kNothingThere, "The structure has no voxel within 5 mm of the click", "at",
-                   "Click on the structure"};
+      return Error{code::kNothingThere, tr("The structure has no voxel within 5 mm of the click"),
+                   "at", tr("Click on the structure")};
     }
     const Index3& low = box->low;
     VoxelRuns runs(sizeOf(*box), [&](int i, int j, int k) {
@@ -205,7 +206,7 @@ Result<LabelEdit> pieceEdit(const LabelMap& map, int label, const Vec3& at_mm, T
     }
     return edit.take();
   } catch (const std::bad_alloc&) {
-    return outOfMemory("for the pieces", "");
+    return outOfMemory(tr("for the pieces"), "");
   }
 }
 
@@ -290,7 +291,7 @@ LabelEdit shellOfSlab(const LabelMap& map, int label, double thickness_mm, int i
 Result<LabelEdit> movedBy(const LabelMap& map, int label, double mm, const Labels& over, bool grows,
                           const Progress& progress) {
   if (Status good = checkMap(map, label); !good) return good.error();
-  if (Status good = checkMm(mm, 0.05, 20.0, "The distance"); !good) return good.error();
+  if (Status good = checkMm(mm, 0.05, 20.0, tr("The distance")); !good) return good.error();
   const GridGeometry& g = map.geometry;
   try {
     const std::optional<VoxelBox> tight = boxOf(map, label);
@@ -324,7 +325,7 @@ Result<LabelEdit> movedBy(const LabelMap& map, int label, double mm, const Label
     }
     return joined(std::move(slabs));
   } catch (const std::bad_alloc&) {
-    return outOfMemory("for the distances", "");
+    return outOfMemory(tr("for the distances"), "");
   }
 }
 
@@ -332,11 +333,11 @@ Result<LabelEdit> movedBy(const LabelMap& map, int label, double mm, const Label
 
 Status checkMap(const LabelMap& map, int label) {
   if (label < 1 || label > 255) {
-    return Error{code::kBadArgument, "A label is a number from 1 to 255", "label", ""};
+    return Error{code::kBadArgument, tr("A label is a number from 1 to 255"), "label", ""};
   }
   if (map.labels.empty() || map.labels.size() != map.geometry.voxelCount()) {
-    return Error{code::kBadArgument, "The label map does not have the voxels of its grid", "map",
-                 ""};
+    return Error{code::kBadArgument, tr("The label map does not have the voxels of its grid"),
+                 "map", ""};
   }
   return {};
 }
@@ -398,14 +399,14 @@ Result<LabelEdit> maskEdit(const LabelMap& map, std::span<const std::uint8_t> ma
                            const Labels& over) {
   if (Status good = checkMap(map, label); !good) return good.error();
   if (mask.size() != map.labels.size()) {
-    return Error{code::kOtherGrid, "The mask is not of the label map's grid", "mask", ""};
+    return Error{code::kOtherGrid, tr("The mask is not of the label map's grid"), "mask", ""};
   }
   const GridGeometry& g = map.geometry;
   try {
     return editTo(map, label, VoxelBox{{0, 0, 0}, g.size}, over,
                   [&](int i, int j, int k) { return mask[g.indexOf(i, j, k)] != 0; });
   } catch (const std::bad_alloc&) {
-    return outOfMemory("to change a structure", "");
+    return outOfMemory(tr("to change a structure"), "");
   }
 }
 
@@ -413,7 +414,7 @@ Result<LabelEdit> holesEdit(const LabelMap& map, int label, std::optional<int> a
                             const Labels& over, const Progress& progress) {
   if (Status good = checkMap(map, label); !good) return good.error();
   if (across && (*across < 0 || *across > 2)) {
-    return Error{code::kBadArgument, "Slices lie across axis 0, 1 or 2", "across", ""};
+    return Error{code::kBadArgument, tr("Slices lie across axis 0, 1 or 2"), "across", ""};
   }
   const GridGeometry& g = map.geometry;
   const std::uint8_t own = std::uint8_t(label);
@@ -454,14 +455,14 @@ Result<LabelEdit> holesEdit(const LabelMap& map, int label, std::optional<int> a
     for (const std::size_t at : filled) edit.put(at, own);
     return edit.take();
   } catch (const std::bad_alloc&) {
-    return outOfMemory("for the holes", "");
+    return outOfMemory(tr("for the holes"), "");
   }
 }
 
 Result<LabelEdit> smoothEdit(const LabelMap& map, int label, double radius_mm, const Labels& over,
                              const Progress& progress) {
   if (Status good = checkMap(map, label); !good) return good.error();
-  if (Status good = checkMm(radius_mm, 0.1, 20.0, "The radius"); !good) return good.error();
+  if (Status good = checkMm(radius_mm, 0.1, 20.0, tr("The radius")); !good) return good.error();
   try {
     const std::optional<VoxelBox> tight = boxOf(map, label);
     if (!tight) return noStructure(label);
@@ -494,7 +495,7 @@ Result<LabelEdit> smoothEdit(const LabelMap& map, int label, double radius_mm, c
     return editTo(map, label, box, over,
                   [&](int i, int j, int k) { return crop.values[crop.indexOf(i, j, k)] >= cut; });
   } catch (const std::bad_alloc&) {
-    return outOfMemory("for smoothing", "");
+    return outOfMemory(tr("for smoothing"), "");
   }
 }
 
@@ -513,9 +514,10 @@ Result<LabelEdit> shellEdit(const LabelMap& map, int label, double thickness_mm,
   if (Status good = checkMap(map, label); !good) return good.error();
   if (Status good = checkMap(map, into); !good) return good.error();
   if (into == label) {
-    return Error{code::kBadArgument, "The shell needs a label of its own", "into", ""};
+    return Error{code::kBadArgument, tr("The shell needs a label of its own"), "into", ""};
   }
-  if (Status good = checkMm(thickness_mm, 0.1, 50.0, "The thickness"); !good) return good.error();
+  if (Status good = checkMm(thickness_mm, 0.1, 50.0, tr("The thickness")); !good)
+    return good.error();
   try {
     const std::optional<VoxelBox> box = boxOf(map, label);
     if (!box) return noStructure(label);
@@ -541,7 +543,7 @@ Result<LabelEdit> shellEdit(const LabelMap& map, int label, double thickness_mm,
     }
     return joined(std::move(edits));
   } catch (const std::bad_alloc&) {
-    return outOfMemory("for the shell", "");
+    return outOfMemory(tr("for the shell"), "");
   }
 }
 

@@ -7,6 +7,7 @@
 #include "base/codes.h"
 #include "base/formatted.h"
 #include "base/memory.h"
+#include "base/tr.h"
 #include "structures/codes.h"
 #include "structures/voxel_runs.h"
 #include "structures/work_grid.h"
@@ -18,7 +19,7 @@ namespace {
 constexpr double kAirBlock_mm = 2.0;
 
 Error noBody(const std::string& what) {
-  return {code::kNoBody, what, "", "Choose a CT that shows the body and the air at its sides"};
+  return {code::kNoBody, what, "", tr("Choose a CT that shows the body and the air at its sides")};
 }
 
 // The grid's axis that runs most along the patient.
@@ -212,7 +213,7 @@ class SkinMask {
 };
 
 Result<Skin> madeSkin(const Volume& volume, double thickness_mm, const Progress& progress) {
-  const Error cancelled{code::kCancelled, "Finding the skin was cancelled", "", ""};
+  const Error cancelled{code::kCancelled, tr("Finding the skin was cancelled"), "", ""};
   const auto on = [&](double fraction, const char* step) {
     progress.at(fraction, step);
     return !progress.cancelled();
@@ -224,10 +225,11 @@ Result<Skin> madeSkin(const Volume& volume, double thickness_mm, const Progress&
   SkinMask mask(volume);
   const double body_ml = double(mask.takeBody()) * voxel_ml;
   if (body_ml < kLeastBody_ml) {
-    return noBody(formatted("The largest piece over %.0f HU has %.1f mL", kBody_HU, body_ml));
+    return noBody(tr("The largest piece over {} HU has {} mL", formatted("%.0f", kBody_HU),
+                     formatted("%.1f", body_ml)));
   }
   if (!on(0.3, "air")) return cancelled;
-  if (!mask.takeAir()) return noBody("There is no air at the sides of the scan");
+  if (!mask.takeAir()) return noBody(tr("There is no air at the sides of the scan"));
   if (!on(0.6, "layer")) return cancelled;
   skin.voxels = mask.keepLayer(thickness_mm);
   skin.ml = double(skin.voxels) * voxel_ml;
@@ -243,16 +245,16 @@ Result<Skin> madeSkin(const Volume& volume, double thickness_mm, const Progress&
 
 Result<Skin> skinOf(const Volume& volume, double thickness_mm, const Progress& progress) {
   if (!(thickness_mm >= 0.1 && thickness_mm <= 20.0)) {
-    return Error{code::kBadArgument, "The skin is from 0.1 to 20 mm thick", "thickness", ""};
+    return Error{code::kBadArgument, tr("The skin is from 0.1 to 20 mm thick"), "thickness", ""};
   }
   const double needed_mb = 2.0 * double(volume.geometry.voxelCount()) / (1 << 20) + 50.0;
-  if (Status enough = enoughMemory(needed_mb, "Finding the skin", ""); !enough) {
+  if (Status enough = enoughMemory(needed_mb, tr("Finding the skin"), ""); !enough) {
     return enough.error();
   }
   try {
     return madeSkin(volume, thickness_mm, progress);
   } catch (const std::bad_alloc&) {
-    return outOfMemory("for the skin", "");
+    return outOfMemory(tr("for the skin"), "");
   }
 }
 

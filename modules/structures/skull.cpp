@@ -10,6 +10,7 @@
 #include "base/codes.h"
 #include "base/formatted.h"
 #include "base/memory.h"
+#include "base/tr.h"
 #include "structures/codes.h"
 #include "structures/voxel_runs.h"
 
@@ -304,7 +305,7 @@ class SkullMask {
 };
 
 Result<Skull> make(const Volume& volume, const Progress& progress) {
-  const Error cancelled{code::kCancelled, "Finding the skull was cancelled", "", ""};
+  const Error cancelled{code::kCancelled, tr("Finding the skull was cancelled"), "", ""};
   const auto on = [&](double fraction, const char* step) {
     progress.at(fraction, step);
     return !progress.cancelled();
@@ -318,8 +319,9 @@ Result<Skull> make(const Volume& volume, const Progress& progress) {
   const std::size_t bone = mask.takeLargest();
   if (ml(bone) < kLeastBone_ml) {
     return Error{code::kNoBone,
-                 formatted("The largest piece over %.0f HU has %.1f mL", kBone_HU, ml(bone)), "",
-                 "Choose a CT of a head whose values are HU"};
+                 tr("The largest piece over {} HU has {} mL", formatted("%.0f", kBone_HU),
+                    formatted("%.1f", ml(bone))),
+                 "", tr("Choose a CT of a head whose values are HU")};
   }
   if (!on(0.3, "pockets")) return cancelled;
   const std::size_t filled = mask.fillPockets(progress);
@@ -339,13 +341,13 @@ Result<Skull> make(const Volume& volume, const Progress& progress) {
 
 Result<Skull> skullOf(const Volume& volume, const Progress& progress) {
   const double needed_mb = 2.0 * double(volume.geometry.voxelCount()) / (1 << 20) + 50.0;
-  if (Status enough = enoughMemory(needed_mb, "Finding the skull", ""); !enough) {
+  if (Status enough = enoughMemory(needed_mb, tr("Finding the skull"), ""); !enough) {
     return enough.error();
   }
   try {
     return make(volume, progress);
   } catch (const std::bad_alloc&) {
-    return outOfMemory("for the skull", "");
+    return outOfMemory(tr("for the skull"), "");
   }
 }
 

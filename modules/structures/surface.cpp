@@ -19,6 +19,7 @@
 #include "base/file.h"
 #include "base/memory.h"
 #include "base/purpose.h"
+#include "base/tr.h"
 
 namespace trephine {
 
@@ -73,14 +74,14 @@ vtkNew<vtkImageData> maskOf(const LabelMap& map, int label, const VoxelBox& box)
 
 Result<SurfaceWritten> writeSurface(const LabelMap& map, int label,
                                     const std::filesystem::path& file, const Progress& progress) {
-  const Error cancelled{code::kCancelled, "Making the surface was cancelled", "", ""};
+  const Error cancelled{code::kCancelled, tr("Making the surface was cancelled"), "", ""};
   try {
     const VoxelBox box = boxOf(map, label);
     if (box.low[0] >= box.high[0]) {
-      return Error{code::kEmptyStructure, "The structure has no voxel", file.string(),
-                   "Choose another structure"};
+      return Error{code::kEmptyStructure, tr("The structure has no voxel"), file.string(),
+                   tr("Choose another structure")};
     }
-    progress.at(0.0, "Making the surface");
+    progress.at(0.0, tr("Making the surface"));
     const vtkNew<vtkImageData> mask = maskOf(map, label, box);
     vtkNew<vtkImageGaussianSmooth> blur;
     blur->SetInputData(mask);
@@ -93,7 +94,7 @@ Result<SurfaceWritten> writeSurface(const LabelMap& map, int label,
     edges->ComputeScalarsOff();
     edges->Update();
     if (progress.cancelled()) return cancelled;
-    progress.at(0.5, "Making the surface");
+    progress.at(0.5, tr("Making the surface"));
     vtkNew<vtkPolyData> surface;
     surface->DeepCopy(edges->GetOutput());
     vtkPoints* points = surface->GetPoints();
@@ -113,7 +114,7 @@ Result<SurfaceWritten> writeSurface(const LabelMap& map, int label,
     smooth->NormalizeCoordinatesOn();
     smooth->Update();
     if (progress.cancelled()) return cancelled;
-    progress.at(0.8, "Making the surface");
+    progress.at(0.8, tr("Making the surface"));
     vtkNew<vtkMassProperties> mass;
     mass->SetInputConnection(smooth->GetOutputPort());
     mass->Update();
@@ -131,11 +132,11 @@ Result<SurfaceWritten> writeSurface(const LabelMap& map, int label,
       return writeError(file, errno);
     });
     if (!written) return written.error();
-    progress.at(1.0, "Making the surface");
+    progress.at(1.0, tr("Making the surface"));
     return SurfaceWritten{std::size_t(smooth->GetOutput()->GetNumberOfCells()),
                           mass->GetVolume() / 1000.0};
   } catch (const std::bad_alloc&) {
-    return outOfMemory("for the surface", "the structure");
+    return outOfMemory(tr("for the surface"), tr("the structure"));
   }
 }
 

@@ -4,6 +4,7 @@
 #include <array>
 #include <optional>
 
+#include "base/tr.h"
 #include "tissue/codes.h"
 
 namespace trephine {
@@ -118,25 +119,22 @@ TissueSet withThreshold(const TissueSet& set, std::size_t tissue, RangeEnd end, 
 
 Result<TissueSet> withNewTissue(const TissueSet& set) {
   if (set.tissues.size() >= std::size_t(kMaxTissues)) {
-    return Error{code::kNoRoom, "A set has at most " + std::to_string(kMaxTissues) + " tissues", "",
-                 "Remove one first"};
+    return Error{code::kNoRoom, tr("A set has at most {} tissues", kMaxTissues), "",
+                 tr("Remove one first")};
   }
   std::vector<HuRange> free = freeHu(set, kNoAirHu);
   const bool air = free.empty();
   if (air) free = freeHu(set, kCtHu);
   if (free.empty()) {
-    return Error{code::kNoRoom,
-                 "Every HU from " + std::to_string(kCtHu.low) + " to " +
-                     std::to_string(kCtHu.high) + " has a tissue",
-                 "", "Narrow the range of one first, or restrict one to a structure"};
+    return Error{code::kNoRoom, tr("Every HU from {} to {} has a tissue", kCtHu.low, kCtHu.high),
+                 "", tr("Narrow the range of one first, or restrict one to a structure")};
   }
   HuRange widest = *std::ranges::max_element(
       free, {}, [](const HuRange& range) { return range.high - range.low; });
   if (air) widest.low = std::max(widest.low, widest.high - 99);
   int number = 1;
   while (set.find("tissue-" + std::to_string(number))) ++number;
-  Tissue tissue = softTissue("tissue-" + std::to_string(number),
-                             "Tissue " + std::to_string(number), widest);
+  Tissue tissue = softTissue("tissue-" + std::to_string(number), tr("Tissue {}", number), widest);
   tissue.colour = kColours[std::size_t(number - 1) % kColours.size()];
   TissueSet out = set;
   out.tissues.insert(out.tissues.begin(), std::move(tissue));
@@ -145,7 +143,8 @@ Result<TissueSet> withNewTissue(const TissueSet& set) {
 
 Result<TissueSet> withoutTissue(const TissueSet& set, std::size_t tissue) {
   if (set.tissues.size() < 2) {
-    return Error{code::kLastTissue, "A set has at least one tissue", "", "Add another one first"};
+    return Error{code::kLastTissue, tr("A set has at least one tissue"), "",
+                 tr("Add another one first")};
   }
   TissueSet out = set;
   out.tissues.erase(out.tissues.begin() + std::ptrdiff_t(tissue));
@@ -153,10 +152,10 @@ Result<TissueSet> withoutTissue(const TissueSet& set, std::size_t tissue) {
 }
 
 TissueSet startingSet(const std::string& name) {
-  Tissue soft = softTissue("soft", "Soft tissue", {-200, 225});
+  Tissue soft = softTissue("soft", tr("Soft tissue"), {-200, 225});
   soft.colour = Vec3(0.80, 0.50, 0.42);
   Tissue bone = softTissue("bone", "Bone", {226, 3071});
-  bone.hu_source = "common CT threshold for bone, 226 HU";
+  bone.hu_source = tr("common CT threshold for bone, 226 HU");
   bone.colour = Vec3(0.93, 0.88, 0.77);
   bone.opacity = 0.9;
   bone.damping_Ns_per_m = tuned(12.0);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "base/tr.h"
 #include "base/utf8.h"
 #include "tissue/codes.h"
 
@@ -11,7 +12,7 @@ namespace trephine {
 namespace {
 
 Error bad(const std::string& file, const std::string& field, const std::string& what,
-          const std::string& next = "Correct that value") {
+          const std::string& next = tr("Correct that value")) {
   return Error{code::kBadTissue, what, file + ": " + field, next};
 }
 
@@ -30,19 +31,19 @@ std::string shown(double value) {
 Status checkSourced(const std::string& file, const std::string& field, const Range& range,
                     const SourcedNumber& number) {
   if (!isFinite(number.value)) {
-    return bad(file, field, "The value " + shown(number.value) + " is not finite");
+    return bad(file, field, tr("The value {} is not finite", shown(number.value)));
   }
   if (number.value < 0.0) {
-    return bad(file, field, "The value " + shown(number.value) + " is negative",
-               "A tissue cannot push: use 0 or more");
+    return bad(file, field, tr("The value {} is negative", shown(number.value)),
+               tr("A tissue cannot push: use 0 or more"));
   }
   if (!range.holds(number.value)) {
-    return bad(file, field, "The value " + shown(number.value) + " is absurd: no tissue has it",
-               "Use one " + range.words());
+    return bad(file, field, tr("The value {} is absurd: no tissue has it", shown(number.value)),
+               tr("Use one {}", range.words()));
   }
   if (number.source.empty()) {
-    return bad(file, field, "The value " + shown(number.value) + " has no source",
-               "Cite one, or write \"tuned here, uncited\"");
+    return bad(file, field, tr("The value {} has no source", shown(number.value)),
+               tr("Cite one, or write \"tuned here, uncited\""));
   }
   return {};
 }
@@ -93,44 +94,42 @@ const Tissue* TissueSet::find(const std::string& id) const {
 Status validate(const TissueSet& set, const std::string& file) {
   if (set.tissues.empty() || set.tissues.size() > std::size_t(kMaxTissues)) {
     return bad(file, "tissues",
-               "A set has 1 to " + std::to_string(kMaxTissues) + " tissues, this one has " +
-                   std::to_string(set.tissues.size()));
+               tr("A set has 1 to {} tissues, this one has {}", kMaxTissues, set.tissues.size()));
   }
   for (std::size_t i = 0; i < set.tissues.size(); ++i) {
     const Tissue& t = set.tissues[i];
     const std::string field = "tissues[" + std::to_string(i) + "]";
-    if (t.id.empty()) return bad(file, field + ".id", "The id is empty");
+    if (t.id.empty()) return bad(file, field + ".id", tr("The id is empty"));
     if (t.hu_min > t.hu_max || !kHuRange.holds(t.hu_min) || !kHuRange.holds(t.hu_max)) {
-      return bad(file, field + ".hu", "The HU range " + range(t) + " is not possible",
-                 "Give the lower value first, within -32768..32767");
+      return bad(file, field + ".hu", tr("The HU range {} is not possible", range(t)),
+                 tr("Give the lower value first, within -32768..32767"));
     }
     if (t.hu_source.empty()) {
-      return bad(file, field + ".hu_source", "The HU range " + range(t) + " has no source",
-                 "Cite one, or write \"tuned here, uncited\"");
+      return bad(file, field + ".hu_source", tr("The HU range {} has no source", range(t)),
+                 tr("Cite one, or write \"tuned here, uncited\""));
     }
     if (t.label && !kLabelRange.holds(*t.label)) {
-      return bad(file, field + ".label",
-                 "The label " + std::to_string(*t.label) + " is not between 1 and 255",
-                 "Give a label of the label map, or none for every voxel");
+      return bad(file, field + ".label", tr("The label {} is not between 1 and 255", *t.label),
+                 tr("Give a label of the label map, or none for every voxel"));
     }
     if (t.shell && t.structure.empty()) {
-      return bad(file, field + ".shell", "The shell has no structure that it stands in for",
-                 "Give the tissue a structure");
+      return bad(file, field + ".shell", tr("The shell has no structure that it stands in for"),
+                 tr("Give the tissue a structure"));
     }
     if (t.shell && (t.shell->of.empty() || !kShellRange.holds(t.shell->thickness_mm))) {
       return bad(file, field + ".shell",
-                 "The shell of '" + t.shell->of + "', " + shown(t.shell->thickness_mm) +
-                     " mm thick, is not possible",
-                 "Name a structure and a thickness of " + kShellRange.words());
+                 tr("The shell of '{}', {} mm thick, is not possible", t.shell->of,
+                    shown(t.shell->thickness_mm)),
+                 tr("Name a structure and a thickness of {}", kShellRange.words()));
     }
     if (!kShareRange.holds(t.opacity)) {
       return bad(file, field + ".opacity",
-                 "The opacity " + shown(t.opacity) + " is not between 0 and 1");
+                 tr("The opacity {} is not between 0 and 1", shown(t.opacity)));
     }
     for (int c = 0; c < 3; ++c) {
       if (!kShareRange.holds(t.colour[c])) {
         return bad(file, field + ".colour",
-                   "The colour value " + shown(t.colour[c]) + " is not between 0 and 1");
+                   tr("The colour value {} is not between 0 and 1", shown(t.colour[c])));
       }
     }
     for (const TissueNumber& row : kTissueNumbers) {
@@ -141,12 +140,12 @@ Status validate(const TissueSet& set, const std::string& file) {
     }
     for (std::size_t j = 0; j < i; ++j) {
       const Tissue& other = set.tissues[j];
-      if (other.id == t.id) return bad(file, field + ".id", "The id '" + t.id + "' is used twice");
+      if (other.id == t.id) return bad(file, field + ".id", tr("The id '{}' is used twice", t.id));
       if (sameVoxels(other, t)) {
         return bad(file, field + ".hu",
-                   "The HU ranges " + range(other) + " of '" + other.id + "' and " + range(t) +
-                       " of '" + t.id + "' overlap",
-                   "Separate the ranges or give them different structures or labels");
+                   tr("The HU ranges {} of '{}' and {} of '{}' overlap", range(other), other.id,
+                      range(t), t.id),
+                   tr("Separate the ranges or give them different structures or labels"));
       }
     }
   }
@@ -208,7 +207,7 @@ std::string tissueFieldsPage() {
   std::string page = schemaHead() + schemaLines<Tissue>("tissue", kTissueFields) +
                      schemaLines<Tissue::Shell>("tissue, `shell`", kShellFields);
   for (const TissueNumber& number : kTissueNumbers) {
-    page += schemaLine("`mechanics`", number.row(), "sourced number", "none");
+    page += schemaLine("`mechanics`", number.row(), tr("sourced number"), "none");
   }
   return page + schemaLines<Tissue>("`mechanics`", kCuttingFields);
 }

@@ -14,6 +14,7 @@
 #include "base/math.h"
 #include "base/range.h"
 #include "base/result.h"
+#include "base/tr.h"
 #include "tissue/tissue_numbers.h"
 
 namespace trephine {
@@ -58,33 +59,46 @@ struct Tissue : SetNumbers {
 
 // The settings of a tissue that are one member each; its mechanics are in tissue_numbers.h.
 inline constexpr FieldOf<Tissue> kTissueFields[] = {
-    {{"id", {}, Given::always,
-      "not empty, unique in the set; stable: scenes, operator scripts, recordings and reports name "
-      "it"},
+    {{"id",
+      {},
+      Given::always,
+      trLater("not empty, unique in the set; stable: scenes, operator scripts, recordings and "
+              "reports name "
+              "it")},
      &Tissue::id},
     {{"name", {1, 60}, Given::always, "shown"}, &Tissue::name},
-    {{"structure", {}, Given::may_be,
-      "only voxels of the case's structure of this name, whatever its number there; letters in "
-      "either case, `_` for a blank",
+    {{"structure",
+      {},
+      Given::may_be,
+      trLater(
+          "only voxels of the case's structure of this name, whatever its number there; letters in "
+          "either case, `_` for a blank"),
       "Where"},
      ReferenceIn<Tissue>{&Tissue::structure}},
-    {{"colour", kShareRange, Given::always, "red, green, blue"}, &Tissue::colour},
+    {{"colour", kShareRange, Given::always, trLater("red, green, blue")}, &Tissue::colour},
     {{"opacity", kShareRange, Given::always,
-      "per millimetre of depth; 0 hides the tissue, unless a view's `looks` name it (`scene.md`)"},
+      trLater("per millimetre of depth; 0 hides the tissue, unless a view's `looks` name it "
+              "(`scene.md`)")},
      &Tissue::opacity},
 };
 inline constexpr FieldOf<Tissue::Shell> kShellFields[] = {
-    {{"of", {}, Given::always,
-      "the structure whose outermost layer it is where the case lacks the tissue's own", "Else"},
+    {{"of",
+      {},
+      Given::always,
+      trLater("the structure whose outermost layer it is where the case lacks the tissue's own"),
+      "Else"},
      ReferenceIn<Tissue::Shell>{&Tissue::Shell::of}},
     {{"thickness_mm", kShellRange, Given::always,
-      "of that layer, which is closed: a capsule, which no CT shows"},
+      trLater("of that layer, which is closed: a capsule, which no CT shows")},
      &Tissue::Shell::thickness_mm},
 };
 inline constexpr FieldOf<Tissue> kCuttingFields[] = {
-    {{"cuttable", {}, Given::may_be,
-      "`false`: a tool feels the tissue but removes none of it", "Can be cut",
-      "Whether a tool may remove it, by the work that is put in."},
+    {{"cuttable",
+      {},
+      Given::may_be,
+      trLater("`false`: a tool feels the tissue but removes none of it"),
+      trLater("Can be cut"),
+      trLater("Whether a tool may remove it, by the work that is put in.")},
      &Tissue::cuttable},
 };
 

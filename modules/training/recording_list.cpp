@@ -14,6 +14,7 @@
 #include "base/file.h"
 #include "base/shared_folder.h"
 #include "base/stretched_hash.h"
+#include "base/tr.h"
 #include "base/utf8.h"
 #include "training/codes.h"
 #include "training/paused_ticks.h"
@@ -50,8 +51,8 @@ ListedRecording headOf(const std::filesystem::path& file) {
   row.seconds = std::min(double(done) / rate_hz, kLongest_s);
   row.cut_short = !(*reader)->end();
   if (!row.cut_short && (*reader)->end()->dropped > 0) {
-    row.problem = Error{code::kNotReplayable, "A part of the recording is missing", file.string(),
-                        "It can be kept, but not replayed"};
+    row.problem = Error{code::kNotReplayable, tr("A part of the recording is missing"),
+                        file.string(), tr("It can be kept, but not replayed")};
   }
   return row;
 }
@@ -84,8 +85,8 @@ struct Pass {
 };
 
 Error cannotRun(const ReadApart& how) {
-  return {code::kCannotRun, "The recordings cannot be listed", how.program.filename().string(),
-          "See that there is room for temporary files and memory, else install Trephine anew"};
+  return {code::kCannotRun, tr("The recordings cannot be listed"), how.program.filename().string(),
+          tr("See that there is room for temporary files and memory, else install Trephine anew")};
 }
 
 // Files for one child: a command line holds no more than 2 MB.
@@ -103,7 +104,7 @@ Result<Pass> readPass(const std::vector<std::filesystem::path>& files, std::size
   for (std::size_t i = first; i < end; ++i) command.words.push_back(files[i].string());
   command.output = *folder / ("trephine-list-" + *unique);
   command.limit_s = how.patience_s;
-  progress.at(double(first) / double(files.size()), "Looking at the recordings");
+  progress.at(double(first) / double(files.size()), tr("Looking at the recordings"));
   const Result<ChildRun> run = runChild(command, progress);
   Pass pass;
   std::ifstream lines(command.output);
@@ -130,16 +131,17 @@ ListedRecording unread(const std::filesystem::path& file, Pass::End end) {
   row.written = std::filesystem::last_write_time(file, ec);
   switch (end) {
     case Pass::End::timed_out:
-      row.problem = Error{code::kTakesTooLong, "The recording takes too long to read",
-                          file.string(), "Check its disk, then look again"};
+      row.problem = Error{code::kTakesTooLong, tr("The recording takes too long to read"),
+                          file.string(), tr("Check its disk, then look again")};
       break;
     case Pass::End::crashed:
-      row.problem = Error{code::kBadRecording, "The recording is damaged", file.string(),
-                          "It cannot be replayed"};
+      row.problem = Error{code::kBadRecording, tr("The recording is damaged"), file.string(),
+                          tr("It cannot be replayed")};
       break;
     case Pass::End::ended:
-      row.problem = Error{code::kUnreadable, "The recording could not be read", file.string(),
-                          "See that there is memory and room for temporary files, then look again"};
+      row.problem =
+          Error{code::kUnreadable, tr("The recording could not be read"), file.string(),
+                tr("See that there is memory and room for temporary files, then look again")};
       break;
   }
   return row;
@@ -153,8 +155,8 @@ ListedRecording listRecording(const std::filesystem::path& file) {
   } catch (const Json::exception&) {  // a head that is no exercise
     ListedRecording row;
     row.file = file;
-    row.problem = Error{code::kBadRecording, "The recording's head is damaged", file.string(),
-                        "It cannot be replayed"};
+    row.problem = Error{code::kBadRecording, tr("The recording's head is damaged"), file.string(),
+                        tr("It cannot be replayed")};
     return row;
   }
 }

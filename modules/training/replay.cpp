@@ -6,6 +6,7 @@
 #include "base/codes.h"
 #include "base/file.h"
 #include "base/memory.h"
+#include "base/tr.h"
 #include "exercise/exercise.h"
 #include "exercise/exercise_structures.h"
 #include "haptics/haptic_core.h"
@@ -123,11 +124,12 @@ Status serveJournal(HapticCore& core, JournalFile& journal_file, std::uint64_t t
   for (int tries = 0; (core.journalState() & recorded) != recorded; ++tries) {
     if (Status served = journal_file.service(core.journal()); !served) return served;
     if (tries == kTries) {
-      return Error{code::kNotReplayable,
-                   "The recording's tick " + std::to_string(tick) + " tells of a journal (" +
-                       std::to_string(recorded) + ") that the replay cannot come to",
-                   "ticks: journal",
-                   "Replay the recording as it was made: this one is damaged or was changed"};
+      return Error{
+          code::kNotReplayable,
+          tr("The recording's tick {} tells of a journal ({}) that the replay cannot come to", tick,
+             recorded),
+          "ticks: journal",
+          tr("Replay the recording as it was made: this one is damaged or was changed")};
     }
   }
   return {};
@@ -141,16 +143,16 @@ struct RecordedLabels {
 
 Result<RecordedLabels> recordedLabels(const RecordingHeader& header, const TissueSet& tissues,
                                       const LabelMap* given) {
-  const auto wrong = [](const char* what, const char* next) {
+  const auto wrong = [](const std::string& what, const std::string& next) {
     return Error{code::kWrongLabels, what, "--labels", next};
   };
   const bool had = !header.labels_sha256.empty();
   if (had && !given) {
-    return wrong("The session was recorded with a label map, and none was given",
-                 "Give the label map that the session was run with");
+    return wrong(tr("The session was recorded with a label map, and none was given"),
+                 tr("Give the label map that the session was run with"));
   }
   if (!had && given) {
-    return wrong("The session was recorded without a label map", "Leave the label map out");
+    return wrong(tr("The session was recorded without a label map"), tr("Leave the label map out"));
   }
   if (!given) return RecordedLabels();
   Result<LabelMap> fitted = fitTo(*given, header.geometry);
@@ -159,8 +161,8 @@ Result<RecordedLabels> recordedLabels(const RecordingHeader& header, const Tissu
   const auto structures = std::make_shared<const LabelMap>(*std::move(fitted));
   auto labels = withShells(tissues, structures);
   if (labelsSha256(*labels) != header.labels_sha256) {
-    return wrong("The label map is not the one that was recorded: its labels differ",
-                 "Give the label map that the session was run with");
+    return wrong(tr("The label map is not the one that was recorded: its labels differ"),
+                 tr("Give the label map that the session was run with"));
   }
   return RecordedLabels{structures, std::move(labels)};
 }
@@ -277,16 +279,17 @@ Result<std::unique_ptr<ReplayedSession>> ReplayedSession::open(const SessionRead
   const RecordingHeader& header = recording.header();
   if (volume.geometry.size != header.geometry.size ||
       (sha256.empty() ? volumeSha256(volume) : sha256) != header.volume_sha256) {
-    return Error{code::kWrongCase, "The case is not the one that was recorded: its voxels differ",
-                 "--case", "Give the folder that the session was run on"};
+    return Error{code::kWrongCase,
+                 tr("The case is not the one that was recorded: its voxels differ"), "--case",
+                 tr("Give the folder that the session was run on")};
   }
   if (recording.end() && recording.end()->dropped > 0) {
     return Error{code::kNotReplayable,
-                 "The recorder fell behind and dropped " +
-                     std::to_string(recording.end()->dropped) + " entries",
-                 "the recording", "Record again on a machine with less load"};
+                 tr("The recorder fell behind and dropped {} entries", recording.end()->dropped),
+                 tr("the recording"), tr("Record again on a machine with less load")};
   }
-  const Result<RecordedExercise> recorded = parseRecordedExercise(header.exercise, "the recording");
+  const Result<RecordedExercise> recorded =
+      parseRecordedExercise(header.exercise, tr("the recording"));
   if (!recorded) return recorded.error();
   Result<std::vector<Event>> events = recording.events();
   if (!events) return events.error();
@@ -295,7 +298,7 @@ Result<std::unique_ptr<ReplayedSession>> ReplayedSession::open(const SessionRead
   Result<RecordedLabels> fitted = recordedLabels(header, recorded->exercise.tissues, labels);
   if (!fitted) return fitted.error();
   const double needed_mb = exerciseMb(volume.geometry.voxelCount());
-  if (Status enough = enoughMemory(needed_mb, "The replay", "the case"); !enough) {
+  if (Status enough = enoughMemory(needed_mb, tr("The replay"), tr("the case")); !enough) {
     return enough.error();
   }
   const Result<std::filesystem::path> temporary = temporaryFolder();
@@ -313,9 +316,8 @@ Status ReplayedSession::Run::tick(RecordSink* sink) {
   if (Status read = readBlock(); !read) return read;
   const TickRecord& recorded = block[std::size_t(ticks - block_first)];
   if (recorded.tick != ticks) {
-    return Error{code::kNotReplayable,
-                 "The recorder fell behind: tick " + std::to_string(ticks) + " is missing",
-                 "the recording", "Record again on a machine with less load"};
+    return Error{code::kNotReplayable, tr("The recorder fell behind: tick {} is missing", ticks),
+                 tr("the recording"), tr("Record again on a machine with less load")};
   }
   const std::size_t first_event = next_event;
   const TickInput input = inputOf(recorded);
@@ -376,7 +378,8 @@ Result<ReplayResult> replay(const SessionReader& recording, const Volume& volume
     if (session.ticks() % kLook == 0) {
       progress.at(double(session.ticks()) / double(std::max<std::uint64_t>(1, recording.tickCount())),
                   "Replaying");
-      if (progress.cancelled()) return Error{code::kCancelled, "The replay was cancelled", "", ""};
+      if (progress.cancelled())
+        return Error{code::kCancelled, tr("The replay was cancelled"), "", ""};
     }
     const Result<bool> stepped = session.step(&meter);
     if (!stepped) return stepped.error();

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/codes.h"
+#include "base/tr.h"
 #include "exercise/exercise_fields.h"
 #include "exercise/names.h"
 #include "haptics/laws.h"
@@ -27,9 +28,9 @@ bool operator==(const RunMetrics& a, const RunMetrics& b) {
 
 Warning startsInTissue(const std::string& arm, bool barrier) {
   return {code::kStartsInTissue,
-          "The tool of the " + arm + " arm starts in tissue: " +
-              (barrier ? "it has no force and cuts nothing until it has been moved out"
-                       : "without the elastic law it feels and cuts it from the first moment")};
+          tr("The tool of the {} arm starts in tissue: {}", arm,
+             (barrier ? tr("it has no force and cuts nothing until it has been moved out")
+                      : tr("without the elastic law it feels and cuts it from the first moment")))};
 }
 
 RunMeter::RunMeter(const Exercise& exercise)
@@ -75,9 +76,9 @@ void RunMeter::event(const Event& event) {
       break;
     case EventKind::let_go:
       warn({code::kLetGo,
-            "The tool of the " + arm + " arm was hooked behind solid tissue " +
-                plainNumber(std::round(double(event.tick) / metrics_.rate_hz * 10.0) / 10.0) +
-                " s after the start, while the arm was free: it was let go"});
+            tr("The tool of the {} arm was hooked behind solid tissue {} s after the start, while "
+               "the arm was free: it was let go",
+               arm, plainNumber(std::round(double(event.tick) / metrics_.rate_hz * 10.0) / 10.0))});
       break;
     case EventKind::fault:
       if (metrics_.faults.size() >= kMostFaults) break;
@@ -111,7 +112,7 @@ void setRemoved(RunMetrics& metrics, const Exercise& exercise, const CarveJourna
 }
 
 Result<RunMetrics> metricsOf(const SessionReader& recording, const Progress& progress) {
-  const auto recorded = parseRecordedExercise(recording.header().exercise, "the recording");
+  const auto recorded = parseRecordedExercise(recording.header().exercise, tr("the recording"));
   if (!recorded) return recorded.error();
   RunMeter meter(recorded->exercise);
   const auto events = recording.events();
@@ -119,8 +120,9 @@ Result<RunMetrics> metricsOf(const SessionReader& recording, const Progress& pro
   constexpr std::uint64_t kBlock = 4096;
   const std::uint64_t total = recording.tickCount();
   for (std::uint64_t first = 0; first < total; first += kBlock) {
-    progress.at(double(first) / double(total), "Reading the recording");
-    if (progress.cancelled()) return Error{code::kCancelled, "Reading it was cancelled", "", ""};
+    progress.at(double(first) / double(total), tr("Reading the recording"));
+    if (progress.cancelled())
+      return Error{code::kCancelled, tr("Reading it was cancelled"), "", ""};
     const auto block = recording.ticks(first, std::min(kBlock, total - first));
     if (!block) return block.error();
     for (const TickRecord& record : *block) meter.tick(record);

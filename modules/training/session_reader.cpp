@@ -14,6 +14,7 @@
 
 #include "base/codes.h"
 #include "base/memory.h"
+#include "base/tr.h"
 #include "base/utf8.h"
 #include "training/codes.h"
 #include "training/own_dataset.h"
@@ -51,7 +52,7 @@ bool canHold(hid_t dataset, hsize_t rows, std::size_t row_bytes) {
 
 Status roomFor(hsize_t rows, std::size_t row_bytes) {
   const double needed_mb = double(rows) * double(row_bytes) / double(1 << 20);
-  return enoughMemory(needed_mb, "The recording", "the recording");
+  return enoughMemory(needed_mb, tr("The recording"), tr("the recording"));
 }
 
 // Takes the type over.
@@ -172,7 +173,7 @@ struct SessionReader::File {
 
   Error bad(const std::string& what) const {
     return Error{code::kBadRecording, what, path.string(),
-                 "Choose a file that this program recorded; a copy may be incomplete"};
+                 tr("Choose a file that this program recorded; a copy may be incomplete")};
   }
   ~File() {
     for (hid_t arm : arms) H5Dclose(arm);
@@ -208,16 +209,16 @@ Result<std::unique_ptr<SessionReader>> SessionReader::open(const std::filesystem
   quietHdf5();
   std::error_code ec;
   if (::access(path.c_str(), R_OK) != 0 && errno == EACCES) {
-    return Error{code::kCannotRead,
-                 std::string("The recording may not be read: ") + std::strerror(errno),
-                 path.string(), "Ask the person who keeps it, or an administrator"};
+    return Error{code::kCannotRead, tr("The recording may not be read: {}", std::strerror(errno)),
+                 path.string(), tr("Ask the person who keeps it, or an administrator")};
   }
   if (std::filesystem::exists(path, ec) && !std::filesystem::is_regular_file(path, ec)) {
-    return Error{code::kBadRecording, "This is no file but a folder, a pipe or a device",
-                 path.string(), "Give a recording's file"};
+    return Error{code::kBadRecording, tr("This is no file but a folder, a pipe or a device"),
+                 path.string(), tr("Give a recording's file")};
   }
   if (!std::filesystem::is_regular_file(path, ec)) {
-    return Error{code::kMissingFile, "There is no recording", path.string(), "Check the name"};
+    return Error{code::kMissingFile, tr("There is no recording"), path.string(),
+                 tr("Check the name")};
   }
   std::unique_ptr<SessionReader> reader(new SessionReader);
   File& f = *reader->file_;
@@ -231,29 +232,31 @@ Result<std::unique_ptr<SessionReader>> SessionReader::open(const std::filesystem
   f.file = H5Fopen(path.c_str(), H5F_ACC_RDONLY | H5F_ACC_SWMR_READ, access);
   if (f.file < 0) f.file = H5Fopen(path.c_str(), H5F_ACC_RDONLY, access);
   H5Pclose(access);
-  if (f.file < 0) return f.bad("The recording cannot be read: it is damaged or not a recording");
+  if (f.file < 0)
+    return f.bad(tr("The recording cannot be read: it is damaged or not a recording"));
 
   for (const std::string& name : datasetNames()) {
     if (!isForeign(f.file, name.c_str())) continue;
-    return f.bad("The recording's \"" + name +
-                 "\" is not in the file itself, or not stored as Trephine stores it");
+    return f.bad(
+        tr("The recording's \"{}\" is not in the file itself, or not stored as Trephine stores it",
+           name));
   }
   const std::optional<std::string> format = readText(f.file, "format");
-  if (format != "trephine.session") return f.bad("The file is not a recording of Trephine");
+  if (format != "trephine.session") return f.bad(tr("The file is not a recording of Trephine"));
   const int version = readVersion(f.file);
   if (version > kRecordingVersion) {
-    return Error{code::kNewerVersion,
-                 "The recording has version " + std::to_string(version) +
-                     " of trephine.session, and this program reads up to " +
-                     std::to_string(kRecordingVersion),
-                 path.string(), "Open it with a newer Trephine"};
+    return Error{
+        code::kNewerVersion,
+        tr("The recording has version {} of trephine.session, and this program reads up to {}",
+           version, kRecordingVersion),
+        path.string(), tr("Open it with a newer Trephine")};
   }
   if (version < kOldestRecording) {
-    return Error{code::kOlderVersion,
-                 "The recording has version " + std::to_string(version) +
-                     " of trephine.session, and this program reads from " +
-                     std::to_string(kOldestRecording) + " on",
-                 path.string(), "Open it with the Trephine that made it"};
+    return Error{
+        code::kOlderVersion,
+        tr("The recording has version {} of trephine.session, and this program reads from {} on",
+           version, kOldestRecording),
+        path.string(), tr("Open it with the Trephine that made it")};
   }
   f.version = version;
   const auto exercise = readText(f.file, "scene");
@@ -261,12 +264,12 @@ Result<std::unique_ptr<SessionReader>> SessionReader::open(const std::filesystem
   const auto build = readText(f.file, "build");
   const auto head_sha256 = readText(f.file, "head_sha256");
   if (!exercise || !volume || !build || head_sha256 != headSha256(*build, *exercise, *volume)) {
-    return f.bad("The recording is incomplete: its head is damaged");
+    return f.bad(tr("The recording is incomplete: its head is damaged"));
   }
   Result<Json> exercise_json = parseJson(*exercise, path.string());
-  if (!exercise_json) return f.bad("The recording is damaged: its scene cannot be read");
+  if (!exercise_json) return f.bad(tr("The recording is damaged: its scene cannot be read"));
   Result<Json> volume_json = parseJson(*volume, path.string());
-  if (!volume_json) return f.bad("The recording is damaged: its volume cannot be read");
+  if (!volume_json) return f.bad(tr("The recording is damaged: its volume cannot be read"));
   JsonReader volume_reader(*volume_json, path.string(), "volume");
   f.header.exercise = *std::move(exercise_json);
   makePlainLines(f.header.exercise);
@@ -289,7 +292,7 @@ Result<std::unique_ptr<SessionReader>> SessionReader::open(const std::filesystem
   }
   const bool tables = !apart || f.tissue_tables >= 0;
   if (f.ticks < 0 || f.carves < 0 || f.events < 0 || !tables || f.arms.empty()) {
-    return f.bad("The recording is incomplete: its tables are damaged");
+    return f.bad(tr("The recording is incomplete: its tables are damaged"));
   }
   hsize_t count = rowCount(f.ticks), most = count;
   for (hid_t arm : f.arms) {
@@ -304,16 +307,16 @@ Result<std::unique_ptr<SessionReader>> SessionReader::open(const std::filesystem
   EndRow row;
   const bool read = end >= 0 && ends == 1 && readRows(end, endType(), 0, 1, &row);
   if (end >= 0) H5Dclose(end);
-  if (ends > 0 && !read) return f.bad("The recording is damaged: its end cannot be read");
+  if (ends > 0 && !read) return f.bad(tr("The recording is damaged: its end cannot be read"));
   if (read) {
     f.end = RecordingEnd{row.ticks, row.dropped, row.missed,
                          std::string(row.volume_sha256, sizeof(row.volume_sha256))};
   }
   // What ended in order has all its rows, unless it says that it dropped some.
   if (f.end && f.end->dropped == 0 && (f.end->ticks != count || most != count)) {
-    return f.bad("The recording contradicts itself: its end counts " +
-                 std::to_string(f.end->ticks) + " ticks, and its tables hold " +
-                 std::to_string(count) + (most == count ? "" : " to " + std::to_string(most)));
+    return f.bad(
+        tr("The recording contradicts itself: its end counts {} ticks, and its tables hold {}{}",
+           f.end->ticks, count, (most == count ? "" : tr(" to {}", most))));
   }
   return reader;
 }
@@ -336,7 +339,7 @@ Result<std::vector<TickRecord>> SessionReader::ticks(std::uint64_t first, std::u
       last = middle;
     }
   }
-  return file_->bad("The recording is damaged from tick " + std::to_string(damaged) + " on");
+  return file_->bad(tr("The recording is damaged from tick {} on", damaged));
 }
 
 namespace {
@@ -355,7 +358,7 @@ bool isTable(const TissueTable& table) {
 }  // namespace
 
 Status SessionReader::File::readEvents() const {
-  const Error damaged = bad("The recording's events are damaged");
+  const Error damaged = bad(tr("The recording's events are damaged"));
   const hsize_t count = rowCount(events);
   // Beside a writer there may be tables of events that come later.
   const hsize_t table_count = std::min(rowCount(tissue_tables), count);
@@ -386,7 +389,7 @@ Status SessionReader::File::readEvents() const {
 
 // Of version 8: a table in each row, which only a command for tissues means.
 Status SessionReader::File::readEventsWithTissues() const {
-  const Error damaged = bad("The recording's events are damaged");
+  const Error damaged = bad(tr("The recording's events are damaged"));
   const hsize_t count = rowCount(events);
   if (!canHold(events, count, sizeof(EventWithTissues))) return damaged;
   const std::size_t all = sizeof(EventWithTissues) + sizeof(TissueTable) + sizeof(Event);
@@ -413,17 +416,18 @@ Result<std::vector<Event>> SessionReader::events() const {
   f.known_events.clear();
   Status read = f.version > kTissuesInEvents ? f.readEvents() : f.readEventsWithTissues();
   if (!read) return read.error();
-  if (!std::ranges::all_of(f.tables, isTable)) return f.bad("The recording's events are damaged");
+  if (!std::ranges::all_of(f.tables, isTable))
+    return f.bad(tr("The recording's events are damaged"));
   for (const Event& event : f.known_events) {
     if (isKnown(event.command)) continue;
-    return f.bad("The recording's events are damaged at tick " + std::to_string(event.tick));
+    return f.bad(tr("The recording's events are damaged at tick {}", event.tick));
   }
   f.events_read = true;
   return f.known_events;
 }
 
 Result<std::vector<CarveRecord>> SessionReader::carves() const {
-  const Error damaged = file_->bad("The recording's removed voxels are damaged");
+  const Error damaged = file_->bad(tr("The recording's removed voxels are damaged"));
   const hsize_t count = rowCount(file_->carves);
   if (!canHold(file_->carves, count, sizeof(CarveRecord))) return damaged;
   if (Status enough = roomFor(count, sizeof(CarveRecord)); !enough) return enough.error();

@@ -15,6 +15,7 @@
 #include "base/file.h"
 #include "base/purpose.h"
 #include "base/shared_folder.h"
+#include "base/tr.h"
 #include "training/codes.h"
 #include "training/recording_layout.h"
 
@@ -154,18 +155,18 @@ struct SessionRecorder::File {
   bool isGone() {
     struct stat of {};
     if (failure || ::fstat(descriptor, &of) != 0 || of.st_nlink > 0) return false;
-    failure = Error{code::kRecordingGone, "The recording was deleted while it was written",
-                    path.filename().string(), "Start the exercise anew to have it recorded"};
+    failure = Error{code::kRecordingGone, tr("The recording was deleted while it was written"),
+                    path.filename().string(), tr("Start the exercise anew to have it recorded")};
     return true;
   }
 
   Status fail() {
     if (!failure) {
       failure = Error{code::kCannotWrite,
-                      std::string("The recording can no longer be written: ") +
-                          (errno ? std::strerror(errno) : "unknown reason"),
+                      tr("The recording can no longer be written: {}",
+                         (errno ? std::strerror(errno) : tr("unknown reason"))),
                       path.filename().string(),
-                      afterFailedWrite(errno) + "; what was recorded until now is kept"};
+                      tr("{}; what was recorded until now is kept", afterFailedWrite(errno))};
     }
     return *failure;
   }
@@ -205,8 +206,8 @@ Result<std::unique_ptr<SessionRecorder>> SessionRecorder::create(const std::file
   if (f.file >= 0) keepOwn(path);
   const auto cannot = [&path] {
     return Error{code::kCannotWrite,
-                 std::string("The recording cannot be started: ") +
-                     (errno ? std::strerror(errno) : "unknown reason"),
+                 tr("The recording cannot be started: {}",
+                    (errno ? std::strerror(errno) : tr("unknown reason"))),
                  path.string(), afterFailedWrite(errno)};
   };
   if (f.file < 0) {

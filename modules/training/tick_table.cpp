@@ -11,6 +11,7 @@
 
 #include "base/codes.h"
 #include "base/file.h"
+#include "base/tr.h"
 
 namespace trephine {
 
@@ -46,8 +47,8 @@ Status writeTo(const SessionReader& recording, std::ofstream& out, const Progres
   const std::uint64_t count = recording.tickCount();
   std::array<Vec3, kMaxArms> before_m;
   for (std::uint64_t first = 0; first < count && out; first += kSlice) {
-    if (progress.cancelled()) return Error{code::kCancelled, "The table was cancelled", "", ""};
-    progress.at(double(first) / double(count), "Writing the table");
+    if (progress.cancelled()) return Error{code::kCancelled, tr("The table was cancelled"), "", ""};
+    progress.at(double(first) / double(count), tr("Writing the table"));
     auto ticks = recording.ticks(first, std::min(kSlice, count - first));
     if (!ticks) return ticks.error();
     for (const TickRecord& tick : *ticks) {
@@ -84,8 +85,8 @@ Status writeTickTable(const SessionReader& recording, const std::filesystem::pat
     if (out) out.close();
     if (!written || out) return written;
     return Error{code::kCannotWrite,
-                 std::string("The table could not be written: ") +
-                     (errno ? std::strerror(errno) : "unknown reason"),
+                 tr("The table could not be written: {}",
+                    (errno ? std::strerror(errno) : tr("unknown reason"))),
                  file.string(), afterFailedWrite(errno)};
   });
 }

@@ -15,6 +15,7 @@
 
 #include "base/codes.h"
 #include "base/descriptor.h"
+#include "base/tr.h"
 #include "volume/codes.h"
 
 namespace trephine::file_format {
@@ -43,16 +44,17 @@ std::span<const std::byte> storedAs(VoxelType type, std::span<const std::int16_t
 }
 
 Error unreadable(const std::string& what, const fs::path& file) {
-  return Error{code::kUnreadable, what, file.string(), "Copy or export the file again"};
+  return Error{code::kUnreadable, what, file.string(), tr("Copy or export the file again")};
 }
 
 Error badGeometry(const std::string& what, const fs::path& file) {
   return Error{code::kBadGeometry, what, file.string(),
-               "Export it again with its orientation, position and voxel size"};
+               tr("Export it again with its orientation, position and voxel size")};
 }
 
 Error notHu(const std::string& what, const fs::path& file) {
-  return Error{code::kNotHu, what, file.string(), "Export the CT as 16-bit whole numbers in HU"};
+  return Error{code::kNotHu, what, file.string(),
+               tr("Export the CT as 16-bit whole numbers in HU")};
 }
 
 Error unknownFormat(const std::string& what, const fs::path& file, const std::string& next) {
@@ -60,17 +62,18 @@ Error unknownFormat(const std::string& what, const fs::path& file, const std::st
 }
 
 Error cannotWrite(const fs::path& file) {
-  return Error{code::kCannotWrite, "The volume could not be written", file.string(),
-               "Check free space and that you may write there; nothing that was there is lost"};
+  return Error{code::kCannotWrite, tr("The volume could not be written"), file.string(),
+               tr("Check free space and that you may write there; nothing that was there is lost")};
 }
 
 Result<Index3> sizeFrom(const std::vector<double>& sizes, const fs::path& file) {
   Index3 size{};
-  if (sizes.size() != size.size()) return unreadable("The image's size is not three numbers", file);
+  if (sizes.size() != size.size())
+    return unreadable(tr("The image's size is not three numbers"), file);
   for (std::size_t axis = 0; axis < size.size(); ++axis) {
     const double n = sizes[axis];
     if (!(n >= 1.0) || n != std::floor(n)) {
-      return unreadable("The image's size is not three positive whole numbers", file);
+      return unreadable(tr("The image's size is not three positive whole numbers"), file);
     }
     size[axis] = std::int32_t(std::min(n, double(std::numeric_limits<std::int32_t>::max())));
   }
@@ -102,12 +105,14 @@ Status checkGeometry(const GridGeometry& geometry, const fs::path& file) {
     const double length = glm::length(d[axis]), dot = glm::dot(d[axis], d[(axis + 1) % 3]);
     // Also false for anything not finite.
     if (!(std::abs(length - 1.0) < 1e-3 && std::abs(dot) < 1e-3)) {
-      return badGeometry("The image's axes are not at right angles or not of unit length", file);
+      return badGeometry(tr("The image's axes are not at right angles or not of unit length"),
+                         file);
     }
   }
-  if (!isFinite(geometry.origin_mm)) return badGeometry("The image's position is no number", file);
+  if (!isFinite(geometry.origin_mm))
+    return badGeometry(tr("The image's position is no number"), file);
   if (glm::length(geometry.origin_mm) > kFarthest_mm) {
-    return badGeometry("The image lies over a kilometre from the scanner's middle", file);
+    return badGeometry(tr("The image lies over a kilometre from the scanner's middle"), file);
   }
   return {};
 }
@@ -142,13 +147,14 @@ Result<fs::path> fileBeside(const fs::path& header, const std::string& name) {
   const fs::path folder = fs::canonical(fs::absolute(header, ec).parent_path(), ec);
   const fs::path found = fs::weakly_canonical(folder / name, ec);  // symbolic links followed
   if (ec || found.parent_path() != folder) {
-    return Error{code::kUnreadable, "The header leads to voxels outside of its own folder",
-                 header.string(), "Put both files into one folder and name the data file there"};
+    return Error{code::kUnreadable, tr("The header leads to voxels outside of its own folder"),
+                 header.string(),
+                 tr("Put both files into one folder and name the data file there")};
   }
   if (!fs::is_regular_file(found, ec)) {
-    return Error{code::kMissingFile, "The file with the voxels is not beside the header",
+    return Error{code::kMissingFile, tr("The file with the voxels is not beside the header"),
                  (header.parent_path() / name).string(),
-                 "Keep the header and its data file together"};
+                 tr("Keep the header and its data file together")};
   }
   return header.parent_path() / name;
 }
@@ -181,11 +187,12 @@ bool isMostlyHoles(const fs::path& file) {
 
 Error longerThanSaid(const VolumeFileHeader& header, const std::string& by, const fs::path& file) {
   const bool beside = header.data.file != file;
-  Error error = unreadable((beside ? "The file with the voxels is " : "The file is ") + by +
-                               "longer than its header says: where its voxels begin is not sure",
-                           header.data.file);
-  error.next = beside ? "Say in the header how many bytes to skip, or export it again"
-                      : "Export it again, or correct the size or the offset in its header";
+  Error error =
+      unreadable(tr("{}{}longer than its header says: where its voxels begin is not sure",
+                    (beside ? tr("The file with the voxels is ") : tr("The file is ")), by),
+                 header.data.file);
+  error.next = beside ? tr("Say in the header how many bytes to skip, or export it again")
+                      : tr("Export it again, or correct the size or the offset in its header");
   return error;
 }
 
@@ -193,21 +200,22 @@ Status placeVoxels(VolumeFileHeader& header, std::optional<std::uint64_t> offset
                    const fs::path& file, std::uint64_t earliest) {
   std::error_code ec;
   const std::uint64_t all = fs::file_size(header.data.file, ec);
-  if (ec) return unreadable("The file with the voxels cannot be read", header.data.file);
+  if (ec) return unreadable(tr("The file with the voxels cannot be read"), header.data.file);
   const std::uint64_t stored = header.storedBytes();
   const std::uint64_t start = offset ? *offset : all > stored ? all - stored : 0;
   const std::uint64_t bytes = all > start ? all - start : 0;
   const double most = double(bytes) * (header.data.packed ? kMostCompression : 1.0);
   if (most < double(stored) + double(header.data.skip) || start < earliest) {
-    return unreadable("The file is cut short: its header promises more voxels than it holds", file);
+    return unreadable(tr("The file is cut short: its header promises more voxels than it holds"),
+                      file);
   }
   // What is too much stands in front as a rule: a header of its own, or one that is longer than it
   // says. Then every voxel would be read from another's place.
   if (offset && !header.data.packed && bytes > stored) {
-    return longerThanSaid(header, std::to_string(bytes - stored) + " bytes ", file);
+    return longerThanSaid(header, tr("{} bytes ", bytes - stored), file);
   }
   if (isMostlyHoles(header.data.file)) {
-    return unreadable("The file is empty but for its beginning: it was not copied to its end",
+    return unreadable(tr("The file is empty but for its beginning: it was not copied to its end"),
                       file);
   }
   header.data.offset = start;
@@ -219,7 +227,7 @@ Result<std::string> readStart(const fs::path& file, std::size_t most) {
   std::error_code ec;
   const std::uint64_t all = fs::file_size(file, ec);
   std::ifstream in(file, std::ios::binary);
-  if (!in || ec) return unreadable("The file cannot be opened", file);
+  if (!in || ec) return unreadable(tr("The file cannot be opened"), file);
   std::string text(std::size_t(std::min<std::uint64_t>(most, all)), '\0');
   in.read(text.data(), std::streamsize(text.size()));
   text.resize(std::size_t(in.gcount()));

@@ -11,12 +11,13 @@
 
 #include "base/codes.h"
 #include "base/file.h"
+#include "base/tr.h"
 
 namespace trephine {
 namespace {
 
 std::string reason(int code) {
-  return code == 0 ? "unexpected end of file" : std::generic_category().message(code);
+  return code == 0 ? tr("unexpected end of file") : std::generic_category().message(code);
 }
 
 // A file in `folder` that no name leads to; -1 with errno when there can be none.
@@ -52,7 +53,7 @@ Result<std::unique_ptr<JournalFile>> JournalFile::create(const std::filesystem::
   const int descriptor = openUnnamed(folder);
   if (descriptor < 0) {
     return Error{code::kCannotWrite,
-                 "The journal of what is removed cannot be kept on disk: " + reason(errno),
+                 tr("The journal of what is removed cannot be kept on disk: {}", reason(errno)),
                  folder.string(), afterFailedWrite(errno)};
   }
   return std::unique_ptr<JournalFile>(new JournalFile(descriptor, folder));
@@ -86,11 +87,11 @@ Status JournalFile::save(CarveLog& log) {
     if (done == bytes.size()) continue;
     write_failed_ = true;
     return Error{code::kCannotWrite,
-                 "The journal of what is removed can no longer be written: " + reason(error),
+                 tr("The journal of what is removed can no longer be written: {}", reason(error)),
                  folder_.string(),
-                 afterFailedWrite(error) +
-                     ", and start the session anew; until memory is full removal goes "
-                     "on, and undo and rewind work still"};
+                 tr("{}, and start the session anew; until memory is full removal goes on, and "
+                    "undo and rewind work still",
+                    afterFailedWrite(error))};
   }
   return {};
 }
@@ -111,8 +112,8 @@ Status JournalFile::load(CarveLog& log) {
   if (read_failed_) return {};
   read_failed_ = true;
   return Error{code::kCannotRead,
-               "The journal of what is removed cannot be read back: " + reason(error),
-               folder_.string(), "Check the disk; undo and rewind wait until it can be read"};
+               tr("The journal of what is removed cannot be read back: {}", reason(error)),
+               folder_.string(), tr("Check the disk; undo and rewind wait until it can be read")};
 }
 
 }  // namespace trephine

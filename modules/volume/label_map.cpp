@@ -8,6 +8,7 @@
 
 #include "base/memory.h"
 #include "base/sha256.h"
+#include "base/tr.h"
 #include "base/utf8.h"
 #include "volume/case_memory.h"
 #include "volume/codes.h"
@@ -177,7 +178,7 @@ Result<LabelMap> readLabelMap(const std::filesystem::path& file) {
   try {
     return merged(*read, smallerFirst(*read));
   } catch (const std::bad_alloc&) {
-    return outOfMemory("for the label map", file.string());
+    return outOfMemory(tr("for the label map"), file.string());
   }
 }
 
@@ -196,7 +197,7 @@ Result<LabelMap> fitTo(const LabelMap& map, const GridGeometry& ct) {
   const GridGeometry& from = map.geometry;
   const Mat4 to_map = from.patientToVoxel() * ct.voxelToPatient();
   const Vec3 step(to_map[0]), size(from.size[0], from.size[1], from.size[2]);
-  if (Status enough = enoughMemory(labelsMb(ct.voxelCount()), "The label map", ""); !enough) {
+  if (Status enough = enoughMemory(labelsMb(ct.voxelCount()), tr("The label map"), ""); !enough) {
     return enough.error();
   }
   LabelMap fitted{ct, std::vector<std::uint8_t>(ct.voxelCount()), map.structures};
@@ -216,8 +217,9 @@ Result<LabelMap> fitTo(const LabelMap& map, const GridGeometry& ct) {
     }
   }
   if (!met) {
-    return Error{code::kLabelsElsewhere, "The label map and the case do not overlap in the patient",
-                 "the label map", "Choose the label map that was made from this CT"};
+    return Error{code::kLabelsElsewhere,
+                 tr("The label map and the case do not overlap in the patient"),
+                 tr("the label map"), tr("Choose the label map that was made from this CT")};
   }
   return fitted;
 }

@@ -11,6 +11,7 @@
 #include <sstream>
 
 #include "base/purpose.h"
+#include "base/tr.h"
 #include "volume/file_format.h"
 
 namespace trephine::file_format {
@@ -87,26 +88,26 @@ std::optional<VoxelType> typeFrom(const std::string& name) {
 
 Status readGeometry(const Fields& fields, const fs::path& file, GridGeometry& geometry) {
   const auto dims = fields.numbers({"NDims"}, 1);
-  if (!dims || (*dims)[0] != 3.0) return unreadable("The image is not three-dimensional", file);
+  if (!dims || (*dims)[0] != 3.0) return unreadable(tr("The image is not three-dimensional"), file);
   const auto sizes = fields.numbers({"DimSize"}, 3);
-  if (!sizes) return unreadable("The header's DimSize is not three numbers", file);
+  if (!sizes) return unreadable(tr("The header's DimSize is not three numbers"), file);
   const auto size = sizeFrom(*sizes, file);
   if (!size) return size.error();
   geometry.size = *size;
 
   const auto spacing = fields.numbers({"ElementSpacing", "ElementSize"}, 3);
-  if (!spacing) return badGeometry("The header does not say how large a voxel is", file);
+  if (!spacing) return badGeometry(tr("The header does not say how large a voxel is"), file);
   geometry.spacing_mm = {(*spacing)[0], (*spacing)[1], (*spacing)[2]};
 
   // The format's defaults: axes along the patient's, the first voxel at the origin.
   if (fields.has({"Offset", "Position", "Origin"})) {
     const auto offset = fields.numbers({"Offset", "Position", "Origin"}, 3);
-    if (!offset) return badGeometry("The header's Offset cannot be read", file);
+    if (!offset) return badGeometry(tr("The header's Offset cannot be read"), file);
     geometry.origin_mm = {(*offset)[0], (*offset)[1], (*offset)[2]};
   }
   if (fields.has({"TransformMatrix", "Rotation", "Orientation"})) {
     const auto matrix = fields.numbers({"TransformMatrix", "Rotation", "Orientation"}, 9);
-    if (!matrix) return badGeometry("The header's TransformMatrix cannot be read", file);
+    if (!matrix) return badGeometry(tr("The header's TransformMatrix cannot be read"), file);
     for (int axis = 0; axis < 3; ++axis) {
       for (int row = 0; row < 3; ++row) {
         geometry.direction[axis][row] = (*matrix)[std::size_t(axis * 3 + row)];
@@ -122,8 +123,8 @@ Status findVoxels(const Fields& fields, const fs::path& file, std::size_t header
   header.data.file = file;
   const std::string name = fields.text({"ElementDataFile"});
   if (name == "LIST" || name.find('%') != std::string::npos) {
-    return unknownFormat("A MetaImage whose slices are separate files is not read", file,
-                         "Export it as one .mha file");
+    return unknownFormat(tr("A MetaImage whose slices are separate files is not read"), file,
+                         tr("Export it as one .mha file"));
   }
   if (lowerCase(name) != "local") {
     const auto data = fileBeside(file, name);
@@ -135,7 +136,7 @@ Status findVoxels(const Fields& fields, const fs::path& file, std::size_t header
   if (fields.has({"HeaderSize"})) {
     const auto more = fields.numbers({"HeaderSize"}, 1);
     if (!more || !((*more)[0] >= -1.0 && (*more)[0] <= 1e15)) {
-      return unreadable("The header's HeaderSize cannot be read", file);
+      return unreadable(tr("The header's HeaderSize cannot be read"), file);
     }
     if ((*more)[0] >= 0.0) {
       *offset += std::uint64_t((*more)[0]);
@@ -147,7 +148,7 @@ Status findVoxels(const Fields& fields, const fs::path& file, std::size_t header
   if (header.data.packed && fields.has({"CompressedDataSize"})) {
     const auto packed = fields.numbers({"CompressedDataSize"}, 1);
     if (!packed || !((*packed)[0] >= 0.0 && (*packed)[0] <= double(header.data.bytes))) {
-      return unreadable("The file is cut short: its compressed voxels are not all there", file);
+      return unreadable(tr("The file is cut short: its compressed voxels are not all there"), file);
     }
     header.data.bytes = std::uint64_t((*packed)[0]);
   }
@@ -186,7 +187,7 @@ Result<VolumeFileHeader> readMetaImageHeader(const fs::path& file) {
   if (!text) return text.error();
   std::size_t length = 0;
   auto found = fieldsOf(*text, length);
-  if (!found) return unreadable("The file is not a MetaImage: it has no header", file);
+  if (!found) return unreadable(tr("The file is not a MetaImage: it has no header"), file);
   const Fields fields(std::move(*found));
 
   VolumeFileHeader header;
@@ -195,18 +196,18 @@ Result<VolumeFileHeader> readMetaImageHeader(const fs::path& file) {
   const auto type = typeFrom(fields.text({"ElementType"}));
   const auto channels = fields.numbers({"ElementNumberOfChannels"}, 1);
   const bool one = !fields.has({"ElementNumberOfChannels"}) || (channels && (*channels)[0] == 1.0);
-  if (!type || !one) return notHu("The voxels are not one number each", file);
+  if (!type || !one) return notHu(tr("The voxels are not one number each"), file);
   header.type = *type;
   if (fields.has({"BinaryData"}) && !fields.flag("BinaryData")) {
-    return unknownFormat("A MetaImage with its voxels as text is not read", file,
-                         "Export it with binary data");
+    return unknownFormat(tr("A MetaImage with its voxels as text is not read"), file,
+                         tr("Export it with binary data"));
   }
   for (auto [name, value] : {std::pair("ElementToIntensityFunctionSlope", &header.slope),
                              std::pair("ElementToIntensityFunctionOffset", &header.intercept)}) {
     if (!fields.has({name})) continue;
     const auto number = fields.numbers({name}, 1);
     if (!number || !std::isfinite((*number)[0])) {
-      return unreadable(std::string("The header's ") + name + " is no number", file);
+      return unreadable(tr("The header's {} is no number", name), file);
     }
     *value = (*number)[0];
   }

@@ -14,6 +14,7 @@
 
 #include "base/codes.h"
 #include "base/purpose.h"
+#include "base/tr.h"
 #include "volume/file_format.h"
 #include "volume/grid_place.h"
 #include "volume/gzip_writer.h"
@@ -125,7 +126,7 @@ Result<Affines> affinesOf(const Header& h, const fs::path& file) {
       unit_mm = 0.001;
       break;
     default:
-      return badGeometry("The unit of length is unknown", file);
+      return badGeometry(tr("The unit of length is unknown"), file);
   }
   Affines of;
   // Steps have no sign: handedness is that of pixdim[0], or of the sform.
@@ -154,8 +155,8 @@ Result<Affines> affinesOf(const Header& h, const fs::path& file) {
     affine[3] = glm::dvec4(Vec3(h.qoffset(0), h.qoffset(1), h.qoffset(2)) * unit_mm, 1.0);
   }
   if (of.sform || of.qform) return of;
-  return badGeometry("The file does not say how the image lies in the patient (no sform, no qform)",
-                     file);
+  return badGeometry(
+      tr("The file does not say how the image lies in the patient (no sform, no qform)"), file);
 }
 
 // The sform with the steps of the pixdim, which has to be positive.
@@ -182,14 +183,13 @@ std::string stepsText(const Vec3& mm) {
 std::string contradictionOf(const Mat4& sform, const char* name, const Mat4& other,
                             double apart_mm) {
   const Vec3 a = stepsOf_mm(sform), b = stepsOf_mm(other);
-  const std::string both =
-      std::string("The file's sform and ") + name + " contradict one another: ";
+  const std::string both = tr("The file's sform and {} contradict one another: ", name);
   for (int axis = 0; axis < 3; ++axis) {
     if (std::abs(a[axis] - b[axis]) <= 1e-3 * a[axis]) continue;
-    return both + "the one says steps of " + stepsText(a) + ", the other of " + stepsText(b);
+    return tr("{}the one says steps of {}, the other of {}", both, stepsText(a), stepsText(b));
   }
   if (glm::determinant(Mat3(sform)) * glm::determinant(Mat3(other)) < 0.0) {
-    return both + "the image is mirrored by the one and not by the other";
+    return tr("{}the image is mirrored by the one and not by the other", both);
   }
   char text[96];
   std::snprintf(text, sizeof text, "by the one it lies up to %.4g mm from where the other puts it",
@@ -222,8 +222,8 @@ Status place(const Affines& of, const Index3& size, const fs::path& file,
   if (!other) return settled(first);
   if (of.qform && saysNothing(first) != saysNothing(*other)) {
     const bool qform = saysNothing(first);
-    header.notes.push_back(std::string("The file's ") + (qform ? "sform" : "qform") +
-                           " says no place: its " + (qform ? "qform" : "sform") + " was taken");
+    header.notes.push_back(tr("The file's {} says no place: its {} was taken",
+                              (qform ? "sform" : "qform"), (qform ? "qform" : "sform")));
     return settled(qform ? *other : first);
   }
   const double apart_mm =
@@ -244,8 +244,9 @@ Status place(const Affines& of, const Index3& size, const fs::path& file,
   header.reversed_slices = header.forms.front().reversed_slices;
   if (header.forms.size() == 1) {
     const std::string& good = header.forms.front().name;
-    header.contradiction = std::string("The file's ") + (good == "sform" ? name : "sform") +
-                           " is a place that is not read, and its " + good + " contradicts it";
+    header.contradiction =
+        tr("The file's {} is a place that is not read, and its {} contradicts it",
+           (good == "sform" ? name : "sform"), good);
   }
   return {};
 }
@@ -262,10 +263,10 @@ std::optional<VoxelType> niftiType(int code) {
 
 Result<Index3> sizeOf(const Header& h, const fs::path& file) {
   if (!(h.dim(0) >= 3 && h.dim(0) <= 7)) {
-    return unreadable("The image is not three-dimensional", file);
+    return unreadable(tr("The image is not three-dimensional"), file);
   }
   for (std::size_t d = 4; d <= std::size_t(h.dim(0)); ++d) {
-    if (h.dim(d) > 1) return notHu("The image has several values a voxel or a time axis", file);
+    if (h.dim(d) > 1) return notHu(tr("The image has several values a voxel or a time axis"), file);
   }
   return sizeFrom({h.dim(1), h.dim(2), h.dim(3)}, file);
 }
@@ -372,12 +373,12 @@ Result<VolumeFileHeader> readNiftiHeader(const fs::path& file) {
   if (!first) return first.error();
   header.data.packed = *first == "\x1f\x8b";  // gzip, whatever the name says
   const auto h = Header::from(unpackedStart(file, header.data.packed, 540));
-  if (!h) return unreadable("The file is not a NIfTI image", file);
+  if (!h) return unreadable(tr("The file is not a NIfTI image"), file);
 
   const auto size = sizeOf(*h, file);
   if (!size) return size.error();
   const auto type = niftiType(h->type());
-  if (!type) return notHu("The voxels are not one number each", file);
+  if (!type) return notHu(tr("The voxels are not one number each"), file);
   header.type = *type;
   header.big_endian = h->bigEndian();
   const auto affines = affinesOf(*h, file);
@@ -385,16 +386,16 @@ Result<VolumeFileHeader> readNiftiHeader(const fs::path& file) {
   if (auto status = place(*affines, *size, file, header); !status) return status.error();
   // 0: values are as they are. So are they by custom where the slope is no number.
   if (!std::isfinite(h->slope())) {
-    header.notes.push_back("The rescale slope is no number: values are taken as they are");
+    header.notes.push_back(tr("The rescale slope is no number: values are taken as they are"));
   } else if (h->slope() != 0.0) {
     header.slope = h->slope();
     header.intercept = h->intercept();
     if (header.slope < 0.0) {
-      header.notes.push_back("The rescale slope is negative: look whether bone is bright");
+      header.notes.push_back(tr("The rescale slope is negative: look whether bone is bright"));
     }
   }
   if (!std::isfinite(header.intercept)) {
-    return notHu("The rescale intercept is no number", file);
+    return notHu(tr("The rescale intercept is no number"), file);
   }
   // 0: right behind the header and the four bytes that follow it, which some writers do not count.
   const double behind = double(h->length()) + 4.0;
@@ -404,7 +405,7 @@ Result<VolumeFileHeader> readNiftiHeader(const fs::path& file) {
                          double(fs::file_size(file, ec)) == behind + double(header.storedBytes());
   if (uncounted) start = behind;
   if (!(start >= double(h->length()) && start <= 1e15)) {
-    return unreadable("The header's voxels start inside of it or nowhere", file);
+    return unreadable(tr("The header's voxels start inside of it or nowhere"), file);
   }
   constexpr double kMostExtension = double(1 << 20);
   if (start > behind) {
@@ -424,8 +425,8 @@ Status writeNifti(const VoxelSlabs& voxels, VoxelType type, const fs::path& temp
                   const fs::path& target, const Progress& progress) {
   for (const std::int32_t edge : voxels.geometry.size) {
     if (edge > kMostAlongEdge) {
-      return Error{code::kCannotWrite, "NIfTI holds at most 32767 voxels along an edge",
-                   target.string(), "Save it as .mha"};
+      return Error{code::kCannotWrite, tr("NIfTI holds at most 32767 voxels along an edge"),
+                   target.string(), tr("Save it as .mha")};
     }
   }
   // e: not for programs that are started meanwhile.

@@ -12,6 +12,7 @@
 #include <map>
 #include <set>
 
+#include "base/tr.h"
 #include "volume/file_format.h"
 #include "volume/label_map.h"
 
@@ -82,7 +83,7 @@ std::string unescaped(const std::string& text) {
 }
 
 Result<NrrdFields> nrrdFieldsOf(const std::string& text, const fs::path& file) {
-  if (!text.starts_with("NRRD000")) return unreadable("The file is not a NRRD file", file);
+  if (!text.starts_with("NRRD000")) return unreadable(tr("The file is not a NRRD file"), file);
   NrrdFields fields;
   for (std::size_t at = std::min(text.find('\n'), text.size() - 1) + 1; at < text.size();) {
     const std::size_t end = std::min(text.find('\n', at), text.size());
@@ -103,22 +104,23 @@ Result<NrrdFields> nrrdFieldsOf(const std::string& text, const fs::path& file) {
       continue;
     }
     if (colon > line.size()) {
-      return unreadable("A line of the header is not understood: " + shown(line), file);
+      return unreadable(tr("A line of the header is not understood: {}", shown(line)), file);
     }
     std::string name = lowerCase(line.substr(0, colon));
     std::erase(name, ' ');
     if (kFields.find(" " + name + " ") == kFields.npos) {
       return unreadable(
-          "The header has a field that NRRD does not know: " + shown(line.substr(0, colon)), file);
+          tr("The header has a field that NRRD does not know: {}", shown(line.substr(0, colon))),
+          file);
     }
     const std::string value = trimmed(line.substr(colon + 2));
     if (!fields.values.emplace(name, value).second) {
-      return unreadable("The header has the field " + shown(name) + " twice", file);
+      return unreadable(tr("The header has the field {} twice", shown(name)), file);
     }
     if (name == "datafile" && value.starts_with("LIST")) break;  // file names follow
   }
   if (!fields.ended && text.size() == kMostNrrdHeader) {
-    return unreadable("The file's header does not end", file);
+    return unreadable(tr("The file's header does not end"), file);
   }
   return fields;
 }
@@ -168,7 +170,8 @@ Result<double> unitOf(const NrrdFields& fields, const fs::path& file) {
   const auto found = kUnits_mm.find(units[0]);
   const bool same = std::all_of(units.begin(), units.end(), [&](auto& u) { return u == units[0]; });
   if (found == kUnits_mm.end() || !same) {
-    return badGeometry("The unit of length is unknown: " + shown(fields.text("spaceunits")), file);
+    return badGeometry(tr("The unit of length is unknown: {}", shown(fields.text("spaceunits"))),
+                       file);
   }
   return found->second;
 }
@@ -183,14 +186,13 @@ bool isLayered(const NrrdFields& fields) {
 Result<GridGeometry> nrrdGeometry(const NrrdFields& fields, VolumeFileHeader& header,
                                   const fs::path& file) {
   auto sizes = numbersIn(fields.text("sizes"));
-  if (!sizes) return unreadable("The header's sizes are not numbers", file);
+  if (!sizes) return unreadable(tr("The header's sizes are not numbers"), file);
   if (isLayered(fields)) {
-    if (sizes->size() != 4) return unreadable("The image's size is not four numbers", file);
+    if (sizes->size() != 4) return unreadable(tr("The image's size is not four numbers"), file);
     const double layers = sizes->front();
     if (!(layers >= 1.0 && layers <= kMostStructures) || layers != std::floor(layers)) {
-      return unreadable(
-          "The header's number of layers is not from 1 to " + std::to_string(kMostStructures),
-          file);
+      return unreadable(tr("The header's number of layers is not from 1 to {}", kMostStructures),
+                        file);
     }
     header.layers = int(layers);
     sizes->erase(sizes->begin());
@@ -198,17 +200,18 @@ Result<GridGeometry> nrrdGeometry(const NrrdFields& fields, VolumeFileHeader& he
   const auto size = sizeFrom(*sizes, file);
   if (!size) return size.error();
   if (!fields.has("space") || !fields.has("spacedirections")) {
-    return badGeometry(fields.has("spacings")
-                           ? "The header has the voxel size but not how the image lies in the "
-                             "patient (no space, no space directions)"
-                           : "The header does not say how the image lies in the patient (no space, "
-                             "no space directions)",
-                       file);
+    return badGeometry(
+        fields.has("spacings")
+            ? tr("The header has the voxel size but not how the image lies in the "
+                 "patient (no space, no space directions)")
+            : tr("The header does not say how the image lies in the patient (no space, "
+                 "no space directions)"),
+        file);
   }
   const auto space = kSpaces.find(fields.word("space"));
   if (space == kSpaces.end()) {
-    return badGeometry("The space " + shown(fields.text("space")) +
-                           " does not say where the patient's left, back and head are",
+    return badGeometry(tr("The space {} does not say where the patient's left, back and head are",
+                          shown(fields.text("space"))),
                        file);
   }
   const auto unit_mm = unitOf(fields, file);
@@ -216,21 +219,22 @@ Result<GridGeometry> nrrdGeometry(const NrrdFields& fields, VolumeFileHeader& he
   auto axes = vectorsIn(fields.text("spacedirections"));
   if (isLayered(fields) && axes && axes->size() == 4 && !axes->front()) axes->erase(axes->begin());
   if (!axes || axes->size() != 3) {
-    return badGeometry("The header's space directions are not three vectors", file);
+    return badGeometry(tr("The header's space directions are not three vectors"), file);
   }
   Mat4 affine(1.0);
   for (int axis = 0; axis < 3; ++axis) {
     if (!(*axes)[std::size_t(axis)]) {
-      return notHu("One of the image's axes is no direction in space (none)", file);
+      return notHu(tr("One of the image's axes is no direction in space (none)"), file);
     }
     affine[axis] = glm::dvec4(*(*axes)[std::size_t(axis)] * space->second * *unit_mm, 0.0);
   }
   if (!fields.has("spaceorigin")) {
-    header.notes.push_back("The header gives no space origin: the first voxel is put at 0, 0, 0");
+    header.notes.push_back(
+        tr("The header gives no space origin: the first voxel is put at 0, 0, 0"));
   } else {
     const auto origin = vectorsIn(fields.text("spaceorigin"));
     if (!origin || origin->size() != 1 || !(*origin)[0]) {
-      return badGeometry("The header's space origin is not a vector", file);
+      return badGeometry(tr("The header's space origin is not a vector"), file);
     }
     affine[3] = glm::dvec4(*(*origin)[0] * space->second * *unit_mm, 1.0);
   }
@@ -241,23 +245,23 @@ Result<GridGeometry> nrrdGeometry(const NrrdFields& fields, VolumeFileHeader& he
 Status checkKind(const NrrdFields& fields, const fs::path& file) {
   const auto dimension = numberIn(fields.text("dimension"));
   if (!dimension || *dimension < 3.0) {
-    return unreadable("The image is not three-dimensional", file);
+    return unreadable(tr("The image is not three-dimensional"), file);
   }
   const bool layered = isLayered(fields);
   if (*dimension != 3.0 && !layered) {
-    return notHu("The image has " + fields.text("dimension").substr(0, 8) +
-                     " dimensions: colour, vectors and time are not read",
+    return notHu(tr("The image has {} dimensions: colour, vectors and time are not read",
+                    fields.text("dimension").substr(0, 8)),
                  file);
   }
   std::vector<std::string> kinds = wordsIn(fields.text("kinds"));
   if (layered) kinds.erase(kinds.begin());
   for (const std::string& kind : kinds) {
     if (kind != "domain" && kind != "space" && kind != "???" && kind != "none") {
-      return notHu("An axis of the image is of the kind " + shown(kind) + ", not space", file);
+      return notHu(tr("An axis of the image is of the kind {}, not space", shown(kind)), file);
     }
   }
   if (fields.has("oldmin") || fields.has("oldmax")) {
-    return notHu("The values were squeezed from another range (old min, old max)", file);
+    return notHu(tr("The values were squeezed from another range (old min, old max)"), file);
   }
   return {};
 }
@@ -281,31 +285,31 @@ Status findNrrdVoxels(const NrrdFields& fields, const fs::path& file, VolumeFile
   if (fields.has("datafile")) {
     const std::string name = fields.text("datafile");
     if (name.starts_with("LIST") || name.find('%') != std::string::npos) {
-      return unknownFormat("A NRRD header whose voxels are in several files is not read", file,
-                           "Export it as one .nrrd file");
+      return unknownFormat(tr("A NRRD header whose voxels are in several files is not read"), file,
+                           tr("Export it as one .nrrd file"));
     }
     const auto data = fileBeside(file, name);
     if (!data) return data.error();
     header.data.file = *data;
     offset = 0;
   } else if (!fields.ended) {
-    return unreadable("The file has no voxels behind its header and names no data file", file);
+    return unreadable(tr("The file has no voxels behind its header and names no data file"), file);
   }
   const auto lines = numberIn(fields.has("lineskip") ? fields.text("lineskip") : "0");
   const auto bytes = numberIn(fields.has("byteskip") ? fields.text("byteskip") : "0");
   if (!lines || !(*lines >= 0.0 && *lines <= 1e15) || !bytes ||
       !(*bytes >= -1.0 && *bytes <= 1e15)) {
-    return unreadable("The header's line skip or byte skip cannot be read", file);
+    return unreadable(tr("The header's line skip or byte skip cannot be read"), file);
   }
   if (*bytes < 0.0) {
     if (header.data.packed) {
-      return unknownFormat("A byte skip of -1 in a gzip file is not read", file,
-                           "Export it without one");
+      return unknownFormat(tr("A byte skip of -1 in a gzip file is not read"), file,
+                           tr("Export it without one"));
     }
     return placeVoxels(header, std::nullopt, file, offset);
   }
   const auto start = afterLines(header.data.file, offset, *lines);
-  if (!start) return unreadable("The file has fewer lines than its line skip", file);
+  if (!start) return unreadable(tr("The file has fewer lines than its line skip"), file);
   // Bytes are counted in what comes out of gzip, lines in the file.
   if (header.data.packed) header.data.skip = std::uint64_t(*bytes);
   return placeVoxels(header, *start + (header.data.packed ? 0 : std::uint64_t(*bytes)), file);
@@ -320,7 +324,7 @@ Result<VolumeFileHeader> readNrrdHeader(const fs::path& file) {
   if (!fields) return fields.error();
   for (const char* name : {"dimension", "type", "sizes", "encoding"}) {
     if (!fields->has(name)) {
-      return unreadable(std::string("The header has no field ") + name, file);
+      return unreadable(tr("The header has no field {}", name), file);
     }
   }
   if (auto status = checkKind(*fields, file); !status) return status.error();
@@ -332,19 +336,19 @@ Result<VolumeFileHeader> readNrrdHeader(const fs::path& file) {
   if (type == std::end(kTypes)) {
     // Any other word could be a name.
     const bool block = fields->word("type") == "block";
-    return notHu(std::string("The voxels are not one number each") + (block ? " but 'block'" : ""),
+    return notHu(tr("The voxels are not one number each{}", (block ? tr(" but 'block'") : "")),
                  file);
   }
   header.type = type->first;
   const std::string encoding = fields->word("encoding");
   header.data.packed = encoding == "gzip" || encoding == "gz";
   if (!header.data.packed && encoding != "raw") {
-    return unknownFormat("A NRRD file in the encoding " + shown(encoding) + " is not read", file,
-                         "Export it with the encoding raw or gzip");
+    return unknownFormat(tr("A NRRD file in the encoding {} is not read", shown(encoding)), file,
+                         tr("Export it with the encoding raw or gzip"));
   }
   const std::string endian = fields->word("endian");
   if (endian != "little" && endian != "big" && !(endian.empty() && bytesOf(header.type) == 1)) {
-    return unreadable("The header does not say in which order bytes are (endian)", file);
+    return unreadable(tr("The header does not say in which order bytes are (endian)"), file);
   }
   header.big_endian = endian == "big";
   const auto geometry = nrrdGeometry(*fields, header, file);

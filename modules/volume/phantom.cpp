@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "base/memory.h"
+#include "base/tr.h"
 #include "volume/case_memory.h"
 #include "volume/codes.h"
 #include "volume/phantom_painter.h"
@@ -75,8 +76,8 @@ Result<const BuiltIn*> findPhantom(const std::string& name) {
   for (const BuiltIn& phantom : kPhantoms) {
     if (name == phantom.name) return &phantom;
   }
-  return Error{code::kUnknownPhantom, "There is no built-in case named '" + name + "'", "phantom",
-               "Use cranium or abdomen"};
+  return Error{code::kUnknownPhantom, tr("There is no built-in case named '{}'", name), "phantom",
+               tr("Use cranium or abdomen")};
 }
 
 GridGeometry geometryOf(const BuiltIn& phantom) {
@@ -192,7 +193,7 @@ Result<Phantom> paintNoiseFree(const std::string& name) {
   const PhantomTruth truth = *phantomTruth(name);
   const std::size_t count = frame->geometry.voxelCount();
   const double needed_mb = voxelsMb(count) + 2.0 * labelsMb(count);
-  if (Status enough = enoughMemory(needed_mb, "Painting the built-in case", name); !enough) {
+  if (Status enough = enoughMemory(needed_mb, tr("Painting the built-in case"), name); !enough) {
     return enough.error();
   }
   const std::vector<PhantomTissue> centres = truthAtCentres(truth, frame->geometry);

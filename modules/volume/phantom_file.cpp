@@ -13,6 +13,7 @@
 #include "base/file.h"
 #include "base/memory.h"
 #include "base/system.h"
+#include "base/tr.h"
 #include "volume/case_memory.h"
 #include "volume/codes.h"
 #include "volume/two_threads.h"
@@ -27,11 +28,11 @@ constexpr char kMagic[] = "TREPCASE";
 constexpr std::size_t kMagicSize = sizeof kMagic - 1, kLengthSize = 4;
 constexpr int kBlockSlices = 8;
 constexpr std::size_t kMostBytes = std::size_t{64} << 20;
-constexpr const char* kStep = "Opening the built-in case";
+constexpr const char* kStep = trLater("Opening the built-in case");
 
 Error damaged(const std::filesystem::path& file) {
-  return {code::kDamaged, "The file of the built-in case is damaged", file.string(),
-          "Install Trephine again"};
+  return {code::kDamaged, tr("The file of the built-in case is damaged"), file.string(),
+          tr("Install Trephine again")};
 }
 
 // The slices of a block, and where its voxels are.
@@ -172,9 +173,9 @@ Result<Phantom> unpacked(const PhantomFrame& frame, const std::string& bytes,
     }
   });
   if (progress.cancelled()) {
-    return Error{code::kCancelled, "Opening the built-in case was cancelled", name, ""};
+    return Error{code::kCancelled, tr("Opening the built-in case was cancelled"), name, ""};
   }
-  if (starved) return outOfMemory("for the built-in case", name);
+  if (starved) return outOfMemory(tr("for the built-in case"), name);
   const Part& labels = parts.back();
   if (!whole || (labels.size > 0) != frame.labelled) return damaged(file);
   if (frame.labelled) {
@@ -182,7 +183,7 @@ Result<Phantom> unpacked(const PhantomFrame& frame, const std::string& bytes,
     if (!unpack(bytesAt(bytes, labels.at), labels.size, map.labels)) return damaged(file);
     phantom.labels = std::move(map);
   }
-  progress.at(0.6, kStep);
+  progress.at(0.6, tr(kStep));
   addNoise(phantom.volume, kPhantomNoiseHu);
   return phantom;
 }
@@ -210,7 +211,7 @@ Status writePhantomFile(const std::string& name, const std::filesystem::path& fi
   std::string text(kMagic, kMagicSize);
   for (const Bytes& part : parts) {
     const bool none = &part == &parts.back() && !painted->labels;
-    if (part.empty() && !none) return outOfMemory("to pack the built-in case", name);
+    if (part.empty() && !none) return outOfMemory(tr("to pack the built-in case"), name);
     for (std::size_t n = 0; n < kLengthSize; ++n) text += char(part.size() >> (8 * n) & 0xff);
     text.append(part.begin(), part.end());
   }
@@ -221,21 +222,21 @@ Result<Phantom> readPhantomFile(const std::string& name, const std::filesystem::
                                 const Progress& progress) {
   const Result<PhantomFrame> frame = phantomFrame(name);
   if (!frame) return frame.error();
-  progress.at(0.0, kStep);
+  progress.at(0.0, tr(kStep));
   const std::size_t count = frame->geometry.voxelCount();
   const double needed_mb = voxelsMb(count) + (frame->labelled ? labelsMb(count) : 0.0);
-  if (Status enough = enoughMemory(needed_mb, kStep, name); !enough) return enough.error();
+  if (Status enough = enoughMemory(needed_mb, tr(kStep), name); !enough) return enough.error();
   try {
     const Result<std::string> bytes = readWholeFile(file, kMostBytes);
     if (!bytes) {
-      return Error{code::kCannotRead, "The file of the built-in case cannot be read", file.string(),
-                   "Install Trephine again"};
+      return Error{code::kCannotRead, tr("The file of the built-in case cannot be read"),
+                   file.string(), tr("Install Trephine again")};
     }
     Result<Phantom> phantom = unpacked(*frame, *bytes, file, name, progress);
-    if (phantom) progress.at(1.0, kStep);
+    if (phantom) progress.at(1.0, tr(kStep));
     return phantom;
   } catch (const std::bad_alloc&) {
-    return outOfMemory("for the built-in case", name);
+    return outOfMemory(tr("for the built-in case"), name);
   }
 }
 

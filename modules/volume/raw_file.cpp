@@ -2,6 +2,7 @@
 // resources/schemas/raw.md.
 #include "base/codes.h"
 #include "base/json.h"
+#include "base/tr.h"
 #include "volume/codes.h"
 #include "volume/file_format.h"
 
@@ -18,14 +19,15 @@ constexpr const char* kExample =
 Error noSidecar(const fs::path& raw) {
   for (const char* ending : {".mhd", ".nhdr"}) {
     if (const auto header = sibling(raw, ending)) {
-      return Error{code::kNoSidecar, "This file holds voxels alone", raw.string(),
-                   "Open " + header->filename().string() + ", which may say what they are"};
+      return Error{code::kNoSidecar, tr("This file holds voxels alone"), raw.string(),
+                   tr("Open {}, which may say what they are", header->filename().string())};
     }
   }
   return Error{code::kNoSidecar,
-               "A .raw file holds voxels alone; a sidecar has to say what they are", raw.string(),
-               "Write " + fs::path(raw).replace_extension(".json").filename().string() +
-                   " beside it, at least " + kExample};
+               tr("A .raw file holds voxels alone; a sidecar has to say what they are"),
+               raw.string(),
+               tr("Write {} beside it, at least {}",
+                  fs::path(raw).replace_extension(".json").filename().string(), kExample)};
 }
 
 std::optional<VoxelType> typeFrom(const std::string& name) {
@@ -48,14 +50,14 @@ Status readSidecar(JsonReader& fields, const fs::path& file, VolumeFileHeader& h
   const std::string name = fields.text("type");
   const auto type = typeFrom(name);
   if (!type)
-    fields.fail("type", "The type " + shown(name) + " is not known",
-                "Write int16, uint16, int8, uint8, int32, uint32, float32 or float64");
+    fields.fail("type", tr("The type {} is not known", shown(name)),
+                tr("Write int16, uint16, int8, uint8, int32, uint32, float32 or float64"));
   header.type = type.value_or(VoxelType::int16);
   const std::string order =
       bytesOf(header.type) == 1 ? fields.text("byte_order", "little") : fields.text("byte_order");
   if (order != "little" && order != "big") {
-    fields.fail("byte_order", "The byte order " + shown(order) + " is not known",
-                "Write little or big");
+    fields.fail("byte_order", tr("The byte order {} is not known", shown(order)),
+                tr("Write little or big"));
   }
   header.big_endian = order == "big";
   const std::int64_t skipped = fields.integer("header_bytes", kHeaderBytes, 0);
@@ -64,16 +66,16 @@ Status readSidecar(JsonReader& fields, const fs::path& file, VolumeFileHeader& h
   if (fields.has("origin_mm")) {
     g.origin_mm = fields.vec3("origin_mm", kOrigin_mm);
   } else {
-    header.notes.push_back("The sidecar gives no origin_mm: the first voxel is put at 0, 0, 0");
+    header.notes.push_back(tr("The sidecar gives no origin_mm: the first voxel is put at 0, 0, 0"));
   }
   if (fields.has("direction")) {
     // Row-major, its columns the i, j and k axes in LPS, as an import report has it.
     const auto rows = fields.numbers("direction", 9, {-1.01, 1.01});
     for (int i = 0; i < 9; ++i) g.direction[i % 3][i / 3] = rows[std::size_t(i)];
   } else {
-    header.notes.push_back(
+    header.notes.push_back(tr(
         "The sidecar gives no direction: rows are taken to run to the patient's left, columns to "
-        "the back and slices to the head");
+        "the back and slices to the head"));
   }
   if (auto status = fields.finish(); !status) return status;
   const auto whole = sizeFrom({double(size[0]), double(size[1]), double(size[2])}, file);
@@ -84,10 +86,10 @@ Status readSidecar(JsonReader& fields, const fs::path& file, VolumeFileHeader& h
   std::error_code ec;
   const std::uint64_t all = fs::file_size(header.data.file, ec), skip = std::uint64_t(skipped);
   if (!ec && all > skip && all - skip != header.storedBytes()) {
-    return unreadable("The .raw file holds " + std::to_string(all - skip) +
-                          " bytes of voxels, but its sidecar's size and type need " +
-                          std::to_string(header.storedBytes()),
-                      header.data.file);
+    return unreadable(
+        tr("The .raw file holds {} bytes of voxels, but its sidecar's size and type need {}",
+           all - skip, header.storedBytes()),
+        header.data.file);
   }
   return placeVoxels(header, skip, header.data.file);
 }
@@ -109,8 +111,8 @@ Result<VolumeFileHeader> readRawHeader(const fs::path& file) {
   const bool is_sidecar = endsWith(file, ".json");
   const auto raw = is_sidecar ? sibling(file, ".raw") : file;
   if (!raw) {
-    return Error{code::kMissingFile, "There is no .raw file of this name beside the sidecar",
-                 file.string(), "Put both into one folder"};
+    return Error{code::kMissingFile, tr("There is no .raw file of this name beside the sidecar"),
+                 file.string(), tr("Put both into one folder")};
   }
   const auto sidecar = is_sidecar ? file : sibling(file, ".json");
   if (!sidecar) return noSidecar(*raw);

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "base/codes.h"
+#include "base/tr.h"
 #include "volume/codes.h"
 #include "volume/two_threads.h"
 
@@ -25,20 +26,20 @@ std::string text(const Index3& v) {
 }
 
 Error noMemory(const std::string& where) {
-  return {code::kOutOfMemory, "There is not enough memory for the smaller volume", where,
-          "Close other programs"};
+  return {code::kOutOfMemory, tr("There is not enough memory for the smaller volume"), where,
+          tr("Close other programs")};
 }
 
 Status checkBox(const GridGeometry& geometry, const VoxelBox& box) {
-  const std::string where = text(box.low) + " up to " + text(box.high);
+  const std::string where = tr("{} up to {}", text(box.low), text(box.high));
   for (int axis = 0; axis < 3; ++axis) {
     if (box.low[axis] >= box.high[axis]) {
-      return Error{code::kBadCrop, "The box to keep has nothing in it", where,
-                   "Choose a larger box"};
+      return Error{code::kBadCrop, tr("The box to keep has nothing in it"), where,
+                   tr("Choose a larger box")};
     }
     if (box.low[axis] < 0 || box.high[axis] > geometry.size[axis]) {
-      return Error{code::kBadCrop, "The box to keep reaches outside the volume", where,
-                   "The volume has " + text(geometry.size) + " voxels"};
+      return Error{code::kBadCrop, tr("The box to keep reaches outside the volume"), where,
+                   tr("The volume has {} voxels", text(geometry.size))};
     }
   }
   return {};
@@ -184,9 +185,8 @@ Result<Volume> crop(Volume&& volume, const VoxelBox& box) {
 
 Result<Volume> reduced(const Volume& volume, int factor) {
   if (factor != 2 && factor != 4) {
-    return Error{code::kBadFactor,
-                 "A volume can be reduced by 2 or 4, not by " + std::to_string(factor), "reduce",
-                 ""};
+    return Error{code::kBadFactor, tr("A volume can be reduced by 2 or 4, not by {}", factor),
+                 "reduce", ""};
   }
   const GridGeometry& from = volume.geometry;
   if (const Status status = checkSize(from.size, "reduce"); !status.ok()) return status.error();

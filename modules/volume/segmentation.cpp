@@ -5,6 +5,8 @@
 #include <map>
 #include <numeric>
 
+#include "base/tr.h"
+
 namespace trephine {
 
 namespace {

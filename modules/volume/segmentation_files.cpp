@@ -16,6 +16,7 @@
 #include "base/json.h"
 #include "base/memory.h"
 #include "base/purpose.h"
+#include "base/tr.h"
 #include "base/utf8.h"
 #include "volume/case_memory.h"
 #include "volume/codes.h"
@@ -36,14 +37,13 @@ using Segment = Segmentation::Segment;
 
 Error tooMany(std::size_t count, const fs::path& file) {
   return Error{code::kTooManyStructures,
-               "The file has " + std::to_string(count) + " structures, and a case holds " +
-                   std::to_string(kMostStructures),
-               file.string(), "Export those that the exercise needs"};
+               tr("The file has {} structures, and a case holds {}", count, kMostStructures),
+               file.string(), tr("Export those that the exercise needs")};
 }
 
 Error notLabels(const std::string& what, const fs::path& file) {
   return Error{code::kNotLabels, what, file.string(),
-               "Choose a label map: a whole number for each voxel, 0 for none"};
+               tr("Choose a label map: a whole number for each voxel, 0 for none")};
 }
 
 // The values of a layer as a case counts: what is at most 255 stays, what is above takes what is
@@ -77,14 +77,15 @@ Result<Layers> layersOf(const fs::path& file, const Progress& progress, const st
   if (!header && header.error().code == code::kNotHu) return notLabels(header.error().what, file);
   if (!header && header.error().code == code::kUnknownFormat) {
     Error error = header.error();
-    error.next = "Choose a DICOM SEG, a .seg.nrrd, or a label map as .nrrd, .mha, .nii or .nii.gz";
+    error.next =
+        tr("Choose a DICOM SEG, a .seg.nrrd, or a label map as .nrrd, .mha, .nii or .nii.gz");
     return error;
   }
   if (!header) return header.error();
   const auto layers = std::size_t(header->layers);
   const std::size_t voxels = header->geometry.voxelCount();
   if (Status enough = enoughMemory(labelsMb(voxels * layers) + voxelsMb(voxels * layers),
-                                   "The label map", file.string());
+                                   tr("The label map"), file.string());
       !enough) {
     return enough.error();
   }
@@ -96,7 +97,7 @@ Result<Layers> layersOf(const fs::path& file, const Progress& progress, const st
   all.named = segmentsNamedIn(*header);
   // Read as a volume whose rows hold the layers of each voxel one after another.
   if (double(header->geometry.size[0]) * double(layers) > 2e9) {
-    return unreadable("The image's rows and layers are too many", file);
+    return unreadable(tr("The image's rows and layers are too many"), file);
   }
   VolumeFileHeader wide = *std::move(header);
   wide.geometry.size[0] *= wide.layers;
@@ -107,18 +108,19 @@ Result<Layers> layersOf(const fs::path& file, const Progress& progress, const st
   }
   // Labels that a slope has spread over 16 bits look like anything.
   if (read->bytes_exchanged && read->header.slope == 1.0) {
-    return notLabels("The bytes of each voxel stand in another order than the header says", file);
+    return notLabels(tr("The bytes of each voxel stand in another order than the header says"),
+                     file);
   }
   if (read->rounded + read->not_numbers > 0) {
     return notLabels(
-        std::to_string(read->rounded + read->not_numbers) + " of the voxels are not whole numbers",
-        file);
+        tr("{} of the voxels are not whole numbers", read->rounded + read->not_numbers), file);
   }
   if (read->hu_min < 0.0 || read->hu_max > kLabelNumbers.high) {
     constexpr double kMost = 1e15;  // that the number below holds
     const double value =
         std::clamp(read->hu_min < 0.0 ? read->hu_min : read->hu_max, -kMost, kMost);
-    return notLabels("The value " + std::to_string(std::int64_t(value)) + " is no label: 1 to " + std::to_string(int(kLabelNumbers.high)) + " are read",
+    return notLabels(tr("The value {} is no label: 1 to {} are read", std::int64_t(value),
+                        int(kLabelNumbers.high)),
                      file);
   }
   const Voxels& values = read->volume.hu;
@@ -155,8 +157,8 @@ Result<Layers> layersOf(const fs::path& file, const Progress& progress, const st
       if (named.segment.layer == l) named.segment.value = table[std::size_t(named.label)];
     }
     if (!used.empty() && *used.rbegin() > 255) {
-      of.notes.push_back("Labels above 255 were given numbers that are free; the largest was " +
-                         std::to_string(*used.rbegin()));
+      of.notes.push_back(tr("Labels above 255 were given numbers that are free; the largest was {}",
+                            *used.rbegin()));
     }
   }
   return all;
@@ -170,7 +172,7 @@ void settleSegments(const std::vector<NamedLabel>& beside, const Layers& all, Se
     if (named.segment.layer < of.layers.size() && named.segment.value != 0) {
       of.segments.push_back(named.segment);
     } else {
-      of.notes.push_back("'" + named.segment.name + "' stands in the list and not in the voxels");
+      of.notes.push_back(tr("'{}' stands in the list and not in the voxels", named.segment.name));
     }
   }
   of.named = own || !beside.empty();
@@ -260,8 +262,8 @@ Status writeNrrd(const LabelMap& map, const fs::path& target, bool reversed,
     const int slices = map.geometry.size[2];
     const std::size_t slice = all.size() / std::size_t(slices);
     for (int k = 0; good && k < slices; ++k) {
-      progress.at(double(k) / slices, "Saving the structures");
-      if (progress.cancelled()) return Error{code::kCancelled, "Saving was cancelled", "", ""};
+      progress.at(double(k) / slices, tr("Saving the structures"));
+      if (progress.cancelled()) return Error{code::kCancelled, tr("Saving was cancelled"), "", ""};
       good = gzip.write(all.subspan(std::size_t(reversed ? slices - 1 - k : k) * slice, slice));
     }
     good = good && gzip.finish();
@@ -322,7 +324,7 @@ Status addMask(const Mask& mask, Segmentation& of, std::vector<int>& values) {
   }
   if (layer == of.layers.size()) {
     const std::size_t voxels = mask.inside.size();
-    if (Status enough = enoughMemory(labelsMb(voxels), "The masks", mask.name); !enough) {
+    if (Status enough = enoughMemory(labelsMb(voxels), tr("The masks"), mask.name); !enough) {
       return enough;
     }
     of.layers.emplace_back(voxels);
@@ -346,11 +348,11 @@ Result<Segmentation> readMasks(const fs::path& folder, const Progress& progress,
     if (voxels && it->is_regular_file(ec)) files.push_back(it->path());
   }
   if (files.empty()) {
-    return notLabels("The folder holds no masks: no volume file of a structure each", folder);
+    return notLabels(tr("The folder holds no masks: no volume file of a structure each"), folder);
   }
   if (files.size() > std::size_t(kMostStructures)) return tooMany(files.size(), folder);
   std::ranges::sort(files);
-  constexpr const char* kTakeOut = "Take it out of the folder, which is to hold masks alone";
+  const std::string take_out = tr("Take it out of the folder, which is to hold masks alone");
   Segmentation all;
   std::vector<int> values;
   for (std::size_t n = 0; n < files.size(); ++n) {
@@ -359,22 +361,22 @@ Result<Segmentation> readMasks(const fs::path& folder, const Progress& progress,
     Result<Segmentation> one = readFile(files[n], part, form);
     if (!one) {
       Error error = one.error();
-      if (error.code != code::kCancelled) error.next = kTakeOut;
+      if (error.code != code::kCancelled) error.next = take_out;
       return error;
     }
     const std::string name = structureName(withoutEndings(files[n]).filename().string());
     if (one->layers.size() > 1 || one->segments.size() > 1) {
       return Error{
           code::kNotLabels,
-          "Of a folder of masks each file holds one structure, and '" + name + "' holds several",
-          files[n].string(), kTakeOut};
+          tr("Of a folder of masks each file holds one structure, and '{}' holds several", name),
+          files[n].string(), take_out};
     }
     if (n == 0) all.geometry = one->geometry;
     constexpr double kSame = 0.01;  // of a voxel
     const Vec3& mm = all.geometry.spacing_mm;
     if (cornersApart_mm(one->geometry, all.geometry) > kSame * std::min({mm.x, mm.y, mm.z})) {
-      return Error{code::kOtherGrid, "The masks of the folder do not lie on one grid",
-                   files[n].string(), "Export them from one CT, or open them one by one"};
+      return Error{code::kOtherGrid, tr("The masks of the folder do not lie on one grid"),
+                   files[n].string(), tr("Export them from one CT, or open them one by one")};
     }
     for (std::uint8_t& voxel : one->layers.front()) voxel = voxel != 0;
     const Status added = addMask({name, std::move(one->layers.front())}, all, values);
@@ -393,7 +395,7 @@ Result<Segmentation> readSegmentation(const fs::path& file, const Progress& prog
     const bool folder = fs::is_directory(file, ec);
     return folder ? readMasks(file, progress, form) : readFile(file, progress, form);
   } catch (const std::bad_alloc&) {
-    return outOfMemory("for the label map", file.string());
+    return outOfMemory(tr("for the label map"), file.string());
   }
 }
 

@@ -9,6 +9,7 @@
 #include <sstream>
 
 #include "base/json.h"
+#include "base/tr.h"
 #include "base/utf8.h"
 #include "volume/codes.h"
 #include "volume/file_format.h"
@@ -37,12 +38,12 @@ Result<std::vector<NamedLabel>> readSegmentNames(const fs::path& file) {
     named.segment.colour = item.vec3("colour", kShares, labelColour(named.label));
     named.segment.tissue = item.text("tissue", "");
     if (named.segment.name.empty()) {
-      item.fail("name", "The name is blank", "Give each structure a name");
+      item.fail("name", tr("The name is blank"), tr("Give each structure a name"));
     }
     for (const NamedLabel& other : labels) {
       if (other.label == named.label || sameName(other.segment.name, named.segment.name)) {
-        item.fail("label", "The label or the name stands twice in the list",
-                  "Give each structure a label and a name of its own");
+        item.fail("label", tr("The label or the name stands twice in the list"),
+                  tr("Give each structure a label and a name of its own"));
       }
     }
     labels.push_back(std::move(named));
@@ -101,8 +102,8 @@ Result<std::vector<NamedLabel>> namesBeside(const fs::path& file) {
     if (labels) return *labels;
     if (std::string(ending) == ".label" || (text && text->find("ITK-SnAP") != text->npos)) {
       return Error{code::kBadNames,
-                   "The text beside the label map is no list of labels of ITK-SNAP",
-                   text_file.string(), "Export it again, or take it away"};
+                   tr("The text beside the label map is no list of labels of ITK-SNAP"),
+                   text_file.string(), tr("Export it again, or take it away")};
     }
   }
   return std::vector<NamedLabel>();

@@ -4,6 +4,7 @@
 
 #include "base/codes.h"
 #include "base/sha256.h"
+#include "base/tr.h"
 #include "volume/codes.h"
 #include "volume/two_threads.h"
 
@@ -62,10 +63,10 @@ Status checkSize(const Index3& size, const std::string& where, std::uint64_t max
   std::uint64_t count = 1;
   for (std::int32_t n : size) {
     if (n <= 0)
-      return Error{code::kBadSize, "A size of " + text + " voxels is not possible", where, ""};
+      return Error{code::kBadSize, tr("A size of {} voxels is not possible", text), where, ""};
     if (std::uint64_t(n) > max_voxels / count) {
-      return Error{code::kTooLarge, "A volume of " + text + " voxels is larger than can be loaded",
-                   where, "Crop it or export it at a lower resolution"};
+      return Error{code::kTooLarge, tr("A volume of {} voxels is larger than can be loaded", text),
+                   where, tr("Crop it or export it at a lower resolution")};
     }
     count *= std::uint64_t(n);
   }

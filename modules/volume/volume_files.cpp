@@ -7,6 +7,7 @@
 #include "base/codes.h"
 #include "base/file.h"
 #include "base/memory.h"
+#include "base/tr.h"
 #include "volume/codes.h"
 #include "volume/file_format.h"
 #include "volume/voxel_reader.h"
@@ -33,8 +34,8 @@ ReadHeader readerOf(const fs::path& file) {
 }
 
 Error tooLarge(const fs::path& file) {
-  return Error{code::kTooLarge, "There is not enough memory for this volume", file.string(),
-               "Crop it or export it at a lower resolution"};
+  return Error{code::kTooLarge, tr("There is not enough memory for this volume"), file.string(),
+               tr("Crop it or export it at a lower resolution")};
 }
 
 // What `work` returns, or an Error for what it throws.
@@ -45,7 +46,7 @@ auto caught(const fs::path& file, Work work) -> decltype(work()) {
   } catch (const std::bad_alloc&) {
     return tooLarge(file);
   } catch (const std::exception&) {
-    return unreadable("The file cannot be read", file);
+    return unreadable(tr("The file cannot be read"), file);
   }
 }
 
@@ -67,16 +68,17 @@ Result<VolumeFileHeader> readVolumeFileHeader(const fs::path& file) {
   std::error_code ec;
   const fs::file_status status = fs::status(file, ec);
   if (!fs::exists(status)) {
-    return Error{code::kMissingFile, "There is no such file", file.string(), "Check the path"};
+    return Error{code::kMissingFile, tr("There is no such file"), file.string(),
+                 tr("Check the path")};
   }
   if (!fs::is_regular_file(status)) {
-    return unreadable("This is a folder or a device, not a volume file", file);
+    return unreadable(tr("This is a folder or a device, not a volume file"), file);
   }
   const ReadHeader reader = readerOf(file);
   if (!reader) {
     return unknownFormat(
-        "Volumes are read from .mha, .mhd, .nii, .nii.gz, .nrrd, .nhdr and .raw files", file,
-        "Choose such a file, or import a DICOM folder");
+        tr("Volumes are read from .mha, .mhd, .nii, .nii.gz, .nrrd, .nhdr and .raw files"), file,
+        tr("Choose such a file, or import a DICOM folder"));
   }
   return caught(file, [&] { return reader(file); });
 }
@@ -91,9 +93,9 @@ Result<VolumeFileHeader> inForm(VolumeFileHeader header, const std::string& form
     return header;
   }
   return Error{code::kFormsDiffer, header.contradiction, file.string(),
-               "Import it with the answer FORMS_DIFFER=" + header.forms.front().name +
-                   (header.forms.size() > 1 ? " or " + header.forms.back().name : "") +
-                   ", or export it again"};
+               tr("Import it with the answer FORMS_DIFFER={}{}, or export it again",
+                  header.forms.front().name,
+                  (header.forms.size() > 1 ? tr(" or {}", header.forms.back().name) : ""))};
 }
 
 Result<VolumeFileReading> readVolumeFile(const fs::path& file, const Progress& progress,
@@ -102,7 +104,7 @@ Result<VolumeFileReading> readVolumeFile(const fs::path& file, const Progress& p
   if (header) header = inForm(*std::move(header), form, file);
   if (!header) return header.error();
   if (header->layers > 1) {
-    return notHu("The image has several values a voxel: it is a segmentation in layers", file);
+    return notHu(tr("The image has several values a voxel: it is a segmentation in layers"), file);
   }
   return caught(file, [&] { return readVoxels(*std::move(header), file, progress); });
 }
@@ -118,8 +120,8 @@ Status checkVolumeFileName(const fs::path& file) {
   // Lower case only, whatever reads them later.
   const std::string name = file.filename().string();
   if (name.ends_with(".mha") || name.ends_with(".nii") || name.ends_with(".nii.gz")) return {};
-  return unknownFormat("Volumes are written as .mha, .nii or .nii.gz", file,
-                       "Give the file one of these endings");
+  return unknownFormat(tr("Volumes are written as .mha, .nii or .nii.gz"), file,
+                       tr("Give the file one of these endings"));
 }
 
 Status writeVolume(const VoxelSlabs& voxels, const fs::path& file, const Progress& progress,
@@ -132,7 +134,7 @@ Status writeVolume(const VoxelSlabs& voxels, const fs::path& file, const Progres
   }
   VoxelSlabs told = voxels;
   told.read = [&](std::size_t first, std::span<std::int16_t> into) {
-    progress.at(double(first) / double(voxels.geometry.voxelCount()), "Saving the volume");
+    progress.at(double(first) / double(voxels.geometry.voxelCount()), tr("Saving the volume"));
     voxels.read(first, into);
   };
   Status saved = replaceFile(file, [&](const fs::path& temporary) -> Status {
@@ -140,15 +142,15 @@ Status writeVolume(const VoxelSlabs& voxels, const fs::path& file, const Progres
       const Status written = endsWith(file, ".mha")
                                  ? writeMetaImage(told, writing.type, temporary, file, progress)
                                  : writeNifti(told, writing.type, temporary, file, progress);
-      if (progress.cancelled()) return Error{code::kCancelled, "Saving was cancelled", "", ""};
+      if (progress.cancelled()) return Error{code::kCancelled, tr("Saving was cancelled"), "", ""};
       return written;
     } catch (const std::bad_alloc&) {
-      return outOfMemory("to save the volume", file.string());
+      return outOfMemory(tr("to save the volume"), file.string());
     } catch (const std::exception&) {
       return cannotWrite(file);
     }
   });
-  if (saved) progress.at(1.0, "Saving the volume");
+  if (saved) progress.at(1.0, tr("Saving the volume"));
   return saved;
 }
 

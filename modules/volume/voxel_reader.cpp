@@ -10,6 +10,7 @@
 
 #include "base/codes.h"
 #include "base/memory.h"
+#include "base/tr.h"
 #include "volume/case_memory.h"
 #include "volume/file_format.h"
 
@@ -18,7 +19,7 @@ namespace trephine::file_format {
 namespace {
 
 Error cancelled(const std::filesystem::path& file) {
-  return {code::kCancelled, "Reading the volume was cancelled", file.string(), ""};
+  return {code::kCancelled, tr("Reading the volume was cancelled"), file.string(), ""};
 }
 
 constexpr double kWhole = 1e-4;  // from a whole number
@@ -201,7 +202,8 @@ Result<VolumeFileReading> readVoxels(VolumeFileHeader header, const std::filesys
                                      const Progress& progress) {
   const std::size_t count = header.geometry.voxelCount();
   const auto& [name, voxel_bytes, convertVoxels] = rowOf(header.type);
-  if (Status enough = enoughToRead(voxelsMb(count), "Reading the volume", file.string()); !enough) {
+  if (Status enough = enoughToRead(voxelsMb(count), tr("Reading the volume"), file.string());
+      !enough) {
     return enough.error();
   }
   VolumeFileReading reading{std::move(header), {}};
@@ -216,7 +218,7 @@ Result<VolumeFileReading> readVoxels(VolumeFileHeader header, const std::filesys
   bool whole = source.skip(h.data.skip, progress);
   for (std::vector<std::uint8_t> bytes; whole && hu.size() < count;) {
     if (progress.cancelled()) return cancelled(file);
-    progress.at(double(hu.size()) / double(count), "Reading voxels");
+    progress.at(double(hu.size()) / double(count), tr("Reading voxels"));
     const std::size_t done = hu.size(), now = std::min(kVoxelsAtOnce, count - done);
     bytes.resize(now * std::size_t(voxel_bytes));
     whole = source.read(bytes.data(), bytes.size());
@@ -228,17 +230,18 @@ Result<VolumeFileReading> readVoxels(VolumeFileHeader header, const std::filesys
   if (progress.cancelled()) return cancelled(file);
   const VoxelBytes::End end = whole ? source.end() : VoxelBytes::End::damaged;
   if (end == VoxelBytes::End::damaged) {
-    return unreadable("The file's voxels are damaged or cut short", file);
+    return unreadable(tr("The file's voxels are damaged or cut short"), file);
   }
   if (end == VoxelBytes::End::longer) return longerThanSaid(h, "", file);
   reading.bytes_exchanged = order.isWrong();
-  if (reading.not_numbers == count) return notHu("No voxel of the image is a number", file);
+  if (reading.not_numbers == count) return notHu(tr("No voxel of the image is a number"), file);
   if (reading.clamped > count / 2) {
-    return notHu("The image holds values that are not HU: most of them need over 16 bits", file);
+    return notHu(tr("The image holds values that are not HU: most of them need over 16 bits"),
+                 file);
   }
   reading.volume.geometry = h.geometry;
   if (h.reversed_slices) reverseSlices(reading.volume);
-  progress.at(1.0, "Reading voxels");
+  progress.at(1.0, tr("Reading voxels"));
   return reading;
 }
 

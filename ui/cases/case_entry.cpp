@@ -18,7 +18,7 @@ namespace {
 constexpr int kStructuresNamed = 6;
 
 QString tr(const char* text) {
-  return QCoreApplication::translate("CaseEntry", text);
+  return QCoreApplication::translate("trephine", text);
 }
 
 QString regionWords(BodyRegion region) {

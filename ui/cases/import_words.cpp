@@ -16,7 +16,7 @@ constexpr std::size_t kSlicesNamed = 6;
 constexpr double kMb_per_GB = 1024.0;
 
 QString tr(const char* text) {
-  return QCoreApplication::translate("ImportWords", text);
+  return QCoreApplication::translate("trephine", text);
 }
 
 bool refusesUnanswered(const Choice& choice) {
@@ -42,17 +42,16 @@ struct SeverityWords {
   const QColor& colour;
 };
 const SeverityWords kRefusedRepairs{
-    Severity::repair, QT_TRANSLATE_NOOP("ImportWords", "What would be put right"),
-    QT_TRANSLATE_NOOP("ImportWords", "Nothing was changed so far."), colours::kCaution};
+    Severity::repair, QT_TRANSLATE_NOOP("trephine", "What would be put right"),
+    QT_TRANSLATE_NOOP("trephine", "Nothing was changed so far."), colours::kCaution};
 const SeverityWords kSeverities[] = {
-    {Severity::refusal, QT_TRANSLATE_NOOP("ImportWords", "Why it cannot be used as it is"),
-     QT_TRANSLATE_NOOP("ImportWords", "A volume made of it as it is could be wrong."),
-     colours::kBad},
-    {Severity::repair, QT_TRANSLATE_NOOP("ImportWords", "What is put right"),
-     QT_TRANSLATE_NOOP("ImportWords", "Here the volume differs from the files, in this way only."),
+    {Severity::refusal, QT_TRANSLATE_NOOP("trephine", "Why it cannot be used as it is"),
+     QT_TRANSLATE_NOOP("trephine", "A volume made of it as it is could be wrong."), colours::kBad},
+    {Severity::repair, QT_TRANSLATE_NOOP("trephine", "What is put right"),
+     QT_TRANSLATE_NOOP("trephine", "Here the volume differs from the files, in this way only."),
      colours::kCaution},
-    {Severity::notice, QT_TRANSLATE_NOOP("ImportWords", "Good to know"),
-     QT_TRANSLATE_NOOP("ImportWords", "This takes nothing from the volume."), colours::kQuiet},
+    {Severity::notice, QT_TRANSLATE_NOOP("trephine", "Good to know"),
+     QT_TRANSLATE_NOOP("trephine", "This takes nothing from the volume."), colours::kQuiet},
 };
 
 QString findingHtml(const Finding& finding) {

@@ -16,15 +16,12 @@
 #include "base/utf8.h"
 #include "ui/common/number_field.h"
 #include "ui/common/setting_words.h"
+#include "ui/common/translations.h"
 #include "ui/common/words.h"
 
 namespace trephine {
 
 namespace {
-
-QString translated(const char* words) {
-  return QCoreApplication::translate("Setting", words);
-}
 
 QString capital(QString words) {
   if (!words.isEmpty()) words[0] = words[0].toUpper();
@@ -266,7 +263,7 @@ struct FieldEditor::Choice : Part {
     box = settingChoice(qPrintable(name), nameOf(of.field_.row), &of);
     for (const std::string_view choice : of.field_.names) {
       const QString named = toQt(std::string(choice));
-      box->addItem(capital(translated(qPrintable(named))), named);
+      box->addItem(capital(fromRoom(qPrintable(named))), named);
     }
     QObject::connect(box, &QComboBox::activated, &of,
                      [this](int) { this->of.want(box->currentData().toString().toStdString()); });
@@ -311,7 +308,7 @@ struct FieldEditor::Choices : Part {
   Choices(FieldEditor& of, const QString& name, QVBoxLayout& column) : Part(of, name) {
     for (const std::string_view choice : of.field_.names) {
       One one{std::string(choice), new QCheckBox(&of), new QLabel(&of), settingHint({}, &of)};
-      one.box->setText(capital(translated(one.name.c_str())));
+      one.box->setText(capital(fromRoom(one.name.c_str())));
       one.box->setObjectName(name + ':' + toQt(one.name));
       one.note->setObjectName(one.box->objectName() + ":note");
       one.note->setProperty("quiet", true);
@@ -396,7 +393,7 @@ FieldEditor::FieldEditor(const FieldShape& field, const QString& name, QWidget* 
       break;
   }
   const bool number = field.kind <= FieldKind::direction;
-  const QString help = *field.row.help ? translated(field.row.help)
+  const QString help = *field.row.help ? fromRoom(field.row.help)
                        : number        ? shortMeaningOf(field.row)
                                        : QString();
   if (!help.isEmpty()) column->addWidget(settingHint(help, this));
@@ -441,7 +438,7 @@ QString FieldEditor::label() const {
 }
 
 QString FieldEditor::nameOf(const FieldRow& row) {
-  return translated(*row.label ? row.label : qPrintable(capital(toQt(wordsOf(row)))));
+  return fromRoom(*row.label ? row.label : qPrintable(capital(toQt(wordsOf(row)))));
 }
 
 }  // namespace trephine

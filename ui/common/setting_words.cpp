@@ -1,25 +1,21 @@
 #include "ui/common/setting_words.h"
 
 #include <QCoreApplication>
+#include <QRegularExpression>
 #include <QVBoxLayout>
 #include <algorithm>
 #include <string_view>
 
 #include "ui/common/colours.h"
+#include "ui/common/translations.h"
 #include "ui/common/words.h"
 
 namespace trephine {
 
-QString shortMeaningOf(const FieldRow& row) {
-  std::string words = row.meaning;
-  words = words.substr(0, words.find_first_of(";:("));
-  while (!words.empty() && words.back() == ' ') words.pop_back();
-  return meaningOf({row.key, row.range, row.given, words.c_str()});
-}
+namespace {
 
-QString meaningOf(const FieldRow& row) {
-  if (!*row.meaning) return {};
-  QString meaning = QCoreApplication::translate("Setting", row.meaning);
+// A meaning as sentences, with the row's range.
+QString withRange(QString meaning, const FieldRow& row) {
   meaning.remove('`');
   meaning[0] = meaning[0].toUpper();
   constexpr double kNoLimit = 1e6;  // nobody comes there
@@ -33,6 +29,19 @@ QString meaningOf(const FieldRow& row) {
       .arg(row.range.low, 0, 'g', 6)
       .arg(row.range.high, 0, 'g', 6)
       .arg(*row.range.unit ? ' ' + QString(row.range.unit) : QString());
+}
+
+}  // namespace
+
+QString shortMeaningOf(const FieldRow& row) {
+  static const QRegularExpression kRest(" *[;:(].*$",
+                                        QRegularExpression::DotMatchesEverythingOption);
+  const QString meaning = fromRoom(row.meaning).remove(kRest);
+  return meaning.isEmpty() ? QString() : withRange(meaning, row);
+}
+
+QString meaningOf(const FieldRow& row) {
+  return *row.meaning ? withRange(fromRoom(row.meaning), row) : QString();
 }
 
 double stepOfUnit(const char* unit) {

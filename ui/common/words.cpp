@@ -11,7 +11,7 @@ namespace trephine {
 
 namespace {
 QString tr(const char* text) {
-  return QCoreApplication::translate("Words", text);
+  return QCoreApplication::translate("trephine", text);
 }
 
 struct PartWords {
@@ -20,39 +20,39 @@ struct PartWords {
 };
 
 constexpr PartWords kPartWords[] = {
-    {kPartArmBound, QT_TRANSLATE_NOOP("Words", "softer, for this arm"),
+    {kPartArmBound, QT_TRANSLATE_NOOP("trephine", "softer, for this arm"),
      QT_TRANSLATE_NOOP(
-         "Words",
+         "trephine",
          "the tissue is firmer than this arm can show without shaking, so it is shown "
          "as firm as the arm can.")},
-    {kPartLearned, QT_TRANSLATE_NOOP("Words", "softer, since it shook"),
-     QT_TRANSLATE_NOOP("Words",
+    {kPartLearned, QT_TRANSLATE_NOOP("trephine", "softer, since it shook"),
+     QT_TRANSLATE_NOOP("trephine",
                        "the arm shook in this hand, so less is shown until it has been calm.")},
-    {kPartDamping, QT_TRANSLATE_NOOP("Words", "damped"),
-     QT_TRANSLATE_NOOP("Words",
+    {kPartDamping, QT_TRANSLATE_NOOP("trephine", "damped"),
+     QT_TRANSLATE_NOOP("trephine",
                        "a little damping goes with each spring, so that it does not ring.")},
-    {kPartCredit, QT_TRANSLATE_NOOP("Words", "held back, not to push by itself"),
-     QT_TRANSLATE_NOOP("Words",
+    {kPartCredit, QT_TRANSLATE_NOOP("trephine", "held back, not to push by itself"),
+     QT_TRANSLATE_NOOP("trephine",
                        "the force would give the hand more energy than the hand put in, so it is "
                        "made smaller.")},
-    {kPartHold, QT_TRANSLATE_NOOP("Words", "steady while it rests"),
-     QT_TRANSLATE_NOOP("Words",
+    {kPartHold, QT_TRANSLATE_NOOP("trephine", "steady while it rests"),
+     QT_TRANSLATE_NOOP("trephine",
                        "the tool rests, so the force stays as it is and does not buzz between two "
                        "steps of the encoder.")},
-    {kPartClamp, QT_TRANSLATE_NOOP("Words", "at the arm's limit"),
-     QT_TRANSLATE_NOOP("Words", "the tissue demands more force than the arm has.")},
-    {kPartLimiter, QT_TRANSLATE_NOOP("Words", "rising slowly"),
+    {kPartClamp, QT_TRANSLATE_NOOP("trephine", "at the arm's limit"),
+     QT_TRANSLATE_NOOP("trephine", "the tissue demands more force than the arm has.")},
+    {kPartLimiter, QT_TRANSLATE_NOOP("trephine", "rising slowly"),
      QT_TRANSLATE_NOOP(
-         "Words",
+         "trephine",
          "after a pause, a change or a late step the force comes back slowly, so that "
          "it does not kick.")},
-    {kPartEstimate, QT_TRANSLATE_NOOP("Words", "smooth between encoder steps"),
-     QT_TRANSLATE_NOOP("Words",
+    {kPartEstimate, QT_TRANSLATE_NOOP("trephine", "smooth between encoder steps"),
+     QT_TRANSLATE_NOOP("trephine",
                        "the encoder tells the place in steps; the force is that of the estimated "
                        "place and speed between them.")},
-    {kPartPrediction, QT_TRANSLATE_NOOP("Words", "timed for the arm's delay"),
+    {kPartPrediction, QT_TRANSLATE_NOOP("trephine", "timed for the arm's delay"),
      QT_TRANSLATE_NOOP(
-         "Words",
+         "trephine",
          "a force acts a moment after it is computed, so it is that of the place where "
          "the arm will be then.")},
 };

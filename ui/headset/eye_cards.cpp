@@ -13,8 +13,8 @@ namespace trephine {
 
 namespace {
 
-QString say(const char* text) {
-  return QCoreApplication::translate("EyeCards", text);
+QString tr(const char* text) {
+  return QCoreApplication::translate("trephine", text);
 }
 
 constexpr double kMargin_deg = 0.6, kRadius_deg = 0.5;
@@ -87,11 +87,11 @@ EyeCard forceCard(const std::vector<HandForce>& hands) {
   for (const HandForce& hand : hands) {
     const double top = sheet.inside().top();
     const double share = std::clamp(hand.sent_N / std::max(hand.limit_N, 1e-6), 0.0, 1.0);
-    sheet.write(hand.why.isEmpty() ? say("%1: %2 of %3 N")
+    sheet.write(hand.why.isEmpty() ? tr("%1: %2 of %3 N")
                                          .arg(hand.name)
                                          .arg(hand.sent_N, 0, 'f', 1)
                                          .arg(hand.limit_N, 0, 'f', 1)
-                                   : say("%1: NO FORCE").arg(hand.name),
+                                   : tr("%1: NO FORCE").arg(hand.name),
                 lettersOf(kLetters_deg, true), hand.colour);
     const QRectF bar(sheet.inside().left(), sheet.inside().top(), sheet.inside().width(),
                      pixels(0.8));

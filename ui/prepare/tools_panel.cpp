@@ -12,6 +12,7 @@
 #include "exercise/exercise_edits.h"
 #include "render/scene_renderer.h"
 #include "ui/common/setting_words.h"
+#include "ui/common/translations.h"
 #include "ui/common/words.h"
 
 namespace trephine {
@@ -362,7 +363,8 @@ void ToolsPanel::describeCosts() {
   (*laws_)["laws"].describe([this](const std::string& name) {
     const LawKind law = *kindOf(kLawNames, name);
     const LawWords& words = wordsOf(law);
-    return FieldEditor::ChoiceText{tr(words.name), tr(words.meaning), costOf(costs_.laws, law)};
+    return FieldEditor::ChoiceText{fromRoom(words.name), fromRoom(words.meaning),
+                                   costOf(costs_.laws, law)};
   });
   (*laws_)["controller"].describe([this](const std::string& name) {
     const ControllerKind kind = *kindOf(kControllerNames, name);

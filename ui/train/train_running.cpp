@@ -22,8 +22,8 @@ constexpr std::uint32_t kPedalBack_s = 5;
 constexpr double kBehind_s = 1.0;  // a kill loses less than this of a recording that keeps up
 
 QString handName(const ExerciseArm& arm) {
-  if (arm.name == "left") return TrainWorkspace::tr("Left hand");
-  if (arm.name == "right") return TrainWorkspace::tr("Right hand");
+  if (arm.name == "left") return QCoreApplication::translate("trephine", "Left hand");
+  if (arm.name == "right") return QCoreApplication::translate("trephine", "Right hand");
   return toQt(arm.name);
 }
 

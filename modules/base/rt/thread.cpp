@@ -14,6 +14,8 @@
 #include <cstring>
 #include <fstream>
 
+#include "base/tr.h"
+
 namespace trephine::rt {
 
 bool requestRealTime(int priority) {
@@ -88,7 +90,7 @@ std::string LockedMemory::reason() const {
   const bool limited = (error_ == ENOMEM || error_ == EPERM || error_ == EAGAIN) &&
                        ::getrlimit(RLIMIT_MEMLOCK, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY;
   if (!limited) return std::strerror(error_);
-  return "this account may hold " + std::to_string(limit.rlim_cur / 1024) + " KiB";
+  return tr("this account may hold {} KiB", limit.rlim_cur / 1024);
 }
 
 void nameThread(const char* name) {

@@ -3,6 +3,7 @@
 #include <array>
 #include <vector>
 
+#include "base/tr.h"
 #include "haptics/contact_force.h"
 #include "haptics/law_input.h"
 
@@ -17,7 +18,7 @@ namespace trephine {
 struct CoulombLaw {
   static constexpr LawWords kWords{
       "coulomb", "Coulomb",
-      "Dry friction: a tool that rests is held, one that slides is braked."};
+      trLater("Dry friction: a tool that rests is held, one that slides is braked.")};
   static constexpr std::array kNumbers{&TickNumbers::stiffness_N_per_m, &TickNumbers::friction_N};
 
   explicit CoulombLaw(std::size_t points = 1) : anchors_m(points), stiffness(points, 0.0) {}

@@ -2,6 +2,7 @@
 
 #include <array>
 
+#include "base/tr.h"
 #include "haptics/contact_force.h"
 #include "haptics/contact_sphere.h"
 #include "haptics/law_input.h"
@@ -22,7 +23,7 @@ namespace trephine {
 struct ElasticLaw {
   static constexpr LawWords kWords{
       "elastic", "Elastic",
-      "Tissue pushes back with its stiffness, and solid tissue stops a tool."};
+      trLater("Tissue pushes back with its stiffness, and solid tissue stops a tool.")};
   static constexpr std::array kNumbers{&TickNumbers::stiffness_N_per_m};
 
   static constexpr bool kStopsAtSolid = true;

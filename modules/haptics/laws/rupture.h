@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 
+#include "base/tr.h"
 #include "haptics/contact_force.h"
 #include "haptics/law_input.h"
 
@@ -17,7 +18,8 @@ struct ElasticLaw;
 // tip that draws back before that leaves it whole. One capsule at a time.
 struct RuptureLaw {
   static constexpr LawWords kWords{
-      "rupture", "Rupture", "A capsule gives way at its rupture force, and the force drops."};
+      "rupture", "Rupture",
+      trLater("A capsule gives way at its rupture force, and the force drops.")};
   static constexpr std::array kNumbers{&TickNumbers::stiffness_N_per_m, &TickNumbers::rupture_N};
 
   explicit RuptureLaw(std::size_t /*points*/ = 1) {}

@@ -2,6 +2,7 @@
 
 #include <array>
 
+#include "base/tr.h"
 #include "haptics/contact_force.h"
 #include "haptics/law_input.h"
 
@@ -12,7 +13,7 @@ namespace trephine {
 struct ViscousLaw {
   static constexpr LawWords kWords{
       "viscous", "Viscous",
-      "Tissue resists speed: f = -b v, the seed paper's puncture and cutting."};
+      trLater("Tissue resists speed: f = -b v, the seed paper's puncture and cutting.")};
   static constexpr std::array kNumbers{&TickNumbers::damping_Ns_per_m};
 
   explicit ViscousLaw(std::size_t /*points*/ = 1) {}

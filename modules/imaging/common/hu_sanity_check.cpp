@@ -4,6 +4,7 @@
 #include <cstdlib>
 #include <limits>
 
+#include "base/tr.h"
 #include "imaging/common/detail/stored_values.h"
 #include "volume/volume.h"
 
@@ -26,12 +27,12 @@ struct Mode {
   const char* words;
 };
 constexpr const char* kStored =
-    "stored values without their intercept, or a background that was set to 0";
+    trLater("stored values without their intercept, or a background that was set to 0");
 constexpr Mode kModes[] = {
     {0, 0.001, kStored},
-    {1000, 0.1, "values that are inverted or shifted by 1000"},
-    {1024, 0.1, "values that are inverted or shifted by 1024"},
-    {kHighest, 0.1, "values that did not fit their range"},
+    {1000, 0.1, trLater("values that are inverted or shifted by 1000")},
+    {1024, 0.1, trLater("values that are inverted or shifted by 1024")},
+    {kHighest, 0.1, trLater("values that did not fit their range")},
 };
 // Where air lies without the usual intercept of -1024. Brain lies there, too, but is not cut at 0.
 constexpr int kStoredAir[] = {24, 32, 40};
@@ -70,11 +71,11 @@ bool HuSanityCheck::hasAir() const {
 std::vector<std::string> HuSanityCheck::doubts(int lowest, int highest) const {
   if (!found_elsewhere_.empty()) return found_elsewhere_;
   if (lowest == highest && highest <= kAirHu) {
-    return {"all of it is padding, or one and the same air"};
+    return {tr("all of it is padding, or one and the same air")};
   }
   std::vector<std::string> doubts;
   if (lowest == kNotAScale || counts_[std::size_t(kNotAScale - kLowest)] > 0) {
-    doubts.push_back("values down to " + std::to_string(kNotAScale) + " are below any scale");
+    doubts.push_back(tr("values down to {} are below any scale", kNotAScale));
   }
   const auto scanned = double(count(kLowestAir_HU, kHighest));
   if (scanned == 0.0) return doubts;
@@ -106,8 +107,8 @@ std::vector<std::string> HuSanityCheck::doubts(int lowest, int highest) const {
     return inside >= outside;
   };
   const auto said = [&](int hu, const char* words) {
-    doubts.push_back(percent(around(hu)) + " of the voxels lie near " + std::to_string(hu) +
-                     " HU and hardly any where air does, as of " + words);
+    doubts.push_back(tr("{} of the voxels lie near {} HU and hardly any where air does, as of {}",
+                        percent(around(hu)), hu, tr(words)));
   };
   for (const Mode& mode : kModes) {
     if (air > mode.most_air || 3.0 * around(mode.hu) <= 1.0) continue;
@@ -133,22 +134,26 @@ std::vector<std::string> HuSanityCheck::doubts(int lowest, int highest) const {
   // A dry skull is bone and air.
   if ((share(-200, kHighest) < kLeastTissue && share(kLowestAir_HU, -800) > 0.5) ||
       (tissue < kLittleTissue && below > kBelow)) {
-    doubts.push_back("hardly any of the voxels (" + percent(tissue) +
-                     ") lie where tissue does, as of an intercept that was applied twice");
+    doubts.push_back(
+        tr("hardly any of the voxels ({}) lie where tissue does, as of an intercept that was "
+           "applied twice",
+           percent(tissue)));
     return doubts;
   }
   constexpr int kWater = -20;  // with its noise
   if (highest < kWater && share(kLowestAir_HU, -800) > 0.3) {
-    doubts.push_back("none lies above " + std::to_string(highest) +
-                     ", and tissue lies near 0: as of an intercept that was applied twice");
+    doubts.push_back(
+        tr("none lies above {}, and tissue lies near 0: as of an intercept that was applied twice",
+           highest));
     return doubts;
   }
   // Stored values without their intercept of -1024 have their tissue there, and no wide bone.
   const double stored_tissue = share(850, 1150);
   if (first >= 0 && share(0, 100) > 0.05 && stored_tissue > 0.15 &&
       stored_tissue > 0.6 * share(500, 2500)) {
-    doubts.push_back("none lies below 0, and " + percent(stored_tissue) +
-                     " of the voxels lie between 850 and 1150, as of " + kStored);
+    doubts.push_back(
+        tr("none lies below 0, and {} of the voxels lie between 850 and 1150, as of {}",
+           percent(stored_tissue), tr(kStored)));
     return doubts;
   }
   // Both ends heaped up, within what tissue reaches, and all between them filled.
@@ -159,8 +164,10 @@ std::vector<std::string> HuSanityCheck::doubts(int lowest, int highest) const {
   for (int hu = first; hu <= last; ++hu) filled += count(hu, hu) > 0 ? 1 : 0;
   if (first > -900 && last < 1000 && 8 * filled > last - first && last - first >= 100 &&
       heaped(first, first + 1) && heaped(last, last - 1)) {
-    doubts.push_back("they end at " + std::to_string(first) + " and " + std::to_string(last) +
-                     ", where many lie: a window was burnt in, and air and bone are cut off");
+    doubts.push_back(
+        tr("they end at {} and {}, where many lie: a window was burnt in, and air and bone are cut "
+           "off",
+           first, last));
   }
   return doubts;
 }

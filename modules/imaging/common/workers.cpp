@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "base/codes.h"
+#include "base/tr.h"
 
 namespace trephine {
 
@@ -91,10 +92,10 @@ Status forEachFile(std::size_t count, const Progress& progress, const ProgressPa
   }
   for (const pthread_t thread : threads) pthread_join(thread, nullptr);
 
-  if (progress.cancelled()) return Error{code::kCancelled, "The import was cancelled", "", ""};
+  if (progress.cancelled()) return Error{code::kCancelled, tr("The import was cancelled"), "", ""};
   if (loop.failed.load() || (count > 0 && threads.empty())) {
-    return Error{code::kOutOfMemory, "There is not enough memory to read the files", part.step,
-                 "Close other programs and try again"};
+    return Error{code::kOutOfMemory, tr("There is not enough memory to read the files"), part.step,
+                 tr("Close other programs and try again")};
   }
   return {};
 }

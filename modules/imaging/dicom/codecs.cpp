@@ -9,6 +9,7 @@
 #include <optional>
 #include <vector>
 
+#include "base/tr.h"
 #include "imaging/dicom/detail/dicom_values.h"
 #include "imaging/dicom/detail/pixel_error.h"
 #include "imaging/dicom/jpeg2000.h"
@@ -106,17 +107,15 @@ bool hasJpegEnd(std::span<const std::uint8_t> bytes) {
 
 Status checkJpeg(std::span<const std::uint8_t> codestream, const DicomHeader& header) {
   const auto frame = jpegFrame(codestream);
-  if (!frame) return unreadablePixels("its compressed pixels are damaged");
+  if (!frame) return unreadablePixels(tr("its compressed pixels are damaged"));
   if (frame->rows != header.rows || frame->columns != header.columns || frame->components != 1) {
-    return unreadablePixels("its compressed pixels are " + std::to_string(frame->columns) + "x" +
-                            std::to_string(frame->rows) + " where the header says " +
-                            std::to_string(header.columns) + "x" + std::to_string(header.rows));
+    return unreadablePixels(tr("its compressed pixels are {}x{} where the header says {}x{}",
+                               frame->columns, frame->rows, header.columns, header.rows));
   }
   if ((frame->precision > 8) != (header.bits_allocated > 8)) {
-    return unreadablePixels("its compressed pixels have " + std::to_string(frame->precision) +
-                            " bits");
+    return unreadablePixels(tr("its compressed pixels have {} bits", frame->precision));
   }
-  if (!hasJpegEnd(codestream)) return unreadablePixels("its compressed pixels are cut short");
+  if (!hasJpegEnd(codestream)) return unreadablePixels(tr("its compressed pixels are cut short"));
   return {};
 }
 
@@ -152,8 +151,7 @@ Status decodeWithDcmtk(const TransferSyntax& syntax, std::span<const std::uint8_
   const OFCondition decoded =
       pixels.getUncompressedFrame(&data, 0, fragment, to, Uint32(bytes), colour);
   if (decoded.bad()) {
-    return unreadablePixels(std::string("its compressed pixels cannot be decoded: ") +
-                            decoded.text());
+    return unreadablePixels(tr("its compressed pixels cannot be decoded: {}", decoded.text()));
   }
   return {};
 }
@@ -197,14 +195,14 @@ Status decodeFrame(const TransferSyntax& syntax, std::span<const std::uint8_t> c
   if (rle) {
     if (!fitsRle(codestream, std::size_t(header.bits_allocated / 8), header.pixelCount())) {
       return unreadablePixels(
-          "its RLE pixels are not as many as rows and columns say, or are damaged");
+          tr("its RLE pixels are not as many as rows and columns say, or are damaged"));
     }
   } else {
     if (const Status valid = checkJpeg(codestream, header); !valid) return valid;
   }
   const std::uint64_t bytes = header.frameBytes();
   const std::uint64_t even = bytes + bytes % 2;
-  if (even > 0xFFFFFFFEU) return unreadablePixels("its pixels are too many");
+  if (even > 0xFFFFFFFEU) return unreadablePixels(tr("its pixels are too many"));
   if (header.bits_allocated != 8) {
     return decodeWithDcmtk(syntax, codestream, header, reinterpret_cast<std::uint8_t*>(words),
                            bytes);

@@ -11,6 +11,7 @@
 
 #include "base/codes.h"
 #include "base/purpose.h"
+#include "base/tr.h"
 #include "imaging/common/detail/text.h"
 #include "imaging/dicom/detail/written_values.h"
 
@@ -125,11 +126,13 @@ Result<std::set<fs::path>> earlierSlices(const fs::path& folder, int slices,
     if (!name.starts_with("IM") || !name.ends_with(".dcm")) continue;
     if (isOurs(it->path(), patient_name)) earlier.insert(it->path());
   }
-  if (error) return cannotWrite("The folder cannot be read", folder, "Choose another folder");
+  if (error)
+    return cannotWrite(tr("The folder cannot be read"), folder, tr("Choose another folder"));
   for (int k = 0; k < slices; ++k) {
     const fs::path target = folder / sliceFileName(k);
     if (fs::exists(target, error) && !earlier.contains(target)) {
-      return cannotWrite("The folder holds a scan of its own", folder, "Choose an empty folder");
+      return cannotWrite(tr("The folder holds a scan of its own"), folder,
+                         tr("Choose an empty folder"));
     }
   }
   return earlier;
@@ -143,14 +146,15 @@ Status checkCtSeries(const Volume& volume, const fs::path& folder) {
     return cannotWrite(size.error().what, folder, "");
   }
   if (g.size[0] > 65535 || g.size[1] > 65535 || g.voxelCount() != volume.hu.size()) {
-    return cannotWrite("A volume of this size does not fit DICOM", folder, "Crop it");
+    return cannotWrite(tr("A volume of this size does not fit DICOM"), folder, tr("Crop it"));
   }
   const Mat3 product = glm::transpose(g.direction) * g.direction;
   for (int i = 0; i < 3; ++i) {
     for (int j = 0; j < 3; ++j) {
       if (!(std::abs(product[i][j] - (i == j ? 1.0 : 0.0)) < 1e-6) || !(g.spacing_mm[i] > 0.0)) {
-        return cannotWrite("The volume's axes are not perpendicular or its spacing not positive",
-                           folder, "Resample it");
+        return cannotWrite(
+            tr("The volume's axes are not perpendicular or its spacing not positive"), folder,
+            tr("Resample it"));
       }
     }
   }
@@ -178,7 +182,8 @@ Status writeCtSeries(const Volume& volume, const CtSeriesText& text, const fs::p
   if (const Status valid = checkCtSeries(volume, folder); !valid) return valid;
   std::error_code error;
   fs::create_directories(folder, error);
-  if (error) return cannotWrite("The folder cannot be made", folder, "Choose another place");
+  if (error)
+    return cannotWrite(tr("The folder cannot be made"), folder, tr("Choose another place"));
   const int slices = volume.geometry.size[2];
   const auto earlier = earlierSlices(folder, slices, text.patient_name);
   if (!earlier) return earlier.error();
@@ -187,7 +192,7 @@ Status writeCtSeries(const Volume& volume, const CtSeriesText& text, const fs::p
   // cancel leaves what was there.
   std::string pattern = (folder / ".writing-XXXXXX").string();
   if (!::mkdtemp(pattern.data())) {
-    return cannotWrite("The folder cannot be written to", folder, "Choose another place");
+    return cannotWrite(tr("The folder cannot be written to"), folder, tr("Choose another place"));
   }
   const fs::path unfinished = pattern;
   const auto giveUp = [&](Error reason) -> Status {
@@ -203,9 +208,9 @@ Status writeCtSeries(const Volume& volume, const CtSeriesText& text, const fs::p
   std::vector<Uint16> words(std::size_t(volume.geometry.size[0]) * volume.geometry.size[1]);
   for (int k = 0; k < slices; ++k) {
     if (progress.cancelled()) {
-      return giveUp({code::kCancelled, "Writing the CT series was cancelled", "", ""});
+      return giveUp({code::kCancelled, tr("Writing the CT series was cancelled"), "", ""});
     }
-    progress.at(double(k) / slices, "Writing slices");
+    progress.at(double(k) / slices, tr("Writing slices"));
     DcmFileFormat file;
     OFCondition written = fillSlice(*file.getDataset(), writing, k, words);
     if (written.good()) {
@@ -213,15 +218,16 @@ Status writeCtSeries(const Volume& volume, const CtSeriesText& text, const fs::p
                               EET_ExplicitLength, EGL_recalcGL);
     }
     if (written.bad()) {
-      return giveUp(cannotWrite(std::string("A slice cannot be written: ") + written.text(), folder,
-                                "Check that the disk has room"));
+      return giveUp(cannotWrite(tr("A slice cannot be written: {}", written.text()), folder,
+                                tr("Check that the disk has room")));
     }
   }
   for (const fs::path& old : *earlier) fs::remove(old, error);
   for (int k = 0; k < slices; ++k) {
     fs::rename(unfinished / sliceFileName(k), folder / sliceFileName(k), error);
     if (error) {
-      return giveUp(cannotWrite("A slice cannot be put in place", folder, "Choose another place"));
+      return giveUp(
+          cannotWrite(tr("A slice cannot be put in place"), folder, tr("Choose another place")));
     }
   }
   fs::remove_all(unfinished, error);

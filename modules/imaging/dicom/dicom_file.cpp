@@ -7,13 +7,14 @@
 #include <mutex>
 #include <shared_mutex>
 
+#include "base/tr.h"
+#include "imaging/codes.h"
 #include "imaging/dicom/detail/codecs.h"
 #include "imaging/dicom/detail/dicom_names.h"
 #include "imaging/dicom/detail/dicom_pixels.h"
 #include "imaging/dicom/detail/dicom_stream.h"
 #include "imaging/dicom/detail/dicom_values.h"
 #include "imaging/dicom/detail/transfer_syntax.h"
-#include "imaging/codes.h"
 
 namespace trephine {
 
@@ -30,10 +31,13 @@ Error skip(std::string reason) {
 // What other programs keep volumes in, told by its ending.
 const char* otherFormat(const std::filesystem::path& file) {
   constexpr std::pair<std::string_view, const char*> kEndings[] = {
-      {".mgz", "a FreeSurfer volume: convert it to NIfTI first (mri_convert)"},
-      {".mgh", "a FreeSurfer volume: convert it to NIfTI first (mri_convert)"},
-      {".hdr", "half of a pair of header and voxels (Analyze or NIfTI): save it as one .nii file"},
-      {".img", "half of a pair of header and voxels (Analyze or NIfTI): save it as one .nii file"}};
+      {".mgz", trLater("a FreeSurfer volume: convert it to NIfTI first (mri_convert)")},
+      {".mgh", trLater("a FreeSurfer volume: convert it to NIfTI first (mri_convert)")},
+      {".hdr",
+       trLater("half of a pair of header and voxels (Analyze or NIfTI): save it as one .nii file")},
+      {".img",
+       trLater(
+           "half of a pair of header and voxels (Analyze or NIfTI): save it as one .nii file")}};
   std::string name = file.filename().string();
   for (char& c : name) c = char(std::tolower(static_cast<unsigned char>(c)));
   for (const auto& [ending, words] : kEndings) {
@@ -49,17 +53,17 @@ struct Packed {
   const char* name;
 };
 using namespace std::string_view_literals;
-constexpr Packed kPacked[] = {{0, "PK\3\4"sv, "a ZIP archive"},
-                              {0, "\x1F\x8B\x08"sv, "a gzip file"},
+constexpr Packed kPacked[] = {{0, "PK\3\4"sv, trLater("a ZIP archive")},
+                              {0, "\x1F\x8B\x08"sv, trLater("a gzip file")},
                               {0, "7z\xBC\xAF\x27\x1C"sv, "a 7z archive"},
-                              {0, "Rar!\x1A\x07"sv, "a RAR archive"},
+                              {0, "Rar!\x1A\x07"sv, trLater("a RAR archive")},
                               {0,
                                "\xFD"
                                "7zXZ\0"sv,
-                               "an xz file"},
-                              {0, "\x28\xB5\x2F\xFD"sv, "a Zstandard file"},
+                               trLater("an xz file")},
+                              {0, "\x28\xB5\x2F\xFD"sv, trLater("a Zstandard file")},
                               {4, "1AY&SY"sv, "a bzip2 file"},
-                              {257, "ustar"sv, "a tar archive"}};
+                              {257, "ustar"sv, trLater("a tar archive")}};
 
 // Whether DCMTK came to the element's end. Its transfer state does not tell: values of odd length
 // never become ready.
@@ -286,7 +290,7 @@ std::vector<DicomHeader> splitFrames(const DicomItem& data, DicomHeader whole) {
   constexpr std::uint64_t kMostText = std::uint64_t(512) << 20;
   if (textBytes(whole) * std::uint64_t(whole.frames) > kMostText) {
     whole.defect = Defect::size_mismatch;
-    whole.defect_text = "its header says too much for so many frames";
+    whole.defect_text = tr("its header says too much for so many frames");
     return alone();
   }
   std::vector<DicomHeader> frames(std::size_t(whole.frames), whole);
@@ -313,15 +317,16 @@ void checkPixels(bool cut, DicomHeader& header) {
     header.defect_text = std::move(text);
   };
   const PixelPlace& place = *header.pixels;
-  if (cut) spoilt(Defect::cut, "its pixels are cut short");
+  if (cut) spoilt(Defect::cut, tr("its pixels are cut short"));
   if (cut && (header.frames == 1 || place.encapsulated)) return;
   const bool encapsulated = syntax->codec == Codec::dcmtk || syntax->codec == Codec::jpeg2000;
   if (place.encapsulated != encapsulated) {
-    return spoilt(Defect::size_mismatch, "its pixels are not stored as its transfer syntax says");
+    return spoilt(Defect::size_mismatch,
+                  tr("its pixels are not stored as its transfer syntax says"));
   }
   if (encapsulated) {
     if (place.frames.empty()) {
-      spoilt(Defect::size_mismatch, "its frames cannot be told apart");
+      spoilt(Defect::size_mismatch, tr("its frames cannot be told apart"));
     }
     return;
   }
@@ -330,14 +335,12 @@ void checkPixels(bool cut, DicomHeader& header) {
   // Writers pad, by less than a row; more means that rows or columns are wrong.
   // Deflate shrinks to a thousandth at most.
   if (syntax->codec == Codec::deflated && needed / 1032 > header.file_bytes) {
-    return spoilt(Defect::size_mismatch, "it is too small for the pixels that it claims");
+    return spoilt(Defect::size_mismatch, tr("it is too small for the pixels that it claims"));
   }
   const std::uint64_t row = header.frameBytes() / std::uint64_t(header.rows);
   if (place.bytes < needed || place.bytes - needed >= std::max<std::uint64_t>(row, 2)) {
-    spoilt(Defect::size_mismatch, "it holds " + std::to_string(place.bytes) +
-                                      " bytes of pixels where " + std::to_string(header.columns) +
-                                      "x" + std::to_string(header.rows) + " need " +
-                                      std::to_string(needed));
+    spoilt(Defect::size_mismatch, tr("it holds {} bytes of pixels where {}x{} need {}", place.bytes,
+                                     header.columns, header.rows, needed));
   }
 }
 
@@ -421,9 +424,9 @@ bool isCut(DcmFileFormat& dicom, DicomStream& stream) {
 }
 
 // Why a header cannot be read: its data set may be written in another way than its first part says.
-std::string damagedHeader(const std::filesystem::path& file) {
+Error damagedHeader(const std::filesystem::path& file) {
   constexpr std::size_t kGroupLength = 132, kLengthEnd = 144;
-  const std::string damaged = "the DICOM header is cut short or damaged";
+  const Error damaged{code::kCutShort, tr("the DICOM header is cut short or damaged"), "", ""};
   const auto first = readBytes(file, 0, kLengthEnd);
   if (!first) return damaged;
   const std::uint8_t* head = first->data() + kGroupLength;  // (0002,0000) UL, 4 bytes
@@ -442,12 +445,14 @@ std::string damagedHeader(const std::filesystem::path& file) {
   const bool says_implicit = !says_explicit && text.find("1.2.840.10008.1.2") != text.npos &&
                              text.find("1.2.840.10008.1.2.") == text.npos;
   if (group_8 && says_explicit && !explicit_vr) {
-    return "it is written in Implicit VR Little Endian, and says Explicit VR: correct its transfer "
-           "syntax to 1.2.840.10008.1.2";
+    return skip(
+        tr("it is written in Implicit VR Little Endian, and says Explicit VR: correct its transfer "
+           "syntax to 1.2.840.10008.1.2"));
   }
   if (group_8 && says_implicit && explicit_vr) {
-    return "it is written in Explicit VR Little Endian, and says Implicit VR: correct its transfer "
-           "syntax to 1.2.840.10008.1.2.1";
+    return skip(
+        tr("it is written in Explicit VR Little Endian, and says Implicit VR: correct its transfer "
+           "syntax to 1.2.840.10008.1.2.1"));
   }
   return damaged;
 }
@@ -458,20 +463,20 @@ Result<std::vector<DicomHeader>> readDicomHeaders(const std::filesystem::path& f
                                                   std::uint64_t file_bytes,
                                                   const Progress& progress) {
   setUpDcmtk();
-  if (file_bytes == 0) return skip("the file is empty");
+  if (file_bytes == 0) return skip(tr("the file is empty"));
   DicomStream stream(file, kSliceBounds, &progress);
   const std::string_view head = stream.beginning(1024);
-  if (head.empty()) return Error{code::kUnreadableFile, "the file may not be read", "", ""};
+  if (head.empty()) return Error{code::kUnreadableFile, tr("the file may not be read"), "", ""};
   if (!looksLikeDicom(head)) {
-    if (const char* other = otherFormat(file)) return skip(other);
+    if (const char* other = otherFormat(file)) return skip(tr(other));
     const auto packed = std::ranges::find_if(kPacked, [&](const Packed& kind) {
       return head.size() > kind.at && head.substr(kind.at).starts_with(kind.mark);
     });
-    return skip(packed == std::end(kPacked) ? "not a DICOM file"
-                                            : std::string(packed->name) + kUnpackFirst);
+    if (packed == std::end(kPacked)) return skip(tr("not a DICOM file"));
+    return Error{code::kPacked, tr("{}: unpack it first", tr(packed->name)), "", ""};
   }
   if (head.find(kDicomDir) != head.npos) {
-    return skip("a DICOMDIR: the files themselves are read instead");
+    return skip(tr("a DICOMDIR: the files themselves are read instead"));
   }
 
   DcmFileFormat dicom;
@@ -480,8 +485,8 @@ Result<std::vector<DicomHeader>> readDicomHeaders(const std::filesystem::path& f
     const std::shared_lock other_rule(unknownRule());
     cut = isCut(dicom, stream);
   }
-  if (stream.isTooDeep()) return skip("nested too deeply");
-  if (stream.isTooLong()) return skip("its header is longer than any real one");
+  if (stream.isTooDeep()) return skip(tr("nested too deeply"));
+  if (stream.isTooLong()) return skip(tr("its header is longer than any real one"));
   std::optional<DicomStream> again;
   if (cut && !progress.cancelled()) {
     // Elements of unknown kind and length (UN) are to be written in implicit VR, and some writers
@@ -523,12 +528,11 @@ Result<std::vector<DicomHeader>> readDicomHeaders(const std::filesystem::path& f
                         trimmedText(data, DCM_SeriesDate) + "\\" +
                         trimmedText(data, DCM_SeriesTime);
   }
-  for (const auto& [uid, name] : {std::pair(&header.series_uid, "Series Instance UID"),
-                                  std::pair(&header.sop_class, "SOP Class UID"),
-                                  std::pair(&header.sop_instance, "SOP Instance UID")}) {
+  for (const auto& [uid, name] : {std::pair(&header.series_uid, tr("Series Instance UID")),
+                                  std::pair(&header.sop_class, tr("SOP Class UID")),
+                                  std::pair(&header.sop_instance, tr("SOP Instance UID"))}) {
     if (!uid->empty()) continue;
-    return skip(cut ? damagedHeader(file)
-                    : std::string("a DICOM file without a ") + name);
+    return cut ? damagedHeader(file) : skip(tr("a DICOM file without a {}", name));
   }
   header.study_uid = uidText(data, DCM_StudyInstanceUID);
   header.frame_of_reference = uidText(data, DCM_FrameOfReferenceUID);
@@ -571,7 +575,7 @@ Result<std::vector<DicomHeader>> readDicomHeaders(const std::filesystem::path& f
 
   if (cut) {
     header.defect = Defect::cut;
-    header.defect_text = "its header is cut short";
+    header.defect_text = tr("its header is cut short");
   } else {
     findPixelsOf(xfer, stream_read, header);
     header.overlay_bits = header.pixels && header.pixels->encapsulated && hasOverlayBits(data);

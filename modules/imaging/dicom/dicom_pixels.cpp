@@ -11,6 +11,7 @@
 #include <cstring>
 
 #include "base/descriptor.h"
+#include "base/tr.h"
 #include "imaging/common/workers.h"
 #include "imaging/dicom/detail/codecs.h"
 #include "imaging/dicom/detail/dicom_stream.h"
@@ -188,22 +189,22 @@ Result<std::shared_ptr<const PixelReader::Bytes>> PixelReader::inflated(const Di
   DcmFileFormat dicom;
   dicom.transferInit();
   if (dicom.readUntilTag(stream, EXS_Unknown, EGL_noChange, kLongestValue, DCM_PixelData).bad()) {
-    return unreadablePixels("its file is cut short or damaged");
+    return unreadablePixels(tr("its file is cut short or damaged"));
   }
   const std::uint8_t* head = stream.newest().data();
   if (tagOf(head, false) != kPixelData || number32(head + 8, false) == kUndefined) {
-    return unreadablePixels("its pixels are not stored as its transfer syntax says");
+    return unreadablePixels(tr("its pixels are not stored as its transfer syntax says"));
   }
-  if (number32(head + 8, false) < needed) return unreadablePixels("its pixels are cut short");
+  if (number32(head + 8, false) < needed) return unreadablePixels(tr("its pixels are cut short"));
   // Memory is taken as bytes come, not as the header promises.
   auto all = std::make_shared<Bytes>();
   while (all->size() < needed) {
-    if (progress_.cancelled()) return unreadablePixels("reading it was cancelled");
+    if (progress_.cancelled()) return unreadablePixels(tr("reading it was cancelled"));
     const std::size_t before = all->size();
     all->resize(before + std::min<std::uint64_t>(kPieceBytes, needed - before));
     const offile_off_t count =
         stream.read(all->data() + before, offile_off_t(all->size() - before));
-    if (count <= 0) return unreadablePixels("its pixels are cut short");
+    if (count <= 0) return unreadablePixels(tr("its pixels are cut short"));
     all->resize(before + std::size_t(count));
   }
   if (keep) inflated_[header.file] = all;
@@ -213,31 +214,32 @@ Result<std::shared_ptr<const PixelReader::Bytes>> PixelReader::inflated(const Di
 Status PixelReader::read(const DicomHeader& header, std::uint64_t from, std::uint64_t bytes,
                          std::uint8_t* to) {
   const TransferSyntax* syntax = findTransferSyntax(header.transfer_syntax);
-  if (!syntax || !header.pixels) return unreadablePixels("its transfer syntax cannot be read");
+  if (!syntax || !header.pixels) return unreadablePixels(tr("its transfer syntax cannot be read"));
   if (header.pixels->encapsulated || from + bytes > header.pixels->bytes) {
-    return unreadablePixels("its pixels are not stored as its header says");
+    return unreadablePixels(tr("its pixels are not stored as its header says"));
   }
   if (syntax->codec == Codec::deflated) {
     const auto all = inflated(header, header.pixels->bytes, true);
     if (!all) return all.error();
     std::memcpy(to, (*all)->data() + from, bytes);
   } else if (!File(header.file, &progress_).read(header.pixels->offset + from, to, bytes)) {
-    return unreadablePixels("its file vanished, changed or is cut short");
+    return unreadablePixels(tr("its file vanished, changed or is cut short"));
   }
   return {};
 }
 
 Status PixelReader::read(const DicomHeader& header, std::int16_t* words) {
   const TransferSyntax* syntax = findTransferSyntax(header.transfer_syntax);
-  if (!syntax || !header.pixels) return unreadablePixels("its transfer syntax cannot be read");
-  if (!header.holdsGreyWords()) return unreadablePixels("its pixels are not one grey value each");
+  if (!syntax || !header.pixels) return unreadablePixels(tr("its transfer syntax cannot be read"));
+  if (!header.holdsGreyWords())
+    return unreadablePixels(tr("its pixels are not one grey value each"));
   const std::uint64_t bytes = header.frameBytes();
   const std::uint64_t skipped = bytes * std::uint64_t(header.frame);
   const bool narrow = header.bits_allocated == 8;
 
   if (syntax->codec == Codec::dcmtk || syntax->codec == Codec::jpeg2000) {
     if (std::size_t(header.frame) >= header.pixels->frames.size()) {
-      return unreadablePixels("its frame is not in the file");
+      return unreadablePixels(tr("its frame is not in the file"));
     }
     const File file(header.file, &progress_);
     std::vector<std::uint8_t> codestream;
@@ -245,7 +247,7 @@ Status PixelReader::read(const DicomHeader& header, std::int16_t* words) {
       const std::size_t before = codestream.size();
       codestream.resize(before + fragment.bytes);
       if (!file.read(fragment.offset, codestream.data() + before, fragment.bytes)) {
-        return unreadablePixels("its file vanished, changed or is cut short");
+        return unreadablePixels(tr("its file vanished, changed or is cut short"));
       }
     }
     return decodeFrame(*syntax, codestream, header, words);
@@ -255,7 +257,7 @@ Status PixelReader::read(const DicomHeader& header, std::int16_t* words) {
     const std::uint64_t first = skipped & ~std::uint64_t(1);
     const auto pairs = readBytes(header.file, header.pixels->offset + first,
                                  ((skipped + bytes + 1) & ~std::uint64_t(1)) - first);
-    if (!pairs) return unreadablePixels("its file vanished, changed or is cut short");
+    if (!pairs) return unreadablePixels(tr("its file vanished, changed or is cut short"));
     for (std::uint64_t n = 0; n < bytes; ++n) words[n] = (*pairs)[((skipped + n) ^ 1) - first];
     return {};
   }
@@ -265,10 +267,10 @@ Status PixelReader::read(const DicomHeader& header, std::int16_t* words) {
     const std::uint64_t needed = bytes * std::uint64_t(header.frames);
     const auto all = inflated(header, needed, header.frames > 1);
     if (!all) return all.error();
-    if ((*all)->size() < skipped + bytes) return unreadablePixels("its pixels are cut short");
+    if ((*all)->size() < skipped + bytes) return unreadablePixels(tr("its pixels are cut short"));
     std::memcpy(to, (*all)->data() + skipped, bytes);
   } else if (!File(header.file, &progress_).read(header.pixels->offset + skipped, to, bytes)) {
-    return unreadablePixels("its file vanished, changed or is cut short");
+    return unreadablePixels(tr("its file vanished, changed or is cut short"));
   }
   if (narrow) {
     for (std::uint64_t n = 0; n < bytes; ++n) words[n] = to[n];

@@ -4,9 +4,10 @@
 #include <cmath>
 #include <numeric>
 
-#include "imaging/common/detail/text.h"
 #include "base/codes.h"
+#include "base/tr.h"
 #include "imaging/codes.h"
+#include "imaging/common/detail/text.h"
 
 namespace trephine {
 
@@ -24,7 +25,7 @@ constexpr double kMostSlices = 8192;
 
 Error framesDiffer(const std::string& what) {
   return Error{code::kFramesDiffer, what, "",
-               "Export it on the grid of the CT that it was made from"};
+               tr("Export it on the grid of the CT that it was made from")};
 }
 
 bool isSensible(double spacing_mm) {
@@ -42,7 +43,7 @@ std::optional<Mat3> axesOf(const std::array<double, 6>& o) {
 }
 
 std::string frameName(std::size_t n) {
-  return "Frame " + std::to_string(n + 1);
+  return tr("Frame {}", n + 1);
 }
 
 Status checkAlike(const std::vector<FramePlane>& frames) {
@@ -51,18 +52,18 @@ Status checkAlike(const std::vector<FramePlane>& frames) {
     const FramePlane& frame = frames[n];
     for (int axis = 0; axis < 3; ++axis) {
       if (!(std::abs(frame.position_mm[axis]) <= kFarthest_mm)) {
-        return noGeometry(frameName(n) + " lies nowhere near a patient");
+        return noGeometry(tr("{} lies nowhere near a patient", frameName(n)));
       }
     }
     for (std::size_t i = 0; i < frame.orientation.size(); ++i) {
       if (!(std::abs(frame.orientation[i] - first.orientation[i]) <= kSameAxes)) {
-        return framesDiffer(frameName(n) + " is turned against the first");
+        return framesDiffer(tr("{} is turned against the first", frameName(n)));
       }
     }
     for (std::size_t i = 0; i < 2; ++i) {
       const double ratio = frame.pixel_spacing_mm[i] / first.pixel_spacing_mm[i];
       if (!(std::abs(ratio - 1.0) <= kSameSpacing)) {
-        return framesDiffer(frameName(n) + " has pixels of another size than the first");
+        return framesDiffer(tr("{} has pixels of another size than the first", frameName(n)));
       }
     }
   }
@@ -134,8 +135,8 @@ Status planSideways(const std::vector<Vec3>& offsets_mm, const Vec3& lowest_mm,
   const Vec3 width_mm(grid.size[0] * grid.spacing_mm.x, grid.size[1] * grid.spacing_mm.y, 0.0);
   const Vec3 drift_mm = glm::abs(highest_mm - lowest_mm);
   if (!on_line || drift_mm.x > width_mm.x || drift_mm.y > width_mm.y) {
-    return framesDiffer(frameName(farthest) + " is shifted aside of the first by " +
-                        fixedText(most_mm, 2) + " mm");
+    return framesDiffer(tr("{} is shifted aside of the first by {} mm", frameName(farthest),
+                           fixedText(most_mm, 2)));
   }
   for (int axis = 0; axis < 2; ++axis) {
     const auto at = std::size_t(axis);
@@ -151,7 +152,7 @@ Status planSideways(const std::vector<Vec3>& offsets_mm, const Vec3& lowest_mm,
     grid.origin_mm += grid.direction[axis] * (double(least) * grid.spacing_mm[axis]);
   }
   stack.notes.push_back(
-      "The frames lie along the axis of a tilted gantry: each was moved by whole pixels.");
+      tr("The frames lie along the axis of a tilted gantry: each was moved by whole pixels."));
   return {};
 }
 
@@ -162,9 +163,9 @@ Result<FrameStack> stackFrames(const std::vector<FramePlane>& frames, int column
                                std::optional<double> thickness_mm) {
   const FramePlane& first = frames.front();
   const std::optional<Mat3> axes = axesOf(first.orientation);
-  if (!axes) return noGeometry("The frames' orientation is not two perpendicular unit vectors");
+  if (!axes) return noGeometry(tr("The frames' orientation is not two perpendicular unit vectors"));
   for (const double spacing : first.pixel_spacing_mm) {
-    if (!isSensible(spacing)) return noGeometry("The pixel spacing of the frames is no length");
+    if (!isSensible(spacing)) return noGeometry(tr("The pixel spacing of the frames is no length"));
   }
   if (const Status alike = checkAlike(frames); !alike) return alike.error();
 
@@ -195,7 +196,7 @@ Result<FrameStack> stackFrames(const std::vector<FramePlane>& frames, int column
     const bool between = between_mm && isSensible(*between_mm);
     const bool thick = thickness_mm && isSensible(*thickness_mm);
     if (!between && !thick) {
-      return noGeometry("All frames lie at one place, and none says how thick it is");
+      return noGeometry(tr("All frames lie at one place, and none says how thick it is"));
     }
     step = between ? *between_mm : *thickness_mm;
   } else {
@@ -211,7 +212,7 @@ Result<FrameStack> stackFrames(const std::vector<FramePlane>& frames, int column
         slice_of.push_back(int(std::min(total, kMostSlices)));
       }
       if (total >= kMostSlices) {
-        return Error{code::kTooLarge, "The frames span more than 8192 slices", "", ""};
+        return Error{code::kTooLarge, tr("The frames span more than 8192 slices"), "", ""};
       }
       last = slice_of.back();
       step = (unlike.back() - unlike.front()) / last;
@@ -221,12 +222,12 @@ Result<FrameStack> stackFrames(const std::vector<FramePlane>& frames, int column
       worst = std::max(worst, std::abs(unlike[n] - unlike.front() - slice_of[n] * step));
     }
     if (!steps || worst > kNearlyEven * step) {
-      return Error{code::kUnevenSpacing, "The frames do not lie at even steps", "",
-                   "Export it on the grid of the CT that it was made from"};
+      return Error{code::kUnevenSpacing, tr("The frames do not lie at even steps"), "",
+                   tr("Export it on the grid of the CT that it was made from")};
     }
     if (worst > std::max(kSamePlace_mm, kEven * step)) {
-      stack.notes.push_back("Slices lie up to " + fixedText(worst, 2) +
-                            " mm beside even steps, and were put on them.");
+      stack.notes.push_back(tr("Slices lie up to {} mm beside even steps, and were put on them.",
+                               fixedText(worst, 2)));
     }
     for (std::size_t n = 0; n < frames.size(); ++n) stack.slices[n] = slice_of[place_of[n]];
   }
@@ -246,7 +247,7 @@ Result<FrameStack> stackFrames(const std::vector<FramePlane>& frames, int column
 
 Error noGeometry(const std::string& what) {
   return Error{code::kNoGeometry, what, "",
-               "Export the segmentation anew from the program that made it"};
+               tr("Export the segmentation anew from the program that made it")};
 }
 
 }  // namespace trephine

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "base/tr.h"
 #include "imaging/dicom/detail/pixel_error.h"
 
 namespace trephine {
@@ -36,11 +37,11 @@ constexpr std::array kOtherSegments = {0xFF50, 0xFF55, 0xFF57, 0xFF58, 0xFF59, 0
                                        0xFF5E, 0xFF5F, 0xFF60, 0xFF61, 0xFF63, 0xFF64};
 
 Error cutOrDamaged() {
-  return unreadablePixels("its JPEG 2000 picture is cut short or damaged");
+  return unreadablePixels(tr("its JPEG 2000 picture is cut short or damaged"));
 }
 
 Error unsupported(const std::string& what) {
-  return unreadablePixels("its JPEG 2000 picture " + what + ", which cannot be read");
+  return unreadablePixels(tr("its JPEG 2000 picture {}, which cannot be read", what));
 }
 
 // A big-endian number; 0 where it is not all there, which no marker, length or count may be.
@@ -94,18 +95,19 @@ Status readSize(Bytes segment, MainHeader& header) {
   header.rows = field(6);
   header.tile_columns = field(18);
   header.tile_rows = field(22);
-  if (field(10) || field(14) || field(26) || field(30)) return unsupported("is cut out of another");
-  if (number(segment, 34, 2) != 1) return unsupported("is not one grey channel");
+  if (field(10) || field(14) || field(26) || field(30))
+    return unsupported(tr("is cut out of another"));
+  if (number(segment, 34, 2) != 1) return unsupported(tr("is not one grey channel"));
   if (segment.size() != 39 || !header.columns || !header.rows || !header.tile_columns ||
       !header.tile_rows) {
     return cutOrDamaged();
   }
   header.is_signed = segment[36] & 0x80;
   header.precision = (segment[36] & 0x7F) + 1;
-  if (segment[37] != 1 || segment[38] != 1) return unsupported("is subsampled");
+  if (segment[37] != 1 || segment[38] != 1) return unsupported(tr("is subsampled"));
   header.tiles =
       ceilDivide(header.columns, header.tile_columns) * ceilDivide(header.rows, header.tile_rows);
-  if (header.tiles > kMostTiles) return unsupported("is cut into over 4096 tiles");
+  if (header.tiles > kMostTiles) return unsupported(tr("is cut into over 4096 tiles"));
   return {};
 }
 
@@ -134,7 +136,7 @@ Status readCodingStyle(Bytes segment, MainHeader& header) {
   header.irreversible = segment[9] != 1;
   header.high_throughput = segment[8] & 0x40;
   if (header.high_throughput && (layers != 1 || segment[0] & 6)) {
-    return unsupported("is HTJ2K in several layers or with packet markers");
+    return unsupported(tr("is HTJ2K in several layers or with packet markers"));
   }
   for (int r = 0; r <= levels; ++r) {
     const unsigned exponents = has_precincts ? segment[10 + std::size_t(r)] : 0xFF;
@@ -157,7 +159,7 @@ Bytes segmentAt(Bytes stream, std::size_t at) {
 
 Result<MainHeader> readMainHeader(Bytes stream) {
   if (number(stream, 0, 2) != kSoc || number(stream, 2, 2) != kSiz) {
-    return unreadablePixels("its pixels are not the JPEG 2000 that its header says");
+    return unreadablePixels(tr("its pixels are not the JPEG 2000 that its header says"));
   }
   MainHeader header;
   int sizes = 0, styles = 0;
@@ -180,15 +182,13 @@ Result<MainHeader> readMainHeader(Bytes stream) {
 Status compare(const MainHeader& header, const Jpeg2000Expectation& expected) {
   if (header.columns != std::uint64_t(expected.columns) ||
       header.rows != std::uint64_t(expected.rows)) {
-    return unreadablePixels("its JPEG 2000 picture is " + std::to_string(header.columns) + "x" +
-                            std::to_string(header.rows) + " where its header says " +
-                            std::to_string(expected.columns) + "x" + std::to_string(expected.rows));
+    return unreadablePixels(tr("its JPEG 2000 picture is {}x{} where its header says {}x{}",
+                               header.columns, header.rows, expected.columns, expected.rows));
   }
-  if (header.columns * header.rows > kMostPixels) return unsupported("is over 8192x8192");
+  if (header.columns * header.rows > kMostPixels) return unsupported(tr("is over 8192x8192"));
   if (header.precision > std::min(expected.bits_allocated, 16)) {
-    return unreadablePixels("its JPEG 2000 picture has " + std::to_string(header.precision) +
-                            " bits a pixel where its header says " +
-                            std::to_string(expected.bits_allocated));
+    return unreadablePixels(tr("its JPEG 2000 picture has {} bits a pixel where its header says {}",
+                               header.precision, expected.bits_allocated));
   }
   return {};
 }
@@ -231,7 +231,7 @@ Result<Bytes> wholeCodestream(Bytes stream, const MainHeader& header) {
     for (at += 4 + part.size(); number(stream, at, 2) != kSod;) {
       const Bytes segment = segmentAt(stream, at);
       if (segment.empty()) return cutOrDamaged();
-      if (number(stream, at, 2) == kCod) return unsupported("has tiles of several kinds");
+      if (number(stream, at, 2) == kCod) return unsupported(tr("has tiles of several kinds"));
       at += 4 + segment.size();
     }
     at += 2;

@@ -16,13 +16,14 @@
 
 #include "base/codes.h"
 #include "base/memory.h"
+#include "base/tr.h"
+#include "imaging/codes.h"
 #include "imaging/common/detail/cielab.h"
 #include "imaging/dicom/detail/dicom_pixels.h"
 #include "imaging/dicom/detail/dicom_stream.h"
 #include "imaging/dicom/detail/dicom_values.h"
 #include "imaging/dicom/detail/transfer_syntax.h"
 #include "imaging/dicom/seg_reader.h"
-#include "imaging/codes.h"
 #include "volume/codes.h"
 
 namespace trephine {
@@ -41,7 +42,7 @@ class FramesWithoutPixels : public DcmSegmentation {
 };
 
 Error wrongSize(const std::string& what) {
-  return Error{code::kSizeMismatch, what, "", "Copy or export the file anew"};
+  return Error{code::kSizeMismatch, what, "", tr("Copy or export the file anew")};
 }
 
 template <class Group>
@@ -77,12 +78,11 @@ Status readSegments(const DicomItem& data, DcmSegmentation& segmentation, SegHea
   // DCMTK knows segments by their place alone: their own numbers, and names in all character sets,
   // are looked up beside it.
   const std::vector<DcmItem*> items = data.items(DCM_SegmentSequence);
-  if (items.empty()) return unreadableSegmentation("The file names no segment");
+  if (items.empty()) return unreadableSegmentation(tr("The file names no segment"));
   if (items.size() > std::size_t(kMostStructures)) {
     return Error{code::kTooManyStructures,
-                 "The file holds " + std::to_string(items.size()) + " segments, more than " +
-                     std::to_string(kMostStructures),
-                 "", "Export those that the exercise needs"};
+                 tr("The file holds {} segments, more than {}", items.size(), kMostStructures), "",
+                 tr("Export those that the exercise needs")};
   }
   std::set<int> numbers;
   for (std::size_t n = 0; n < items.size(); ++n) {
@@ -90,7 +90,7 @@ Status readSegments(const DicomItem& data, DcmSegmentation& segmentation, SegHea
     SegHeader::Segment segment;
     segment.number = countOr(item, DCM_SegmentNumber, 0, 65535);
     if (segment.number == 0 || !numbers.insert(segment.number).second) {
-      return unreadableSegmentation("The segments' numbers are missing or stand twice");
+      return unreadableSegmentation(tr("The segments' numbers are missing or stand twice"));
     }
     segment.name = decodedText(item, DCM_SegmentLabel, data);
     LabWords lab{};
@@ -108,30 +108,29 @@ Status readSegments(const DicomItem& data, DcmSegmentation& segmentation, SegHea
 Status readFrames(DcmSegmentation& segmentation, SegHeader& header) {
   const auto frames = std::size_t(header.pixels.frames);
   if (segmentation.getFunctionalGroups().getNumberOfFrames() != frames) {
-    return wrongSize("The file says of " +
-                     std::to_string(segmentation.getFunctionalGroups().getNumberOfFrames()) +
-                     " frames where they lie, and claims " + std::to_string(frames));
+    return wrongSize(tr("The file says of {} frames where they lie, and claims {}",
+                        segmentation.getFunctionalGroups().getNumberOfFrames(), frames));
   }
   for (std::size_t n = 0; n < frames; ++n) {
-    const std::string frame = "Frame " + std::to_string(n + 1);
+    const std::string frame = tr("Frame {}", n + 1);
     FramePlane plane;
     auto* const position =
         groupOf<FGPlanePosPatient>(segmentation, n, DcmFGTypes::EFG_PLANEPOSPATIENT);
     Vec3& p = plane.position_mm;
     if (!position || position->getImagePositionPatient(p.x, p.y, p.z).bad()) {
-      return noGeometry(frame + " does not say where it lies");
+      return noGeometry(tr("{} does not say where it lies", frame));
     }
     auto* const turned =
         groupOf<FGPlaneOrientationPatient>(segmentation, n, DcmFGTypes::EFG_PLANEORIENTPATIENT);
     auto& o = plane.orientation;
     if (!turned || turned->getImageOrientationPatient(o[0], o[1], o[2], o[3], o[4], o[5]).bad()) {
-      return noGeometry(frame + " does not say how it is turned");
+      return noGeometry(tr("{} does not say how it is turned", frame));
     }
     auto* const measures = groupOf<FGPixelMeasures>(segmentation, n, DcmFGTypes::EFG_PIXELMEASURES);
     auto& spacing = plane.pixel_spacing_mm;
     if (!measures || measures->getPixelSpacing(spacing[0], 0).bad() ||
         measures->getPixelSpacing(spacing[1], 1).bad()) {
-      return noGeometry(frame + " does not say how large its pixels are");
+      return noGeometry(tr("{} does not say how large its pixels are", frame));
     }
     double length = 0.0;
     if (n == 0 && measures->getSpacingBetweenSlices(length).good()) header.between_mm = length;
@@ -141,7 +140,7 @@ Status readFrames(DcmSegmentation& segmentation, SegHeader& header) {
     auto* const segment = groupOf<FGSegmentation>(segmentation, n, DcmFGTypes::EFG_SEGMENTATION);
     Uint16 number = 0;
     if (!segment || segment->getReferencedSegmentNumber(number).bad()) {
-      return unreadableSegmentation(frame + " does not say of which segment it is");
+      return unreadableSegmentation(tr("{} does not say of which segment it is", frame));
     }
     header.of.push_back(number);
   }
@@ -156,53 +155,53 @@ Status checkPixels(bool cut, SegHeader& header) {
       syntax && (syntax->codec == Codec::dcmtk || syntax->codec == Codec::jpeg2000);
   if (!syntax || (encapsulated && header.binary)) {
     return Error{code::kUnsupportedTransferSyntax,
-                 "The segmentation is stored as " + transferSyntaxName(pixels.transfer_syntax) +
-                     " (" + pixels.transfer_syntax + "), which is not read",
-                 "", "Export it without compression"};
+                 tr("The segmentation is stored as {} ({}), which is not read",
+                    transferSyntaxName(pixels.transfer_syntax), pixels.transfer_syntax),
+                 "", tr("Export it without compression")};
   }
   if (syntax->loss == Loss::always) {
-    header.notes.push_back("The segmentation was compressed with loss: borders may be off.");
+    header.notes.push_back(tr("The segmentation was compressed with loss: borders may be off."));
   }
   if (pixels.frames > kMostFrames) {
-    return Error{code::kTooLarge, "The file claims more than a million frames", "",
-                 "Copy or export the file anew"};
+    return Error{code::kTooLarge, tr("The file claims more than a million frames"), "",
+                 tr("Copy or export the file anew")};
   }
   if (pixels.frames == 0) {
-    return Error{code::kNoFrames, "The file holds no frame", "",
-                 "Export a segmentation with voxels"};
+    return Error{code::kNoFrames, tr("The file holds no frame"), "",
+                 tr("Export a segmentation with voxels")};
   }
   if (pixels.rows == 0 || pixels.columns == 0) {
-    return wrongSize("The frames have no rows or no columns");
+    return wrongSize(tr("The frames have no rows or no columns"));
   }
   if (pixels.pixelCount() > kLargestSlice) {
-    return Error{code::kTooLarge, "A frame has more than 8192 x 8192 pixels", "",
-                 "Export it at a lower resolution"};
+    return Error{code::kTooLarge, tr("A frame has more than 8192 x 8192 pixels"), "",
+                 tr("Export it at a lower resolution")};
   }
   const int bits = header.binary ? 1 : header.label_map && pixels.bits_allocated == 16 ? 16 : 8;
   if (pixels.samples != 1 || pixels.bits_allocated != bits) {
-    return wrongSize("The frames do not have " + std::string(header.binary ? "one bit" : "a byte") +
-                     " for each pixel");
+    return wrongSize(
+        tr("The frames do not have {} for each pixel", header.binary ? tr("one bit") : "a byte"));
   }
   if (!pixels.pixels) {
-    return Error{code::kNoFrames, "The file holds no pixels", "",
-                 "Export a segmentation with voxels"};
+    return Error{code::kNoFrames, tr("The file holds no pixels"), "",
+                 tr("Export a segmentation with voxels")};
   }
-  if (cut) return unreadableSegmentation("The file is cut short: its frames are not all there");
+  if (cut) return unreadableSegmentation(tr("The file is cut short: its frames are not all there"));
   const PixelPlace& place = *pixels.pixels;
   if (place.encapsulated != encapsulated) {
-    return wrongSize("The frames are not stored as the file's transfer syntax says");
+    return wrongSize(tr("The frames are not stored as the file's transfer syntax says"));
   }
   const std::uint64_t all = pixels.pixelCount() * std::uint64_t(pixels.frames) * unsigned(bits);
   const std::uint64_t needed = (all + 7) / 8;
   if (encapsulated ? place.frames.size() != std::size_t(pixels.frames) : place.bytes < needed) {
-    return wrongSize("The file holds fewer frames than it claims");
+    return wrongSize(tr("The file holds fewer frames than it claims"));
   }
   // Deflate shrinks to a thousandth at most.
   if (syntax->codec == Codec::deflated && needed / 1032 > pixels.file_bytes) {
-    return wrongSize("The file is too small for the frames that it claims");
+    return wrongSize(tr("The file is too small for the frames that it claims"));
   }
   if (syntax->codec == Codec::deflated) {
-    return enoughMemory(double(needed) / 1048576.0, "The segmentation", "");
+    return enoughMemory(double(needed) / 1048576.0, tr("The segmentation"), "");
   }
   return {};
 }
@@ -247,7 +246,7 @@ void readAsBinary(DcmDataset& data) {
 }  // namespace
 
 Error unreadableSegmentation(const std::string& what) {
-  return Error{code::kUnreadable, what, "", "Copy or export the file anew"};
+  return Error{code::kUnreadable, what, "", tr("Copy or export the file anew")};
 }
 
 Result<SegHeader> readSegHeader(const fs::path& file, const Progress& progress) {
@@ -257,7 +256,7 @@ Result<SegHeader> readSegHeader(const fs::path& file, const Progress& progress) 
   const std::shared_lock rule(unknownRule());
   DicomStream stream(file, kManyFrames, &progress);
   if (error || stream.beginning(1).empty()) {
-    return unreadableSegmentation("The file is not there, is empty or may not be read");
+    return unreadableSegmentation(tr("The file is not there, is empty or may not be read"));
   }
   DcmFileFormat dicom;
   dicom.transferInit();
@@ -268,10 +267,10 @@ Result<SegHeader> readSegHeader(const fs::path& file, const Progress& progress) 
   std::string sop_class = uidText(data, DCM_SOPClassUID);
   if (sop_class.empty()) sop_class = uidText(meta, DCM_MediaStorageSOPClassUID);
   if (!isSegmentation(sop_class)) {
-    return Error{code::kNotSegmentation, "The file is no DICOM segmentation", "",
-                 "Choose a file of modality SEG"};
+    return Error{code::kNotSegmentation, tr("The file is no DICOM segmentation"), "",
+                 tr("Choose a file of modality SEG")};
   }
-  if (!whole) return unreadableSegmentation("The file is cut short or damaged");
+  if (!whole) return unreadableSegmentation(tr("The file is cut short or damaged"));
 
   SegHeader header;
   DicomHeader& pixels = header.pixels;
@@ -292,9 +291,9 @@ Result<SegHeader> readSegHeader(const fs::path& file, const Progress& progress) 
   header.label_map = sop_class == kLabelMapStorage;
   if (header.label_map ? type != "LABELMAP" : type != "BINARY" && type != "FRACTIONAL") {
     return Error{code::kUnsupportedSegmentation,
-                 header.label_map ? "The label map segmentation does not say that it is one"
-                                  : "The segmentation is neither binary nor fractional",
-                 "", "Export it as a binary segmentation"};
+                 header.label_map ? tr("The label map segmentation does not say that it is one")
+                                  : tr("The segmentation is neither binary nor fractional"),
+                 "", tr("Export it as a binary segmentation")};
   }
   header.binary = type == "BINARY";
   bool cut = false;
@@ -305,7 +304,7 @@ Result<SegHeader> readSegHeader(const fs::path& file, const Progress& progress) 
     if (header.most == 0) {
       header.most = 255;
       header.notes.push_back(
-          "The file does not say which value stands for a whole voxel: 255 was taken.");
+          tr("The file does not say which value stands for a whole voxel: 255 was taken."));
     }
   }
 
@@ -315,7 +314,7 @@ Result<SegHeader> readSegHeader(const fs::path& file, const Progress& progress) 
   if (header.label_map) readAsBinary(*dicom.getDataset());
   FramesWithoutPixels segmentation;
   if (segmentation.readWithoutPixelData(*dicom.getDataset()).bad()) {
-    return unreadableSegmentation("The file's header cannot be understood");
+    return unreadableSegmentation(tr("The file's header cannot be understood"));
   }
   const DicomItem all(dicom.getDataset());
   if (const Status read = readSegments(all, segmentation, header); !read) return read.error();

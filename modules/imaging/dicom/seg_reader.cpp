@@ -11,8 +11,9 @@
 
 #include "base/codes.h"
 #include "base/memory.h"
-#include "imaging/common/detail/text.h"
+#include "base/tr.h"
 #include "imaging/codes.h"
+#include "imaging/common/detail/text.h"
 #include "imaging/common/workers.h"
 #include "imaging/dicom/detail/dicom_file.h"
 #include "imaging/dicom/detail/dicom_pixels.h"
@@ -90,7 +91,7 @@ class Layers {
     return std::size_t(geometry_.size[0]) * std::size_t(geometry_.size[1]);
   }
   Status addLayer() {
-    if (Status enough = enoughMemory(double(voxels()) / 1048576.0, "The segmentation", "");
+    if (Status enough = enoughMemory(double(voxels()) / 1048576.0, tr("The segmentation"), "");
         !enough) {
       return enough;
     }
@@ -211,13 +212,13 @@ struct Filling {
     for (const std::size_t frame : own) {
       if (progress.cancelled()) return cancelled();
       progress.at(kHeaderShare + (1.0 - kHeaderShare) * double(done++) / double(header.of.size()),
-                  "Reading the segmentation");
+                  tr("Reading the segmentation"));
       const Status read = frames.addTo(layers.slice(stack.slices[frame]), frame,
                                        stack.geometry.size[0], stack.shifts[frame]);
       if (!read) {
         if (progress.cancelled()) return cancelled();
-        return unreadableSegmentation("Frame " + std::to_string(frame + 1) +
-                          " cannot be read: " + read.error().what);
+        return unreadableSegmentation(
+            tr("Frame {} cannot be read: {}", frame + 1, read.error().what));
       }
     }
     return layers.put(value);
@@ -227,39 +228,39 @@ struct Filling {
   Result<std::vector<std::uint8_t>> labels() {
     std::vector<std::uint8_t> layer(stack.geometry.voxelCount());
     if (std::set(stack.slices.begin(), stack.slices.end()).size() < stack.slices.size()) {
-      return unreadableSegmentation("Two frames of the label map lie at one place");
+      return unreadableSegmentation(tr("Two frames of the label map lie at one place"));
     }
     for (std::size_t frame = 0; frame < stack.slices.size(); ++frame) {
       if (progress.cancelled()) return cancelled();
       progress.at(kHeaderShare + (1.0 - kHeaderShare) * double(frame) / double(stack.slices.size()),
-                  "Reading the segmentation");
+                  tr("Reading the segmentation"));
       std::uint8_t* slice = layer.data() + stack.geometry.indexOf(0, 0, stack.slices[frame]);
       const Status read =
           frames.addTo(slice, frame, stack.geometry.size[0], stack.shifts[frame]);
       if (!read) {
         if (progress.cancelled()) return cancelled();
-        return unreadableSegmentation("Frame " + std::to_string(frame + 1) +
-                          " cannot be read: " + read.error().what);
+        return unreadableSegmentation(
+            tr("Frame {} cannot be read: {}", frame + 1, read.error().what));
       }
     }
     return layer;
   }
 
   static Error cancelled() {
-    return Error{code::kCancelled, "Reading the segmentation was cancelled", "", ""};
+    return Error{code::kCancelled, tr("Reading the segmentation was cancelled"), "", ""};
   }
 };
 
 Result<DicomSegmentation> read(const fs::path& file, double threshold, const Progress& progress) {
   if (!(threshold >= 0.0 && threshold <= 1.0)) {
     return Error{code::kBadThreshold,
-                 "The threshold of a fractional segmentation is a share of 0 to 1", "",
-                 "Give one, such as 0.5"};
+                 tr("The threshold of a fractional segmentation is a share of 0 to 1"), "",
+                 tr("Give one, such as 0.5")};
   }
   std::optional<Result<SegHeader>> read_header;
   PixelReader pixels(progress, kManyFrames);
-  const Status done =
-      forEachFile(1, progress, {0.0, kHeaderShare, "Reading the segmentation"}, [&](std::size_t) {
+  const Status done = forEachFile(
+      1, progress, {0.0, kHeaderShare, tr("Reading the segmentation")}, [&](std::size_t) {
         read_header = readSegHeader(file, progress);
         const TransferSyntax* syntax =
             *read_header ? findTransferSyntax(read_header->value().pixels.transfer_syntax)
@@ -268,7 +269,8 @@ Result<DicomSegmentation> read(const fs::path& file, double threshold, const Pro
         std::uint8_t first = 0;
         const Status inflated = pixels.read(read_header->value().pixels, 0, 1, &first);
         if (!inflated)
-          read_header = unreadableSegmentation("The frames cannot be read: " + inflated.error().what);
+          read_header =
+              unreadableSegmentation(tr("The frames cannot be read: {}", inflated.error().what));
       });
   if (!done) {
     return done.error().code == code::kCancelled ? Filling::cancelled() : done.error();
@@ -281,13 +283,13 @@ Result<DicomSegmentation> read(const fs::path& file, double threshold, const Pro
   if (!stack) return stack.error();
   // The mask, and a layer.
   const double grid_mb = double(stack->geometry.voxelCount()) / 1048576.0;
-  if (Status enough = enoughMemory(2.0 * grid_mb, "The segmentation", ""); !enough) {
+  if (Status enough = enoughMemory(2.0 * grid_mb, tr("The segmentation"), ""); !enough) {
     return enough.error();
   }
 
   DicomSegmentation result;
   Segmentation& out = result.segmentation;
-  out.format = "DICOM SEG";
+  out.format = tr("DICOM SEG");
   out.geometry = stack->geometry;
   out.notes = header.notes;
   out.notes.insert(out.notes.end(), stack->notes.begin(), stack->notes.end());
@@ -317,10 +319,10 @@ Result<DicomSegmentation> read(const fs::path& file, double threshold, const Pro
     if (!layer) return layer.error();
     out.layers.push_back(*std::move(layer));
     if (frames.unnamed() > 0) {
-      out.notes.push_back("Left out: " + counted(frames.unnamed(), "voxel") +
-                          " of segments that the file does not name.");
+      out.notes.push_back(tr("Left out: {} of segments that the file does not name.",
+                             counted(frames.unnamed(), "voxel")));
     }
-    out.format = "DICOM label map";
+    out.format = tr("DICOM label map");
     out.named = std::ranges::any_of(out.segments, [](const auto& s) { return !s.name.empty(); });
     progress.at(1.0, "Done");
     return result;
@@ -332,7 +334,7 @@ Result<DicomSegmentation> read(const fs::path& file, double threshold, const Pro
     if (!*layer) {
       const std::string name =
           segment.name.empty() ? std::to_string(segment.number) : "\"" + segment.name + "\"";
-      out.notes.push_back("The segment " + name + " has no voxel.");
+      out.notes.push_back(tr("The segment {} has no voxel.", name));
     }
     out.segments.push_back({segment.name, segment.colour.value_or(labelColour(value)), "",
                             layer->value_or(0), std::uint8_t(value)});
@@ -341,8 +343,8 @@ Result<DicomSegmentation> read(const fs::path& file, double threshold, const Pro
   std::size_t unnamed = 0;
   for (const auto& [number, own] : frames_of) unnamed += own.size();
   if (unnamed > 0) {
-    out.notes.push_back("Left out: " + counted(unnamed, "frame") +
-                        " of segments that the file does not name.");
+    out.notes.push_back(
+        tr("Left out: {} of segments that the file does not name.", counted(unnamed, "frame")));
   }
   out.named = std::ranges::any_of(out.segments, [](const auto& s) { return !s.name.empty(); });
   auto filled = layers.take();
@@ -395,7 +397,7 @@ Result<bool> isFractional(const fs::path& file, const Progress& progress) try {
   if (!header) return named(header.error(), file);
   return !header->binary && !header->label_map;
 } catch (const std::bad_alloc&) {
-  return named(outOfMemory("for the segmentation", ""), file);
+  return named(outOfMemory(tr("for the segmentation"), ""), file);
 }
 
 Result<DicomSegmentation> readDicomSegmentation(const fs::path& file, double threshold,
@@ -405,7 +407,7 @@ Result<DicomSegmentation> readDicomSegmentation(const fs::path& file, double thr
     if (!result) return named(result.error(), file);
     return result;
   } catch (const std::bad_alloc&) {
-    return named(outOfMemory("for the segmentation", ""), file);
+    return named(outOfMemory(tr("for the segmentation"), ""), file);
   }
 }
 

@@ -21,13 +21,13 @@
 #include "base/memory.h"
 #include "base/purpose.h"
 #include "base/system.h"
+#include "base/tr.h"
+#include "imaging/codes.h"
 #include "imaging/common/detail/cielab.h"
 #include "imaging/common/detail/text.h"
 #include "imaging/dicom/detail/dicom_values.h"
 #include "imaging/dicom/detail/seg_codes.h"
 #include "imaging/dicom/detail/written_values.h"
-#include "imaging/codes.h"
-#include "imaging/dicom/seg_codes.h"
 #include "volume/codes.h"
 
 namespace trephine {
@@ -50,7 +50,7 @@ Error cannotWrite(const std::string& what, const fs::path& where, const std::str
 }
 
 Error cancelled() {
-  return Error{code::kCancelled, "Writing the segmentation was cancelled", "", ""};
+  return Error{code::kCancelled, tr("Writing the segmentation was cancelled"), "", ""};
 }
 
 // What goes into the file: a structure with voxels, and the slices that hold some.
@@ -94,8 +94,8 @@ std::vector<Written> structuresOf(const LabelMap& map, std::vector<std::string>&
   for (const Structure& structure : map.structures) {
     const bool fits = structure.label > 0 && structure.label < 256;
     if (!fits || slices[std::size_t(structure.label)].empty()) {
-      notes.push_back("The structure \"" + cleanUtf8(structure.name) +
-                      "\" has no voxel and was left out.");
+      notes.push_back(
+          tr("The structure \"{}\" has no voxel and was left out.", cleanUtf8(structure.name)));
       continue;
     }
     const auto label = std::size_t(structure.label);
@@ -105,7 +105,7 @@ std::vector<Written> structuresOf(const LabelMap& map, std::vector<std::string>&
     written.name = labelText(structure.name);
     if (written.name.empty()) written.name = "label " + std::to_string(label);
     if (cleanUtf8(structure.name).size() > written.name.size()) {
-      notes.push_back("The name \"" + written.name + "\" was cut to 64 characters.");
+      notes.push_back(tr("The name \"{}\" was cut to 64 characters.", written.name));
     }
   }
   for (std::size_t label = 1; label < 256; ++label) {
@@ -275,8 +275,8 @@ Status writeSegmentation(const LabelMap& map, const std::vector<Written>& struct
       ContentIdentificationMacro("1", "STRUCTURES", "", "")));
   const std::unique_ptr<DcmSegmentation> segmentation(made);
   const auto failed = [&] {
-    return cannotWrite(std::string("The segmentation cannot be written: ") + step.text(), folder,
-                       "Check that the disk has room");
+    return cannotWrite(tr("The segmentation cannot be written: {}", step.text()), folder,
+                       tr("Check that the disk has room"));
   };
   if (!segmentation) return failed();
   describe(*segmentation, map.geometry, ct, identity, step);
@@ -293,7 +293,7 @@ Status writeSegmentation(const LabelMap& map, const std::vector<Written>& struct
       if (progress.cancelled()) return cancelled();
       if (step.good()) frames.add(*segmentation, structures[n], number, k, step);
     }
-    progress.at(0.8 * double(n + 1) / double(structures.size()), "Writing structures");
+    progress.at(0.8 * double(n + 1) / double(structures.size()), tr("Writing structures"));
   }
   // Both checks compare every frame with every other.
   segmentation->setCheckFGOnWrite(OFFalse);
@@ -349,8 +349,8 @@ Status checkSource(const RawSourceUids& source) {
            slice.frame <= 65535;
   });
   if (named && slices) return {};
-  return Error{code::kBadSource, "The CT lacks UIDs that a segmentation of it has to name", "",
-               "Write the CT anew with the structures"};
+  return Error{code::kBadSource, tr("The CT lacks UIDs that a segmentation of it has to name"), "",
+               tr("Write the CT anew with the structures")};
 }
 
 // A folder beside the targets, on the same disk; gone at the end with what is left in it.
@@ -385,7 +385,8 @@ Status putInPlace(const fs::path& from, const std::vector<const char*>& names,
     for (std::size_t done = 0; done < n; ++done) {
       fs::rename(folder / names[done], from / names[done], ignored);
     }
-    return cannotWrite("The segmentation cannot be put in place", folder, "Choose another place");
+    return cannotWrite(tr("The segmentation cannot be put in place"), folder,
+                       tr("Choose another place"));
   }
   return {};
 }
@@ -395,8 +396,8 @@ Result<WrittenStructures> write(const Volume& ct, const LabelMap& map, const fs:
   setUpDcmtk();
   if (const Status valid = checkCtSeries(ct, folder); !valid) return valid.error();
   if (!(map.geometry == ct.geometry) || map.labels.size() != ct.geometry.voxelCount()) {
-    return Error{code::kLabelsElsewhere, "The structures do not lie on the grid of the CT", "",
-                 "Fit them to it first"};
+    return Error{code::kLabelsElsewhere, tr("The structures do not lie on the grid of the CT"), "",
+                 tr("Fit them to it first")};
   }
   if (writing.source) {
     if (const Status named = checkSource(*writing.source); !named) return named.error();
@@ -404,16 +405,17 @@ Result<WrittenStructures> write(const Volume& ct, const LabelMap& map, const fs:
   WrittenStructures written;
   const std::vector<Written> structures = structuresOf(map, written.notes);
   if (structures.empty()) {
-    return Error{code::kNoStructures, "No structure has a voxel, so there is nothing to write", "",
-                 ""};
+    return Error{code::kNoStructures, tr("No structure has a voxel, so there is nothing to write"),
+                 "", ""};
   }
   const std::uint64_t bytes = pixelBytes(map.geometry, structures);
   if (bytes > kMostPixelBytes) {
-    return Error{code::kTooLarge, "The structures are more than a DICOM file holds", "",
-                 "Write fewer of them"};
+    return Error{code::kTooLarge, tr("The structures are more than a DICOM file holds"), "",
+                 tr("Write fewer of them")};
   }
   // Its bits, and DCMTK's two copies of them.
-  if (Status enough = enoughMemory(3.0 * double(bytes) / 1048576.0, "Writing the segmentation", "");
+  if (Status enough =
+          enoughMemory(3.0 * double(bytes) / 1048576.0, tr("Writing the segmentation"), "");
       !enough) {
     return enough.error();
   }
@@ -421,7 +423,8 @@ Result<WrittenStructures> write(const Volume& ct, const LabelMap& map, const fs:
   std::error_code error;
   const bool was_there = fs::is_directory(folder, error);
   fs::create_directories(folder, error);
-  if (error) return cannotWrite("The folder cannot be made", folder, "Choose another place");
+  if (error)
+    return cannotWrite(tr("The folder cannot be made"), folder, tr("Choose another place"));
   const auto giveUp = [&](Error why) {
     // An empty folder that was made for this goes as well; another stays.
     if (!was_there) fs::remove(folder, error);
@@ -431,14 +434,15 @@ Result<WrittenStructures> write(const Volume& ct, const LabelMap& map, const fs:
   if (!writing.source) names.push_back(kCtFolder);
   for (const char* name : names) {
     if (fs::symlink_status(folder / name, error).type() == fs::file_type::not_found) continue;
-    return giveUp(cannotWrite("The folder already holds \"" + std::string(name) + "\"", folder,
-                              "Choose an empty folder"));
+    return giveUp(cannotWrite(tr("The folder already holds \"{}\"", name), folder,
+                              tr("Choose an empty folder")));
   }
   Status done;
   {
     const Unfinished unfinished(folder);
     if (!unfinished.made()) {
-      return giveUp(cannotWrite("The folder cannot be written to", folder, "Choose another place"));
+      return giveUp(
+          cannotWrite(tr("The folder cannot be written to"), folder, tr("Choose another place")));
     }
     RawSourceUids own;  // of the CT that is written
     if (!writing.source) {
@@ -476,7 +480,7 @@ Result<WrittenStructures> writeStructuresAsDicom(const Volume& ct, const LabelMa
   try {
     return write(ct, map, folder, writing, progress);
   } catch (const std::bad_alloc&) {
-    return outOfMemory("to write the segmentation", "");
+    return outOfMemory(tr("to write the segmentation"), "");
   }
 }
 

@@ -8,6 +8,7 @@
 
 #include "base/progress.h"
 #include "base/result.h"
+#include "base/tr.h"
 #include "imaging/dicom/ct_writer.h"
 #include "volume/label_map.h"
 #include "volume/volume.h"
@@ -28,7 +29,7 @@ struct RawSourceUids {
 
 struct SegWriting {
   // Of the CT's files; the segmentation has its patient, too.
-  CtSeriesText text{"Trephine case", "", "TREPHINE^CASE", "CASE"};
+  CtSeriesText text{tr("Trephine case"), "", "TREPHINE^CASE", "CASE"};
   std::optional<RawSourceUids> source{};  // to refer to it, and write no CT
 };
 

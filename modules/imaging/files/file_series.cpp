@@ -4,9 +4,11 @@
 #include <cctype>
 #include <cstdio>
 
+#include "base/formatted.h"
+#include "base/tr.h"
+#include "imaging/codes.h"
 #include "imaging/common/detail/stored_values.h"
 #include "imaging/common/detail/text.h"
-#include "imaging/codes.h"
 #include "imaging/report/answers.h"
 #include "imaging/series/detail/hu_checks.h"
 #include "imaging/series/detail/series.h"
@@ -20,14 +22,14 @@ namespace {
 
 constexpr int kMostLabels = 255;
 
-void add(SeriesReport& report, Code code, Severity severity, std::string text, const char* action) {
-  report.findings.push_back({code, severity, std::move(text), {}, action});
+void add(SeriesReport& report, Code code, Severity severity, std::string text, std::string action) {
+  report.findings.push_back({code, severity, std::move(text), {}, std::move(action)});
 }
 
 void refuseLabelMap(SeriesReport& report, std::string text) {
   report.modality = "SEG";
   add(report, code::kLabelMap, Severity::refusal, std::move(text),
-      "Open the CT first, then this file by \"Open segmentation\" on the tab Structures");
+      tr("Open the CT first, then this file by \"Open segmentation\" on the tab Structures"));
   report.verdict = Verdict::refused;
 }
 
@@ -47,7 +49,7 @@ std::string wayOf(const Vec3& direction) {
   std::string way = kWays[axis][direction[axis] > 0.0];
   const double askew_deg =
       glm::degrees(std::acos(std::min(1.0, std::abs(direction[axis]) / glm::length(direction))));
-  if (askew_deg > 0.05) way += " (" + shortNumber(askew_deg) + " degrees askew)";
+  if (askew_deg > 0.05) way += tr(" ({} degrees askew)", shortNumber(askew_deg));
   return way;
 }
 
@@ -56,36 +58,34 @@ Result<VolumeFileHeader> inChosenForm(VolumeFileHeader header, const std::filesy
                                       const Answers& answers, SeriesReport& report) {
   if (header.forms.empty()) return header;
   Choice choice{code::kFormsDiffer,
-                "The file says in two ways how it lies in the patient. Which is right?",
+                tr("The file says in two ways how it lies in the patient. Which is right?"),
                 {"refuse"},
-                {"Do not use the file"}};
+                {tr("Do not use the file")}};
   for (const VolumeFileHeader::Form& form : header.forms) {
     const GridGeometry& g = form.geometry;
     const Vec3 middle = glm::round(g.centre_mm()) + Vec3(0.0);  // no -0
-    char words[240];
-    std::snprintf(words, sizeof words,
-                  "The %s: steps of %.4g x %.4g x %.4g mm, %.0f mm along the slices; columns go to "
-                  "%s, rows to %s, slices to %s; its middle at (%.0f, %.0f, %.0f) mm",
-                  form.name.c_str(), g.spacing_mm.x, g.spacing_mm.y, g.spacing_mm.z,
-                  g.size[2] * g.spacing_mm.z, wayOf(g.direction[0]).c_str(),
-                  wayOf(g.direction[1]).c_str(),
-                  wayOf(form.reversed_slices ? -g.direction[2] : g.direction[2]).c_str(), middle.x,
-                  middle.y, middle.z);
     choice.options.push_back(form.name);
-    choice.words.emplace_back(words);
+    choice.words.push_back(tr(
+        "The {}: steps of {} mm, {} mm along the slices; columns go to {}, rows to {}, slices to "
+        "{}; "
+        "its middle at ({}) mm",
+        form.name, formatted("%.4g x %.4g x %.4g", g.spacing_mm.x, g.spacing_mm.y, g.spacing_mm.z),
+        formatted("%.0f", g.size[2] * g.spacing_mm.z), wayOf(g.direction[0]), wayOf(g.direction[1]),
+        wayOf(form.reversed_slices ? -g.direction[2] : g.direction[2]),
+        formatted("%.0f, %.0f, %.0f", middle.x, middle.y, middle.z)));
   }
   const std::string text = header.contradiction;
   const std::string chosen = ask(std::move(choice), answers, report.choices);
   if (Result<VolumeFileHeader> in_form = inForm(header, chosen, file)) {
     add(report, code::kFormsDiffer, Severity::repair, text,
-        chosen == "sform"   ? "It was taken as its sform says, as was chosen"
-        : chosen == "qform" ? "It was taken as its qform says, as was chosen"
-                            : "It was taken with the steps of its pixdim along the axes of its "
-                              "sform, as was chosen");
+        chosen == "sform"   ? tr("It was taken as its sform says, as was chosen")
+        : chosen == "qform" ? tr("It was taken as its qform says, as was chosen")
+                            : tr("It was taken with the steps of its pixdim along the axes of its "
+                                 "sform, as was chosen"));
     return in_form;
   }
   add(report, code::kFormsDiffer, Severity::refusal, text,
-      "Measure a known length, or look where the scan came from, and choose the right one");
+      tr("Measure a known length, or look where the scan came from, and choose the right one"));
   return header;
 }
 
@@ -121,30 +121,31 @@ SeriesReport assessFile(const std::filesystem::path& file, const std::string& na
   report.reading_mb = voxelsMb(header->geometry.voxelCount());
   report.memory_mb = memoryMb(report, {});
   if (bytesOf(header->type) == 1) {
-    refuseLabelMap(report, "The voxels have 8 bits: a label map or a picture, not a CT");
+    refuseLabelMap(report, tr("The voxels have 8 bits: a label map or a picture, not a CT"));
     return report;
   }
   if (header->geometry.size[2] < 2) {
-    add(report, code::kOneLocation, Severity::refusal, "A single slice is not a volume",
-        "Choose a file that covers the anatomy");
+    add(report, code::kOneLocation, Severity::refusal, tr("A single slice is not a volume"),
+        tr("Choose a file that covers the anatomy"));
     report.verdict = Verdict::refused;
     return report;
   }
   header = inChosenForm(*std::move(header), file, answers, report);
   report.geometry = header->geometry;
   add(report, code::kAssumedHu, Severity::notice,
-      "A " + header->format + " file does not say what its values are", "They were taken as HU");
+      tr("A {} file does not say what its values are", header->format),
+      tr("They were taken as HU"));
   for (const std::string& note : header->notes) {
     add(report, code::kFileNote, Severity::notice, note, "");
   }
   if (header->reversed_slices) {
     add(report, code::kLeftHanded, Severity::notice,
-        "The file counts its slices from the other end",
-        "They were reversed; every voxel stays where it was in the patient");
+        tr("The file counts its slices from the other end"),
+        tr("They were reversed; every voxel stays where it was in the patient"));
   }
   if (namesLabels(file.filename().string())) {  // whatever its folder is called
-    add(report, code::kNamedAsLabels, Severity::notice, "The file is named like a label map",
-        "Make sure that it is the CT");
+    add(report, code::kNamedAsLabels, Severity::notice, tr("The file is named like a label map"),
+        tr("Make sure that it is the CT"));
   }
   report.verdict = verdictOf(report.findings);
   return report;
@@ -160,10 +161,10 @@ Result<Volume> readFileSeries(const std::filesystem::path& file, const Answers& 
   const std::size_t count = reading->volume.hu.size();
   if (reading->rounded > count / 10 && reading->hu_min >= -kSmall && reading->hu_max <= kSmall) {
     add(report, code::kNotHu, Severity::refusal,
-        "The values lie between " + shortNumber(reading->hu_min) + " and " +
-            shortNumber(reading->hu_max) +
-            " and are no whole numbers: attenuation (of water 0.2 per cm) or shares, not HU",
-        "Export the scan in HU: 1000 x (value - that of water) / that of water");
+        tr("The values lie between {} and {} and are no whole numbers: attenuation (of water 0.2 "
+           "per cm) or shares, not HU",
+           shortNumber(reading->hu_min), shortNumber(reading->hu_max)),
+        tr("Export the scan in HU: 1000 x (value - that of water) / that of water"));
     report.verdict = Verdict::refused;
     const Finding& finding = report.findings.back();
     return Error{finding.code, finding.text, report.uid, finding.action};
@@ -171,20 +172,21 @@ Result<Volume> readFileSeries(const std::filesystem::path& file, const Answers& 
   const auto voxels = [](std::uint64_t n) { return counted(n, "voxel"); };
   if (reading->rounded > 0) {
     add(report, code::kHuRounded, Severity::repair,
-        voxels(reading->rounded) + " had HU that are not whole numbers",
-        "They were rounded to the nearest");
+        tr("{} had HU that are not whole numbers", voxels(reading->rounded)),
+        tr("They were rounded to the nearest"));
   }
   if (reading->clamped > 0) {
     add(report, code::kHuClamped, Severity::repair,
-        voxels(reading->clamped) + " had HU outside -32768..32767",
-        "They were set to the nearest limit");
+        tr("{} had HU outside -32768..32767", voxels(reading->clamped)),
+        tr("They were set to the nearest limit"));
   }
   if (reading->not_numbers > 0) {
     add(report, code::kNotNumbers, Severity::repair,
-        voxels(reading->not_numbers) + " held no number", "They became air");
+        tr("{} held no number", voxels(reading->not_numbers)), tr("They became air"));
   }
   if (reading->hu_min >= 0.0 && reading->hu_max <= kMostLabels) {
-    refuseLabelMap(report, "All values lie between 0 and 255: a label map or a picture, not a CT");
+    refuseLabelMap(report,
+                   tr("All values lie between 0 and 255: a label map or a picture, not a CT"));
     const Finding& finding = report.findings.back();
     return Error{finding.code, finding.text, report.uid, finding.action};
   }
@@ -194,8 +196,8 @@ Result<Volume> readFileSeries(const std::filesystem::path& file, const Answers& 
       !std::ranges::all_of(reading->volume.hu, [](std::int16_t hu) { return hu % 256 == 0; });
   if (exchanged) {
     look.doubt(
-        "neighbours differ far less with the bytes of each voxel exchanged, as of a header "
-        "that says the wrong byte order");
+        tr("neighbours differ far less with the bytes of each voxel exchanged, as of a header "
+           "that says the wrong byte order"));
   }
   UnnamedPadding padding;
   if (!exchanged) padding = unnamedPaddingToAir(reading->volume);
@@ -217,7 +219,7 @@ Result<SlicePicture> fileSlice(const std::filesystem::path& file, int index,
   if (!volume) return volume.error();
   const GridGeometry& g = volume->geometry;
   if (index < 0 || index >= g.size[2]) {
-    return Error{code::kNoSuchSlice, "There is no such slice", std::to_string(index), ""};
+    return Error{code::kNoSuchSlice, tr("There is no such slice"), std::to_string(index), ""};
   }
   const auto first = volume->hu.begin() + std::ptrdiff_t(g.indexOf(0, 0, index));
   return SlicePicture{

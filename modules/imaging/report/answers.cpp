@@ -3,8 +3,9 @@
 #include <algorithm>
 #include <set>
 
-#include "imaging/common/detail/text.h"
+#include "base/tr.h"
 #include "imaging/codes.h"
+#include "imaging/common/detail/text.h"
 #include "volume/codes.h"
 
 namespace trephine {
@@ -44,15 +45,15 @@ Status fits(const Options& asked, const Answers& answers) {
     if (!isChoice(code)) {
       std::vector<std::string> names;
       for (const Code& known : codes()) names.push_back(known.str());
-      return Error{code::kBadChoice, "There is no choice of this name", cleanUtf8(code.str()),
-                   "Choose among " + listed(names)};
+      return Error{code::kBadChoice, tr("There is no choice of this name"), cleanUtf8(code.str()),
+                   tr("Choose among {}", listed(names))};
     }
     const auto question = asked.find(code);
     if (question == asked.end()) continue;
     if (std::ranges::find(question->second, option) != question->second.end()) continue;
     return Error{code::kBadChoice,
-                 "The choice " + code.str() + " has no option '" + cleanUtf8(option) + "'", "",
-                 "Choose " + listed(question->second, "or")};
+                 tr("The choice {} has no option '{}'", code.str(), cleanUtf8(option)), "",
+                 tr("Choose {}", listed(question->second, "or"))};
   }
   return {};
 }

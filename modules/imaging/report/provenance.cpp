@@ -1,6 +1,7 @@
 #include "imaging/report/provenance.h"
 
 #include "base/file.h"
+#include "base/tr.h"
 #include "training/codes.h"
 
 namespace trephine {
@@ -74,10 +75,10 @@ Result<Provenance> provenanceFrom(const Json& json, const std::string& file) {
   provenance.lossy = reader.boolean("lossy", false);
   provenance.slices_used = int(reader.integer("slices_used", kSlices));
   const Json& answers = reader.raw("choices");
-  if (!answers.is_object()) reader.fail("choices", "Expected an object of texts");
+  if (!answers.is_object()) reader.fail("choices", tr("Expected an object of texts"));
   for (const auto& [code, option] : answers.items()) {
     if (!option.is_string()) {
-      reader.fail("choices", "Expected an object of texts");
+      reader.fail("choices", tr("Expected an object of texts"));
       break;
     }
     provenance.answers[Code::named(code)] = option.get<std::string>();
@@ -101,9 +102,10 @@ Result<Provenance> provenanceFrom(const Json& json, const std::string& file) {
   }
   provenance.volume_sha256 = reader.text("volume_sha256");
   if (reader.has("source_ids")) {
-    return Error{code::kOlderVersion,
-                 "It was written by a Trephine that kept which CT it is of where all may read it",
-                 file, "Import the CT again, and delete what was made of it before"};
+    return Error{
+        code::kOlderVersion,
+        tr("It was written by a Trephine that kept which CT it is of where all may read it"), file,
+        tr("Import the CT again, and delete what was made of it before")};
   }
   provenance.build = reader.text("build");
   if (Status status = reader.finish(); !status) return status.error();

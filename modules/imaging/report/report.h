@@ -114,6 +114,7 @@ double readingMb(const SeriesReport& series, const ImportRequest& request);
 struct SkippedFiles {
   std::string reason;
   int count = 0;
+  bool packed = false;  // archives, to be unpacked first
 };
 
 struct ImportReport {

@@ -5,6 +5,7 @@
 #include "base/html.h"
 #include "base/purpose.h"
 #include "base/system.h"
+#include "base/tr.h"
 #include "imaging/common/detail/text.h"
 #include "imaging/dicom/detail/transfer_syntax.h"
 
@@ -19,14 +20,14 @@ std::string escaped(std::string_view text) {
   return inHtml(cleanUtf8(text));
 }
 
-const char* verdictSentence(Verdict verdict) {
+std::string verdictSentence(Verdict verdict) {
   switch (verdict) {
     case Verdict::pass:
-      return "PASS &#8211; can be used as it is";
+      return tr("PASS &#8211; can be used as it is");
     case Verdict::repaired:
-      return "REPAIRED &#8211; can be used; what was changed is said below";
+      return tr("REPAIRED &#8211; can be used; what was changed is said below");
     case Verdict::refused:
-      return "REFUSED &#8211; cannot be used as it is; what to do is said below";
+      return tr("REFUSED &#8211; cannot be used as it is; what to do is said below");
   }
   return "";
 }
@@ -53,7 +54,7 @@ std::string slicesText(const std::vector<std::string>& slices) {
     text += (n == 0 ? "" : ", ") + escaped(slices[n]);
   }
   if (slices.size() > kMostSlices) {
-    text += " and " + std::to_string(slices.size() - kMostSlices) + " more";
+    text += tr(" and {} more", slices.size() - kMostSlices);
   }
   return text;
 }
@@ -69,8 +70,10 @@ std::string findingRow(const Finding& finding) {
 std::string findingsTable(const SeriesReport& series) {
   std::string html =
       "<table border=\"1\" cellspacing=\"0\" cellpadding=\"3\" width=\"100%\">\n"
-      "<tr><th align=\"left\">Severity</th><th align=\"left\">What was found</th>"
-      "<th align=\"left\">What was done, or is to do</th><th align=\"left\">Code</th></tr>\n";
+      "<tr><th align=\"left\">" +
+      tr("Severity") + "</th><th align=\"left\">" + tr("What was found") +
+      "</th><th align=\"left\">" + tr("What was done, or is to do") + "</th><th align=\"left\">" +
+      tr("Code") + "</th></tr>\n";
   for (const Finding& finding : series.findings) html += findingRow(finding);
   return html + "</table>\n";
 }
@@ -88,57 +91,52 @@ std::string choiceTable(const Choice& choice) {
 std::string seriesSection(const SeriesReport& series, std::size_t number, std::size_t count,
                           bool chosen) {
   const GridGeometry& g = series.geometry;
-  std::string html = "<h3>Series " + std::to_string(number) + " of " + std::to_string(count) +
-                     (chosen ? " (opened)" : "") + ": <font color=\"" +
-                     verdictColour(series.verdict) + "\">" + verdictSentence(series.verdict) +
-                     "</font></h3>\n<table cellpadding=\"2\">\n";
+  std::string html =
+      tr("<h3>Series {} of {}{}: <font color=\"{}\">{}</font></h3>\n<table cellpadding=\"2\">\n",
+         number, count, (chosen ? " (opened)" : ""), verdictColour(series.verdict),
+         verdictSentence(series.verdict));
   html += row("Kind", escaped(series.modality.empty() ? "unknown" : shownTerm(series.modality)) +
                           ", " + escaped(series.source) +
                           (series.transfer_syntax.empty()
                                ? ""
                                : ", " + escaped(transferSyntaxName(series.transfer_syntax))));
-  html += row("Slices",
-              std::to_string(series.slices) +
-                  (series.phases > 1 ? " in " + std::to_string(series.phases) + " phases" : ""));
-  html +=
-      row("Volume", std::to_string(g.size[0]) + " &times; " + std::to_string(g.size[1]) +
-                        " &times; " + std::to_string(g.size[2]) + " voxels of " +
-                        fixedText(g.spacing_mm.x, 3) + " &times; " + fixedText(g.spacing_mm.y, 3) +
-                        " &times; " + fixedText(g.spacing_mm.z, 3) + " mm");
+  html += row("Slices", std::to_string(series.slices) +
+                            (series.phases > 1 ? tr(" in {} phases", series.phases) : ""));
+  html += row("Volume", tr("{} &times; {} &times; {} voxels of {} &times; {} &times; {} mm",
+                           g.size[0], g.size[1], g.size[2], fixedText(g.spacing_mm.x, 3),
+                           fixedText(g.spacing_mm.y, 3), fixedText(g.spacing_mm.z, 3)));
   if (series.hu_min && series.hu_max) {
-    html += row("Values",
-                std::to_string(*series.hu_min) + " to " + std::to_string(*series.hu_max) + " HU");
+    html += row("Values", tr("{} to {} HU", *series.hu_min, *series.hu_max));
   }
-  if (series.lossy) html += row("Compression", "with loss");
+  if (series.lossy) html += row("Compression", tr("with loss"));
   html += "</table>\n";
-  if (series.findings.empty()) html += "<p>Nothing to remark.</p>\n";
+  if (series.findings.empty()) html += "<p>" + tr("Nothing to remark.") + "</p>\n";
   if (!series.findings.empty()) html += findingsTable(series);
   for (const Choice& choice : series.choices) html += choiceTable(choice);
   return html;
 }
 
 std::string provenanceSection(const Provenance& provenance) {
-  std::string html = "<h3>How the volume was made</h3>\n<table cellpadding=\"2\">\n";
+  std::string html = "<h3>" + tr("How the volume was made") + "</h3>\n<table cellpadding=\"2\">\n";
   for (const auto& [code, option] : provenance.answers) {
-    html += row("Choice " + escaped(code.str()), escaped(option));
+    html += row(tr("Choice {}", escaped(code.str())), escaped(option));
   }
   if (const auto& box = provenance.crop) {
     std::string text;
     for (std::size_t axis = 0; axis < 3; ++axis) {
       constexpr const char* kNames[] = {"columns ", ", rows ", ", slices "};
-      text += kNames[axis] + std::to_string(box->low[axis] + 1) + " to " +
-              std::to_string(box->high[axis]);
+      text += tr("{}{} to {}", kNames[axis], box->low[axis] + 1, box->high[axis]);
     }
-    html += row("Crop (counted from 1)", text);
+    html += row(tr("Crop (counted from 1)"), text);
   }
   if (provenance.reduction > 1) {
     html += row("Resolution", provenance.reduction == 2 ? "half" : "a quarter");
   }
   if (const auto& loss = provenance.loss) {
-    html += row("Measured loss", fixedText(loss->rms_hu, 1) + " HU rms, 99 % below " +
-                                     fixedText(loss->p99_hu, 0) + " HU, volume of bone " +
-                                     (loss->bone_volume_change_percent >= 0.0 ? "+" : "") +
-                                     fixedText(loss->bone_volume_change_percent, 1) + " %");
+    html += row(tr("Measured loss"),
+                tr("{} HU rms, 99 % below {} HU, volume of bone {}{} %", fixedText(loss->rms_hu, 1),
+                   fixedText(loss->p99_hu, 0), (loss->bone_volume_change_percent >= 0.0 ? "+" : ""),
+                   fixedText(loss->bone_volume_change_percent, 1)));
   }
   html += row("Fingerprint", "<font size=\"1\">" + escaped(provenance.volume_sha256) + "</font>");
   return html + "</table>\n";
@@ -153,7 +151,7 @@ std::string reportPage(const ImportReport& report) {
       " h2 { font-size: 14pt } h3 { font-size: 10pt; margin: 8px 0 2px 0 }"
       " table { font-size: 8pt; border-collapse: collapse }</style></head><body>\n"
       "<h2>CT import report</h2>\n<p>" +
-      std::string(kPurpose) + ". This page names no patient.</p>\n";
+      tr(kPurpose) + ". This page names no patient.</p>\n";
   if (report.error) {
     html +=
         "<p><b>" + escaped(report.error->what) + ".</b> " + escaped(report.error->next) + ".</p>\n";
@@ -169,15 +167,14 @@ std::string reportPage(const ImportReport& report) {
     html += seriesSection(report.series[order[n]], n + 1, order.size(), chosen(order[n]));
   }
   if (order.size() > kMostSeries) {
-    html += "<p>" + std::to_string(order.size() - kMostSeries) + " more series " +
-            (order.size() == kMostSeries + 1 ? "was" : "were") +
-            " found; the window lists all.</p>\n";
+    html += tr("<p>{} more series {} found; the window lists all.</p>\n",
+               order.size() - kMostSeries, (order.size() == kMostSeries + 1 ? "was" : "were"));
   }
   if (report.provenance) html += provenanceSection(*report.provenance);
-  html += "<h3>Files</h3>\n<p>" + counted(std::uint64_t(report.files_seen), "file", "was", "were") +
-          " seen, " + std::to_string(report.files_read) + " read.";
+  html += tr("<h3>Files</h3>\n<p>{} seen, {} read.",
+             counted(std::uint64_t(report.files_seen), "file", "was", "were"), report.files_read);
   for (const SkippedFiles& skipped : report.skipped) {
-    html += " Skipped " + std::to_string(skipped.count) + ": " + escaped(skipped.reason) + ".";
+    html += tr(" Skipped {}: {}.", skipped.count, escaped(skipped.reason));
   }
   return html + "</p>\n<p><font size=\"1\">Trephine " + escaped(buildName()) +
          "</font></p>\n</body></html>\n";

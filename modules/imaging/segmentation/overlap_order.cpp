@@ -5,8 +5,9 @@
 #include <set>
 #include <string_view>
 
-#include "imaging/common/detail/text.h"
+#include "base/tr.h"
 #include "imaging/codes.h"
+#include "imaging/common/detail/text.h"
 
 namespace trephine {
 
@@ -61,9 +62,10 @@ Result<std::vector<std::size_t>> orderFrom(const std::string& answer, const Segm
       std::vector<std::string> names;
       for (const auto& segment : of.segments) names.push_back("'" + nameOf(segment) + "'");
       return Error{code::kBadChoice,
-                   "The order for OVERLAP names '" + cleanUtf8(parts[first]) +
-                       "', which is no structure of the file or stands there already",
-                   "", "Choose among " + listed(names, "and") + ", each once"};
+                   tr("The order for OVERLAP names '{}', which is no structure of the file or "
+                      "stands there already",
+                      cleanUtf8(parts[first])),
+                   "", tr("Choose among {}, each once", listed(names, "and"))};
     }
     taken[*found] = true;
     order.push_back(*found);

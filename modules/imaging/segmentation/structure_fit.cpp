@@ -9,11 +9,12 @@
 #include "base/codes.h"
 #include "base/memory.h"
 #include "base/range.h"
+#include "base/tr.h"
+#include "imaging/codes.h"
 #include "imaging/common/detail/text.h"
-#include "imaging/segmentation/overlap_order.h"
 #include "imaging/segmentation/detail/structure_hu.h"
 #include "imaging/segmentation/detail/structure_place.h"
-#include "imaging/codes.h"
+#include "imaging/segmentation/overlap_order.h"
 #include "volume/codes.h"
 #include "volume/grid_place.h"
 
@@ -39,21 +40,21 @@ int patientAxis(const GridGeometry& g, int axis) {
   return most;
 }
 
-const char* sidesAlong(const GridGeometry& g, int axis) {
-  static const char* const kSides[] = {"left and right", "front and back", "head and foot"};
-  return kSides[patientAxis(g, axis)];
+std::string sidesAlong(const GridGeometry& g, int axis) {
+  const std::string sides[] = {tr("left and right"), tr("front and back"), tr("head and foot")};
+  return sides[patientAxis(g, axis)];
 }
 
 // "82 slices (246 mm) nearer to the head".
 std::string moveWords(const BetterPlace& place, const GridGeometry& g) {
   static const char* const kAxes[] = {"column", "row", "slice"};
-  static const char* const kSides[][2] = {{"the patient's right", "the patient's left"},
-                                          {"the front", "the back"},
-                                          {"the foot", "the head"}};
+  const std::string sides[][2] = {{tr("the patient's right"), tr("the patient's left")},
+                                  {tr("the front"), tr("the back")},
+                                  {tr("the foot"), tr("the head")}};
   const int voxels = std::abs(place.voxels), towards = patientAxis(g, place.axis);
   const bool rising = (place.voxels > 0) == (g.direction[place.axis][towards] > 0.0);
-  return counted(std::size_t(voxels), kAxes[place.axis]) + " (" +
-         number(voxels * g.spacing_mm[place.axis]) + " mm) nearer to " + kSides[towards][rising];
+  return tr("{} ({} mm) nearer to {}", counted(std::size_t(voxels), kAxes[place.axis]),
+            number(voxels * g.spacing_mm[place.axis]), sides[towards][rising]);
 }
 
 // Voxels [low, high) of the CT whose middles lie in the other grid's box, by their extremes.
@@ -171,9 +172,8 @@ std::string partWords(const VoxelBox& box, const GridGeometry& ct) {
     if (box.low[a] == 0 && box.high[a] == ct.size[a]) continue;
     if (!words.empty()) words += ", ";
     const double mm = (box.high[a] - box.low[a]) * ct.spacing_mm[int(a)];
-    words += std::string(kAxes[a]) + " " + std::to_string(box.low[a] + 1) + " to " +
-             std::to_string(box.high[a]) + " of " + std::to_string(ct.size[a]) + " (" +
-             number(mm, 0) + " of " + number(ct.size[a] * ct.spacing_mm[int(a)], 0) + " mm)";
+    words += tr("{} {} to {} of {} ({} of {} mm)", kAxes[a], box.low[a] + 1, box.high[a],
+                ct.size[a], number(mm, 0), number(ct.size[a] * ct.spacing_mm[int(a)], 0));
   }
   return words;
 }
@@ -190,8 +190,8 @@ class Asking {
     if (given == answers_.end() || given->second != "keep") {
       if (given == answers_.end() && open_) *open_ = choice;
       return Error{
-          choice.code, choice.question, "the segmentation",
-          "Export it again with its orientation, or answer " + choice.code.str() + "=keep"};
+          choice.code, choice.question, tr("the segmentation"),
+          tr("Export it again with its orientation, or answer {}=keep", choice.code.str())};
     }
     fit_.choices.push_back(std::move(choice));
     return {};
@@ -205,8 +205,8 @@ class Asking {
       if (std::ranges::find(choice.options, given->second) == choice.options.end()) {
         return Error{
             code::kBadChoice,
-            "The choice " + choice.code.str() + " has no option '" + cleanUtf8(given->second) + "'",
-            "", "Choose " + listed(choice.options, "or")};
+            tr("The choice {} has no option '{}'", choice.code.str(), cleanUtf8(given->second)), "",
+            tr("Choose {}", listed(choice.options, "or"))};
       }
       option = given->second;
     } else if (option == "refuse" && !ask_all_) {
@@ -215,8 +215,8 @@ class Asking {
     if (option == "refuse") {
       if (given == answers_.end() && open_) *open_ = choice;
       return Error{
-          choice.code, choice.question, "the segmentation",
-          "Choose another file, or answer " + choice.code.str() + "=" + choice.options.back()};
+          choice.code, choice.question, tr("the segmentation"),
+          tr("Choose another file, or answer {}={}", choice.code.str(), choice.options.back())};
     }
     fit_.choices.push_back(std::move(choice));
     return option;
@@ -239,14 +239,14 @@ Result<std::vector<std::size_t>> orderOf(const Segmentation& of, const Answers& 
                        [](const auto& a, const auto& b) { return a.voxels < b.voxels; });
   const double voxel_ml = of.geometry.voxelVolume_mm3() / 1000.0;
   const auto name = [&](std::size_t s) { return "'" + of.segments[s].name + "'"; };
-  const std::string what =
-      counted(shared.size(), "pair") + " of structures share voxels, most of all " + name(most->a) +
-      " and " + name(most->b) + " with " + number(double(most->voxels) * voxel_ml, 1) + " mL";
+  const std::string what = tr("{} of structures share voxels, most of all {} and {} with {} mL",
+                              counted(shared.size(), "pair"), name(most->a), name(most->b),
+                              number(double(most->voxels) * voxel_ml, 1));
   Choice choice{code::kOverlap,
-                what + ". Which of them has those voxels?",
+                tr("{}. Which of them has those voxels?", what),
                 {"smaller", "first", "last"},
-                {"The smaller one, as a vessel in the liver", "The one that the file has first",
-                 "The one that the file has last"}};
+                {tr("The smaller one, as a vessel in the liver"),
+                 tr("The one that the file has first"), tr("The one that the file has last")}};
   const auto given = answers.find(choice.code);
   if (given != answers.end() && given->second.starts_with(kOrderAnswer)) {
     auto own = orderFrom(given->second, of);
@@ -257,7 +257,7 @@ Result<std::vector<std::size_t>> orderOf(const Segmentation& of, const Answers& 
                             Severity::notice,
                             what,
                             {},
-                            "The first has them, of " + listed(fit.overlapping, "and")});
+                            tr("The first has them, of {}", listed(fit.overlapping, "and"))});
     return own;
   }
   const Result<std::string> chosen = asking.ask(std::move(choice));
@@ -272,8 +272,8 @@ Result<std::vector<std::size_t>> orderOf(const Segmentation& of, const Answers& 
                           Severity::notice,
                           what,
                           {},
-                          *chosen == "smaller" ? "The smaller one has them"
-                                               : "The one that comes " + *chosen + " has them"});
+                          *chosen == "smaller" ? tr("The smaller one has them")
+                                               : tr("The one that comes {} has them", *chosen)});
   return order;
 }
 
@@ -308,22 +308,23 @@ Status placeByItsSize(Segmentation& of, const GridGeometry& ct, Asking& asking, 
     return {};
   }
   const std::string what =
-      "The file is of the CT's size and says nothing of where it lies: voxels of " +
-      stepsText(of.geometry.spacing_mm) + ", the first at 0";
-  const auto chosen =
-      asking.ask({code::kNoAffine,
-                  what,
-                  {"refuse", "keep", "ct"},
-                  {"Do not use the segmentation", "Where it says, with the first voxel at 0",
-                   "On the CT, voxel by voxel"}});
+      tr("The file is of the CT's size and says nothing of where it lies: voxels of {}, the first "
+         "at 0",
+         stepsText(of.geometry.spacing_mm));
+  const auto chosen = asking.ask(
+      {code::kNoAffine,
+       what,
+       {"refuse", "keep", "ct"},
+       {tr("Do not use the segmentation"), tr("Where it says, with the first voxel at 0"),
+        tr("On the CT, voxel by voxel")}});
   if (!chosen) return chosen.error();
   if (*chosen == "ct") of.geometry = ct;
-  fit.findings.push_back(
-      {code::kNoAffine,
-       Severity::notice,
-       what,
-       {},
-       *chosen == "ct" ? "It was put on the CT, voxel by voxel" : "It was taken at its word"});
+  fit.findings.push_back({code::kNoAffine,
+                          Severity::notice,
+                          what,
+                          {},
+                          *chosen == "ct" ? tr("It was put on the CT, voxel by voxel")
+                                          : tr("It was taken at its word")});
   return {};
 }
 
@@ -331,14 +332,14 @@ Result<StructureFit> fitted(Segmentation& of, const Volume& ct, const Answers& a
                             bool ask_all, const Progress& progress,
                             std::optional<Choice>* open) {
   const GridGeometry& g = ct.geometry;
-  const Error cancelled{code::kCancelled, "Reading the segmentation was cancelled", "", ""};
+  const Error cancelled{code::kCancelled, tr("Reading the segmentation was cancelled"), "", ""};
   StructureFit fit;
   fit.format = of.format;
   for (const std::string& note : of.notes)
     fit.findings.push_back({code::kFileNote, Severity::notice, note, {}, ""});
   Asking asking(answers, ask_all, fit, open);
   if (Status placed = placeByItsSize(of, g, asking, fit); !placed) return placed.error();
-  progress.at(0.0, "Placing the structures");
+  progress.at(0.0, tr("Placing the structures"));
   const std::vector<SegmentShare> shares = sharesOf(of, g);
   std::size_t all = 0, outside = 0;
   for (const SegmentShare& share : shares) {
@@ -346,27 +347,27 @@ Result<StructureFit> fitted(Segmentation& of, const Volume& ct, const Answers& a
     outside += share.outside;
   }
   if (all == 0) {
-    return Error{code::kEmptySegmentation, "The file has no voxel of any structure",
-                 "the segmentation", "Export it again, with its structures"};
+    return Error{code::kEmptySegmentation, tr("The file has no voxel of any structure"),
+                 tr("the segmentation"), tr("Export it again, with its structures")};
   }
   if (progress.cancelled()) return cancelled;
   if (outside == all) {
     return Error{code::kLabelsElsewhere,
-                 "The segmentation and the case do not overlap in the patient", "the segmentation",
-                 "Choose the one that was made from this CT"};
+                 tr("The segmentation and the case do not overlap in the patient"),
+                 tr("the segmentation"), tr("Choose the one that was made from this CT")};
   }
   for (std::size_t s = 0; s < shares.size(); ++s) {
     if (shares[s].voxels == 0) continue;
     const double percent = 100.0 * double(shares[s].far_outside) / double(shares[s].voxels);
     if (percent < kMostOutside_percent) continue;
     return Error{code::kHalfOutside,
-                 "Of the structure '" + of.segments[s].name + "' " + number(percent) +
-                     " % lie outside of the CT",
-                 "the segmentation", "Choose the one that was made from this CT"};
+                 tr("Of the structure '{}' {} % lie outside of the CT", of.segments[s].name,
+                    number(percent)),
+                 tr("the segmentation"), tr("Choose the one that was made from this CT")};
   }
   const auto order = orderOf(of, answers, asking, fit);
   if (!order) return order.error();
-  progress.at(0.3, "Placing the structures");
+  progress.at(0.3, tr("Placing the structures"));
   const LabelMap own = merged(of, *order);
   auto map = fitTo(own, g);
   if (!map) return map.error();
@@ -375,9 +376,9 @@ Result<StructureFit> fitted(Segmentation& of, const Volume& ct, const Answers& a
   if (fit.resampled) {
     fit.findings.push_back({code::kResampled,
                             Severity::notice,
-                            "The file's voxels are not the CT's",
+                            tr("The file's voxels are not the CT's"),
                             {},
-                            "Each voxel of the CT takes what its middle lies in"});
+                            tr("Each voxel of the CT takes what its middle lies in")});
   }
   fit.covers = coveredBy(of.geometry, g);
   const double covered = shareCovered(of.geometry, g, fit.covers);
@@ -385,13 +386,13 @@ Result<StructureFit> fitted(Segmentation& of, const Volume& ct, const Answers& a
   if (covered < 1.0) {
     fit.findings.push_back({code::kPartOfCt,
                             Severity::notice,
-                            "The file covers " + number(fit.covers_percent) +
-                                " % of the CT: " + partWords(fit.covers, g),
+                            tr("The file covers {} % of the CT: {}", number(fit.covers_percent),
+                               partWords(fit.covers, g)),
                             {},
-                            "The rest of the CT has no structure"});
+                            tr("The rest of the CT has no structure")});
   }
   if (progress.cancelled()) return cancelled;
-  progress.at(0.6, "Looking at the structures' HU");
+  progress.at(0.6, tr("Looking at the structures' HU"));
   const HuByLabel counts = huOf(fit.map, ct);
   // Of good ones, what is off by a voxel of either grid is no mistake.
   const double slack_mm =
@@ -401,25 +402,25 @@ Result<StructureFit> fitted(Segmentation& of, const Volume& ct, const Answers& a
   std::string mirrored;
   std::optional<BetterPlace> better;
   if (const auto axis = mirroredAxis(fit.map, ct, fit.covers, counts, wrong)) {
-    mirrored = std::string("its structures lie on what they are of when ") + sidesAlong(g, *axis);
+    mirrored = tr("its structures lie on what they are of when {}", sidesAlong(g, *axis));
   } else {
     better = betterPlace(fit.map, ct, fit.covers, slack_mm);
     if (better && better->mirrored) {
-      mirrored = std::string("its structures' borders lie on borders in the CT when ") +
-                 sidesAlong(g, better->axis);
+      mirrored = tr("its structures' borders lie on borders in the CT when {}",
+                    sidesAlong(g, better->axis));
     }
   }
   if (!mirrored.empty()) {
-    const std::string what = "The segmentation is mirrored: " + mirrored + " change places";
+    const std::string what = tr("The segmentation is mirrored: {} change places", mirrored);
     if (Status taken =
             asking.refuseUnless({code::kMirrored,
                                  what,
                                  {"refuse", "keep"},
-                                 {"Do not use the segmentation", "Use it all the same"}});
+                                 {tr("Do not use the segmentation"), tr("Use it all the same")}});
         !taken) {
       return taken.error();
     }
-    fit.findings.push_back({code::kMirrored, Severity::notice, what, {}, "It was kept"});
+    fit.findings.push_back({code::kMirrored, Severity::notice, what, {}, tr("It was kept")});
   }
   if (progress.cancelled()) return cancelled;
 
@@ -440,25 +441,25 @@ Result<StructureFit> fitted(Segmentation& of, const Volume& ct, const Answers& a
       card.outside_percent = 100.0 * double(shares[s].outside) / double(shares[s].voxels);
     }
     if (card.outside_percent > 0.0) {
-      card.findings.push_back({code::kOutside,
-                               Severity::notice,
-                               number(card.outside_percent, 1) + " % of it lie outside of the CT",
-                               {},
-                               "They are left out"});
+      card.findings.push_back(
+          {code::kOutside,
+           Severity::notice,
+           tr("{} % of it lie outside of the CT", number(card.outside_percent, 1)),
+           {},
+           tr("They are left out")});
     }
     if (card.voxels == 0) {
       card.findings.push_back(
-          {code::kEmptyStructure, Severity::notice, "It has no voxel on the CT", {}, ""});
+          {code::kEmptyStructure, Severity::notice, tr("It has no voxel on the CT"), {}, ""});
     } else {
       card.hu = {of_it->percentile(0.05), of_it->percentile(0.5), of_it->percentile(0.95)};
       const auto kind = huOfKind(structure.name, structure.tissue);
       const double median = (*card.hu)[1];
       if (kind && wrong[std::size_t(structure.label)]) {
-        doubtful.push_back("'" + structure.name + "' has a median of " + number(median) + " HU, " +
-                           number((*card.hu)[0]) + " to " + number((*card.hu)[2]) +
-                           " but for a "
-                           "tenth, and " +
-                           kind->kind + " has " + number(kind->low) + " to " + number(kind->high));
+        doubtful.push_back(
+            tr("'{}' has a median of {} HU, {} to {} but for a tenth, and {} has {} to {}",
+               structure.name, number(median), number((*card.hu)[0]), number((*card.hu)[2]),
+               kind->kind, number(kind->low), number(kind->high)));
         card.findings.push_back({code::kHuNotTissue, Severity::notice, doubtful.back(), {}, ""});
       }
     }
@@ -466,22 +467,23 @@ Result<StructureFit> fitted(Segmentation& of, const Volume& ct, const Answers& a
   }
   std::string doubt;
   if (!doubtful.empty()) {
-    doubt = "The HU cannot be the tissue: " + doubtful.front();
-    if (doubtful.size() > 1) doubt += ", and " + counted(doubtful.size() - 1, "other") + " alike";
+    doubt = tr("The HU cannot be the tissue: {}", doubtful.front());
+    if (doubtful.size() > 1) doubt += tr(", and {} alike", counted(doubtful.size() - 1, "other"));
   }
   if (better && !better->mirrored) {
-    doubt += doubt.empty() ? "The structures' borders lie on nothing in the CT" : "";
-    doubt += ". They would fit far better about " + moveWords(*better, g);
+    doubt += doubt.empty() ? tr("The structures' borders lie on nothing in the CT") : "";
+    doubt += tr(". They would fit far better about {}", moveWords(*better, g));
   }
   if (!doubt.empty()) {
-    const auto chosen = asking.ask({code::kHuNotTissue,
-                                    doubt + ". The segmentation may lie in a wrong place",
-                                    {"refuse", "keep"},
-                                    {"Do not use the segmentation", "Use it all the same"}});
+    const auto chosen =
+        asking.ask({code::kHuNotTissue,
+                    tr("{}. The segmentation may lie in a wrong place", doubt),
+                    {"refuse", "keep"},
+                    {tr("Do not use the segmentation"), tr("Use it all the same")}});
     if (!chosen) return chosen.error();
-    fit.findings.push_back({code::kHuNotTissue, Severity::notice, doubt, {}, "It was kept"});
+    fit.findings.push_back({code::kHuNotTissue, Severity::notice, doubt, {}, tr("It was kept")});
   }
-  progress.at(1.0, "Placing the structures");
+  progress.at(1.0, tr("Placing the structures"));
   return fit;
 }
 
@@ -524,7 +526,7 @@ Result<StructureFit> fitStructures(Segmentation segmentation, const Volume& ct,
   try {
     return fitted(segmentation, ct, answers, ask_all, progress, open);
   } catch (const std::bad_alloc&) {
-    return outOfMemory("for the segmentation", "the segmentation");
+    return outOfMemory(tr("for the segmentation"), tr("the segmentation"));
   }
 }
 

@@ -6,6 +6,7 @@
 
 #include "base/codes.h"
 #include "base/memory.h"
+#include "base/tr.h"
 #include "imaging/common/detail/source_watch.h"
 #include "imaging/common/detail/text.h"
 #include "imaging/common/workers.h"
@@ -39,7 +40,7 @@ class Assembler {
   // A slice of the volume for each source: in place, or shifted on the way.
   Status readOneToOne(const Progress& progress) {
     const bool sheared = plan_.stack.sheared();
-    return forEachFile(plan_.sources.size(), progress, {0.0, kRead, "Reading slices"},
+    return forEachFile(plan_.sources.size(), progress, {0.0, kRead, tr("Reading slices")},
                        [&](std::size_t n) {
                          std::int16_t* target = assembly_.volume.hu.data() + n * target_voxels_;
                          if (!sheared) {
@@ -59,12 +60,12 @@ class Assembler {
     try {
       stack.resize(plan_.sources.size() * source_voxels_);
     } catch (const std::bad_alloc&) {
-      return Error{code::kOutOfMemory, "There is not enough memory to interpolate the slices", "",
-                   "Close other programs and try again"};
+      return Error{code::kOutOfMemory, tr("There is not enough memory to interpolate the slices"),
+                   "", tr("Close other programs and try again")};
     }
     const auto source = [&](std::size_t n) { return stack.data() + n * source_voxels_; };
     if (const Status status =
-            forEachFile(plan_.sources.size(), progress, {0.0, 0.7 * kRead, "Reading slices"},
+            forEachFile(plan_.sources.size(), progress, {0.0, 0.7 * kRead, tr("Reading slices")},
                         [&](std::size_t n) { read(n, source(n), kLostHu); });
         !status) {
       return status;
@@ -145,7 +146,7 @@ Result<Assembly> assemble(const Series& series, const SeriesPlan& plan, const Pr
   try {
     assembly.volume.hu.resize(assembly.volume.geometry.voxelCount());
   } catch (const std::bad_alloc&) {
-    return outOfMemory("for the volume", "");
+    return outOfMemory(tr("for the volume"), "");
   }
   Assembler assembler(series, plan, progress, assembly);
   const bool mixed = !plan.stack.oneToOne();

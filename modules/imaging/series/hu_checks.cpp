@@ -2,9 +2,10 @@
 
 #include <algorithm>
 
+#include "base/tr.h"
+#include "imaging/codes.h"
 #include "imaging/common/detail/text.h"
 #include "imaging/series/detail/series_geometry.h"
-#include "imaging/codes.h"
 
 namespace trephine {
 
@@ -21,49 +22,51 @@ void checkHu(const HuSanityCheck& look, const Answers& answers, SeriesReport& re
   const std::vector<std::string> doubts =
       look.doubts(report.hu_min.value_or(0), report.hu_max.value_or(0));
   if (!doubts.empty()) {
-    const std::string text = "The values can hardly be HU: " + listed(doubts);
-    const std::string answer = ask(
-        {code::kImplausibleHu,
-         "The values can hardly be HU. Use them all the same?",
-         {"refuse", "accept"},
-         {"Do not use the series",
-          "Take them as HU: what looks and cuts like air, tissue or bone may be something else"}},
-        answers, report.choices);
+    const std::string text = tr("The values can hardly be HU: {}", listed(doubts));
+    const std::string answer =
+        ask({code::kImplausibleHu,
+             tr("The values can hardly be HU. Use them all the same?"),
+             {"refuse", "accept"},
+             {tr("Do not use the series"), tr("Take them as HU: what looks and cuts like air, "
+                                              "tissue or bone may be something else")}},
+            answers, report.choices);
     if (answer == "accept") {
       report.findings.push_back({code::kImplausibleHu,
                                  Severity::repair,
                                  text,
                                  {},
-                                 "They were taken as HU, as was agreed"});
+                                 tr("They were taken as HU, as was agreed")});
     } else {
-      report.findings.push_back({code::kImplausibleHu,
-                                 Severity::refusal,
-                                 text,
-                                 {},
-                                 "Export the series again with its rescale, or agree to use it"});
+      report.findings.push_back(
+          {code::kImplausibleHu,
+           Severity::refusal,
+           text,
+           {},
+           tr("Export the series again with its rescale, or agree to use it")});
     }
   } else if (!look.hasAir()) {
     report.findings.push_back(
         {code::kNoAir,
          Severity::notice,
-         (hasPadding(report) ? std::string("Hardly anything in it but padding lies where air does")
-                             : "Hardly anything in it lies where air does; the smallest value is " +
-                                   std::to_string(report.hu_min.value_or(0))) +
-             ". It is small or cropped, or these are stored values and not HU",
+         tr("{}. It is small or cropped, or these are stored values and not HU",
+            (hasPadding(report)
+                 ? tr("Hardly anything in it but padding lies where air does")
+                 : tr("Hardly anything in it lies where air does; the smallest value is {}",
+                      report.hu_min.value_or(0)))),
          {},
-         "Nothing was changed; if bone and air look wrong, export it again with its rescale"});
+         tr("Nothing was changed; if bone and air look wrong, export it again with its rescale")});
   }
 }
 
 void sayPadding(const UnnamedPadding& padding, SeriesReport& report) {
   if (padding.voxels == 0) return;
-  report.findings.push_back({code::kPaddingToAir,
-                             Severity::notice,
-                             counted(padding.voxels, "voxel") + " had " +
-                                 std::to_string(padding.hu) +
-                                 " HU, which nothing in a patient has: the space around the scan",
-                             {},
-                             "They became air"});
+  report.findings.push_back(
+      {code::kPaddingToAir,
+       Severity::notice,
+       tr("{} had {} HU, which nothing in a patient has: the space around the scan",
+          counted(padding.voxels, "voxel"), padding.hu),
+       {},
+       tr("They became air")});
 }
 
 bool refusedByHu(const SeriesReport& report, const Answers& answers) {

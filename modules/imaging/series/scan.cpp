@@ -14,9 +14,10 @@
 
 #include "base/codes.h"
 #include "base/file.h"
+#include "base/tr.h"
+#include "imaging/codes.h"
 #include "imaging/common/detail/source_watch.h"
 #include "imaging/common/detail/text.h"
-#include "imaging/codes.h"
 #include "imaging/common/workers.h"
 #include "imaging/dicom/detail/dicom_values.h"
 #include "imaging/dicom/detail/dicomdir.h"
@@ -45,7 +46,7 @@ class Walk {
     struct stat status;
     if (::stat(path.c_str(), &status) != 0) {
       ++result_.files_seen;
-      skip("the file could not be opened");
+      skip(tr("the file could not be opened"));
       return;
     }
     const bool first_visit = result_.came_upon.emplace(status.st_dev, status.st_ino).second;
@@ -55,9 +56,9 @@ class Walk {
     }
     ++result_.files_seen;
     if (!S_ISREG(status.st_mode)) {
-      skip("not a regular file");
+      skip(tr("not a regular file"));
     } else if (!first_visit) {
-      skip("the same file under another name");
+      skip(tr("the same file under another name"));
     } else {
       files_.push_back({path, std::uint64_t(status.st_size)});
     }
@@ -68,7 +69,7 @@ class Walk {
  private:
   void visitFolder(const fs::path& folder, int depth) {
     if (depth > kDeepestFolder) {
-      skip("a folder more than " + std::to_string(kDeepestFolder) + " levels deep");
+      skip(tr("a folder more than {} levels deep", kDeepestFolder));
       return;
     }
     std::error_code error;
@@ -76,7 +77,7 @@ class Walk {
     for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error)) {
       entries.push_back(it->path());
     }
-    if (error) skip("a folder that could not be opened");
+    if (error) skip(tr("a folder that could not be opened"));
     std::ranges::sort(entries, {}, &fs::path::native);
     for (const fs::path& entry : entries) visit(entry, depth + 1);
   }
@@ -169,13 +170,13 @@ std::optional<FileId> fileId(const fs::path& file) {
 Result<ScannedFiles> scanFiles(const fs::path& path, const Progress& progress, ScanGuide* guide) {
   std::error_code error;
   if (!fs::exists(path, error)) {
-    return Error{code::kMissingFolder, "The folder does not exist or may not be opened",
-                 cleanUtf8(path.string()), "Check the name and that you may read it"};
+    return Error{code::kMissingFolder, tr("The folder does not exist or may not be opened"),
+                 cleanUtf8(path.string()), tr("Check the name and that you may read it")};
   }
   // Its dictionary takes as long to load as the folders to walk. Workers wait for it.
   const auto set_up = std::async(setUpDcmtk);
   ScannedFiles result;
-  progress.at(0.0, "Looking for files");
+  progress.at(0.0, tr("Looking for files"));
   Walk walk(result, progress);
   std::vector<fs::path> named;
   if (fs::is_regular_file(path, error)) named = filesOfDicomDir(path, progress);
@@ -192,7 +193,7 @@ Result<ScannedFiles> scanFiles(const fs::path& path, const Progress& progress, S
   if (guide) looked.emplace(*guide);
   std::vector<std::optional<Result<std::vector<DicomHeader>>>> headers(files.size());
   const Status read =
-      forEachFile(files.size(), progress, {0.0, 0.99, "Reading headers"}, [&](std::size_t i) {
+      forEachFile(files.size(), progress, {0.0, 0.99, tr("Reading headers")}, [&](std::size_t i) {
         const auto& [file, bytes] = files[i];
         if (looked && looked->skips(file)) return;
         const std::size_t number = watch.begin();
@@ -202,8 +203,9 @@ Result<ScannedFiles> scanFiles(const fs::path& path, const Progress& progress, S
       });
   if (!read) return read.error();
   if (watch.vanished() || !fs::exists(path, error)) {
-    return Error{code::kSourceVanished, "The source vanished while its files were looked through",
-                 cleanUtf8(path.string()), "Plug it in or connect it again, then open it again"};
+    return Error{
+        code::kSourceVanished, tr("The source vanished while its files were looked through"),
+        cleanUtf8(path.string()), tr("Plug it in or connect it again, then open it again")};
   }
 
   for (std::size_t i = 0; i < files.size(); ++i) {
@@ -221,9 +223,12 @@ Result<ScannedFiles> scanFiles(const fs::path& path, const Progress& progress, S
       result.volume_files.push_back(files[i].path);
     } else {
       ++result.skipped[frames.error().what];
-      const bool cut = frames.error().what.find("cut short") != std::string::npos;
+      const bool cut = frames.error().code == code::kCutShort;
       if (files[i].bytes == 0 || cut) ++result.empty_files[files[i].path.parent_path()];
-      if (frames.error().what.ends_with(kUnpackFirst)) result.archives.push_back(files[i].path);
+      if (frames.error().code == code::kPacked) {
+        result.packed.insert(frames.error().what);
+        result.archives.push_back(files[i].path);
+      }
     }
     headers[i].reset();
   }

@@ -9,9 +9,10 @@
 #include <tuple>
 #include <utility>
 
+#include "base/tr.h"
+#include "imaging/codes.h"
 #include "imaging/common/detail/text.h"
 #include "imaging/series/detail/series_repeats.h"
-#include "imaging/codes.h"
 
 namespace trephine {
 
@@ -37,8 +38,8 @@ bool isSamePerson(const DicomHeader& a, const DicomHeader& b) {
 }  // namespace
 
 const char* otherPatient(const DicomHeader& a, const DicomHeader& b) {
-  constexpr const char* kNames[] = {"patient's name", "patient's ID", "patient's birth date",
-                                    "patient's sex"};
+  constexpr const char* kNames[] = {"patient's name", "patient's ID",
+                                    trLater("patient's birth date"), "patient's sex"};
   constexpr std::size_t kName = 0, kSex = 3;  // half of all have the sex in common
   bool common = std::equal(a.patient.begin(), a.patient.begin() + kSex, b.patient.begin());
   for (std::size_t n = 0; n < a.patient.size(); ++n) {
@@ -56,12 +57,12 @@ namespace {
 const char* difference(const DicomHeader& a, const DicomHeader& b) {
   if (const char* what = otherPatient(a, b)) return what;
   if (a.modality != b.modality) return "modality";
-  if (a.sop_class != b.sop_class) return "kind of image";
-  if (isLocalizer(a) != isLocalizer(b)) return "being a localizer";
+  if (a.sop_class != b.sop_class) return trLater("kind of image");
+  if (isLocalizer(a) != isLocalizer(b)) return trLater("being a localizer");
   if (a.rows != b.rows || a.columns != b.columns) return "size";
-  if (!near(a.pixel_spacing_mm, b.pixel_spacing_mm, 1e-3)) return "pixel spacing";
+  if (!near(a.pixel_spacing_mm, b.pixel_spacing_mm, 1e-3)) return trLater("pixel spacing");
   if (!near(a.orientation, b.orientation, 2.1e-3)) return "orientation";
-  if (a.photometric != b.photometric) return "photometric interpretation";
+  if (a.photometric != b.photometric) return trLater("photometric interpretation");
   if (a.samples != b.samples) return "samples";
   return nullptr;
 }
@@ -87,10 +88,10 @@ bool onOtherDays(const DicomHeader& a, const DicomHeader& b) {
 std::vector<std::string> smallDifferences(const DicomHeader& a, const DicomHeader& b) {
   std::vector<std::string> all;
   if (a.study_uid != b.study_uid) all.push_back("study");
-  if (a.frame_of_reference != b.frame_of_reference) all.push_back("frame of reference");
-  if (!near(a.pixel_spacing_mm, b.pixel_spacing_mm, 1e-4)) all.push_back("pixel spacing");
+  if (a.frame_of_reference != b.frame_of_reference) all.push_back(tr("frame of reference"));
+  if (!near(a.pixel_spacing_mm, b.pixel_spacing_mm, 1e-4)) all.push_back(tr("pixel spacing"));
   if (!near(a.orientation, b.orientation, 1e-4)) all.push_back("orientation");
-  if (onOtherDays(a, b)) all.push_back("day of the scan");
+  if (onOtherDays(a, b)) all.push_back(tr("day of the scan"));
   return all;
 }
 
@@ -158,9 +159,9 @@ void dropDuplicates(Series& series, const Progress& progress) {
     return it->second;
   };
   const auto image = [](const DicomHeader& h) { return std::tie(h.sop_instance, h.frame); };
-  Finding dropped{code::kDuplicateFiles, Severity::notice, "", {}, "One copy of each was kept"};
+  Finding dropped{code::kDuplicateFiles, Severity::notice, "", {}, tr("One copy of each was kept")};
   Finding different{
-      code::kDuplicateInstances, Severity::notice, "", {}, "Both were kept; places decide"};
+      code::kDuplicateInstances, Severity::notice, "", {}, tr("Both were kept; places decide")};
   std::ranges::stable_sort(series.slices, {}, image);
   for (DicomHeader& header : series.slices) {
     const auto first = std::ranges::lower_bound(kept, image(header), {}, image);
@@ -180,14 +181,14 @@ void dropDuplicates(Series& series, const Progress& progress) {
   series.slices = std::move(kept);
   if (!dropped.slices.empty()) {
     const std::size_t count = dropped.slices.size();
-    dropped.text = counted(count, "file", "is a copy of another", "are copies of others");
+    dropped.text = counted(count, "file", tr("is a copy of another"), tr("are copies of others"));
     series.report.findings.push_back(std::move(dropped));
   }
   if (!different.slices.empty()) {
     const std::size_t count = different.slices.size();
-    different.text = counted(count, "file", "claims", "claim") +
-                     " to be another file's image but " + (count == 1 ? "differs" : "differ") +
-                     " from it";
+    different.text =
+        tr("{} to be another file's image but {} from it",
+           counted(count, "file", "claims", "claim"), (count == 1 ? "differs" : "differ"));
     series.report.findings.push_back(std::move(different));
   }
 }
@@ -228,11 +229,10 @@ std::vector<Series> splitSeries(std::vector<DicomHeader> headers) {
     part.report.findings.push_back(
         {code::kSeriesSplit,
          Severity::repair,
-         "This is a part of a series: " + std::to_string(part.slices.size()) + " of its " +
-             std::to_string(images) + " images. Its " + std::to_string(parts.size()) +
-             " parts differ in " + listed(reasons),
+         tr("This is a part of a series: {} of its {} images. Its {} parts differ in {}",
+            part.slices.size(), images, parts.size(), listed(reasons)),
          {},
-         "The others were left out of it; each part is listed on its own"});
+         tr("The others were left out of it; each part is listed on its own")});
   }
   return parts;
 }
@@ -251,7 +251,7 @@ bool isLocalizer(const DicomHeader& header) {
 std::string sliceName(const DicomHeader& header) {
   // A number only: whatever else stands there could be a name.
   const auto number = parseInteger(header.instance_number);
-  return number ? "slice " + std::to_string(*number) : "a slice without number";
+  return number ? tr("slice {}", *number) : tr("a slice without number");
 }
 
 Verdict verdictOf(const std::vector<Finding>& findings) {
@@ -289,9 +289,9 @@ std::vector<Series> groupSeries(std::vector<DicomHeader> headers, const Progress
         series.report.findings.push_back(
             {code::kNoSeriesUid,
              Severity::notice,
-             "The files name no series: their Series Instance UID was emptied",
+             tr("The files name no series: their Series Instance UID was emptied"),
              {},
-             "Slices of one study, series number, date and time were taken together"});
+             tr("Slices of one study, series number, date and time were taken together")});
       }
       dropDuplicates(series, progress);
       dropEqualRepeats(series, progress);

@@ -5,6 +5,7 @@
 #include <map>
 #include <numbers>
 
+#include "base/tr.h"
 #include "imaging/codes.h"
 
 namespace trephine {
@@ -45,38 +46,39 @@ Headers chooseParts(const Series& series, Headers placed, const Answers& answers
   for (const DicomHeader* header : placed) ++counts[header->part];
   const bool joinable = !overlap(placed);
   Choice choice{code::kParts,
-                "The slices do not say that they are of one scan. How shall they be used?",
+                tr("The slices do not say that they are of one scan. How shall they be used?"),
                 {"refuse"},
-                {"Do not use the series"}};
+                {tr("Do not use the series")}};
   const std::string differing = listed(series.parted_by);
   if (joinable) {
     choice.options.push_back("join");
-    choice.words.push_back("Join all " + counted(placed.size(), "slice") +
-                           ": it is assumed that they are one scan of one patient who lay "
-                           "still, whatever is said of " +
-                           differing);
+    choice.words.push_back(
+        tr("Join all {}: it is assumed that they are one scan of one patient who lay still, "
+           "whatever is said of {}",
+           counted(placed.size(), "slice"), differing));
   }
   for (const auto& [part, count] : counts) {
     if (part >= kMostOffered || count < 2) continue;
     choice.options.push_back(std::to_string(part + 1));
-    choice.words.push_back("Use only part " + std::to_string(part + 1) + ": " +
-                           std::to_string(count) + " of " + counted(placed.size(), "slice"));
+    choice.words.push_back(
+        tr("Use only part {}: {} of {}", part + 1, count, counted(placed.size(), "slice")));
   }
   const bool offers_part = choice.options.size() > 2;
   const std::string text =
-      "The series falls into " + counted(counts.size(), "part") + " that differ in " + differing;
+      tr("The series falls into {} that differ in {}", counted(counts.size(), "part"), differing);
   const std::string answer = ask(std::move(choice), answers, report.choices);
   if (answer == "join") {
-    findings.repaired(code::kParts, text,
-                      "They were joined: it was assumed that they are one scan of one patient who "
-                      "lay still");
+    findings.repaired(
+        code::kParts, text,
+        tr("They were joined: it was assumed that they are one scan of one patient who "
+           "lay still"));
     return placed;
   }
   if (answer == "refuse") {
     findings.refuse(code::kParts, text,
-                    !joinable     ? "Choose a part of the series"
-                    : offers_part ? "Join them, or choose a part"
-                                  : "Join them, or use another series");
+                    !joinable     ? tr("Choose a part of the series")
+                    : offers_part ? tr("Join them, or choose a part")
+                                  : tr("Join them, or use another series"));
     if (joinable) return placed;
   }
   const int wanted = answer == "refuse" ? 0 : *parseInteger(answer) - 1;
@@ -84,8 +86,8 @@ Headers chooseParts(const Series& series, Headers placed, const Answers& answers
   std::erase_if(placed, [&](const DicomHeader* header) { return header->part != wanted; });
   if (answer != "refuse") {
     findings.repaired(code::kParts, text,
-                      "Part " + answer + " was taken, " + std::to_string(placed.size()) + " of " +
-                          counted(whole, "slice") + "; the others were left out");
+                      tr("Part {} was taken, {} of {}; the others were left out", answer,
+                         placed.size(), counted(whole, "slice")));
   }
   return placed;
 }
@@ -117,7 +119,7 @@ void checkAcquisition(const Headers& used, const Answers& answers, Findings& fin
       auto& [first, count] = said[inCapitals(text)];
       if (count++ == 0) first = text;
     }
-    if (!said.empty() && silent > 0) unsaid.push_back(name + (" in " + std::to_string(silent)));
+    if (!said.empty() && silent > 0) unsaid.push_back(name + (tr(" in {}", silent)));
     if (said.size() < 2) return;
     std::vector<std::string> some;
     for (const auto& [key_, one] : said) {
@@ -125,7 +127,7 @@ void checkAcquisition(const Headers& used, const Answers& answers, Findings& fin
         some.push_back("others");
         break;
       }
-      some.push_back(shownTerm(one.first) + " in " + std::to_string(one.second));
+      some.push_back(tr("{} in {}", shownTerm(one.first), one.second));
     }
     differing.push_back(name + (shown ? " (" + listed(some) + ")" : ""));
     unlikeMost(key);
@@ -139,15 +141,15 @@ void checkAcquisition(const Headers& used, const Answers& answers, Findings& fin
       most = std::max(most.value_or(*(header->*value)), *(header->*value));
     }
     if (!least || *most - *least <= tolerance * std::max(std::abs(*least), std::abs(*most))) return;
-    differing.push_back(name + (" (" + fixedText(*least, 2) + " to ") + fixedText(*most, 2) + " " +
+    differing.push_back(name + (tr(" ({} to ", fixedText(*least, 2))) + fixedText(*most, 2) + " " +
                         unit + ")");
     unlikeMost([&](const DicomHeader& h) { return fixedText((h.*value).value_or(0.0), 3); });
   };
-  words("convolution kernel", true, [](const DicomHeader& h) { return h.kernel; });
-  numbers("tube voltage", "kV", 0.01, &DicomHeader::kvp);
-  numbers("slice thickness", "mm", 0.01, &DicomHeader::thickness_mm);
+  words(trLater("convolution kernel"), true, [](const DicomHeader& h) { return h.kernel; });
+  numbers(trLater("tube voltage"), "kV", 0.01, &DicomHeader::kvp);
+  numbers(trLater("slice thickness"), "mm", 0.01, &DicomHeader::thickness_mm);
   // From the fourth on its values are the maker's own.
-  words("image type", true, [](const DicomHeader& h) {
+  words(trLater("image type"), true, [](const DicomHeader& h) {
     std::string text;
     for (std::size_t n = 0; n < std::min<std::size_t>(h.image_type.size(), 3); ++n) {
       text += (text.empty() ? "" : "\\") + h.image_type[n];
@@ -155,26 +157,27 @@ void checkAcquisition(const Headers& used, const Answers& answers, Findings& fin
     return text;
   });
   // What may hold a name is not shown.
-  words("series description", false, [](const DicomHeader& h) { return h.description; });
+  words(trLater("series description"), false, [](const DicomHeader& h) { return h.description; });
   words("scanner", false, [](const DicomHeader& h) { return h.scanner; });
-  words("position of the patient", true, [](const DicomHeader& h) { return h.patient_position; });
-  words("contrast agent", false, [](const DicomHeader& h) { return h.contrast; });
+  words(trLater("position of the patient"), true,
+        [](const DicomHeader& h) { return h.patient_position; });
+  words(trLater("contrast agent"), false, [](const DicomHeader& h) { return h.contrast; });
   if (!unsaid.empty()) {
     findings.notice(code::kPartlySaid,
-                    "Not all slices say how they were made: absent are " + listed(unsaid),
-                    "What is absent was taken to be as in the others");
+                    tr("Not all slices say how they were made: absent are {}", listed(unsaid)),
+                    tr("What is absent was taken to be as in the others"));
   }
   if (differing.empty()) return;
   const std::string text =
-      "The slices were not all made in one way: they differ in " + listed(differing);
-  findings.askConsent({code::kMixedSlices,
-                       "The slices were not all made in one way. Use them as one volume?",
-                       {"refuse", "accept"},
-                       {"Do not use the series",
-                        "Use them as one volume: equal tissue may differ in HU and "
-                        "sharpness from slice to slice"}},
-                      answers, text, "They were taken as one volume, as was agreed",
-                      "Use a series of one acquisition, or agree to take them as one", odd_ones);
+      tr("The slices were not all made in one way: they differ in {}", listed(differing));
+  findings.askConsent(
+      {code::kMixedSlices,
+       tr("The slices were not all made in one way. Use them as one volume?"),
+       {"refuse", "accept"},
+       {tr("Do not use the series"), tr("Use them as one volume: equal tissue may differ in HU and "
+                                        "sharpness from slice to slice")}},
+      answers, text, tr("They were taken as one volume, as was agreed"),
+      tr("Use a series of one acquisition, or agree to take them as one"), odd_ones);
 }
 
 void checkDensity(const Headers& used, const Stack& stack, const Answers& answers,
@@ -189,31 +192,32 @@ void checkDensity(const Headers& used, const Stack& stack, const Answers& answer
   }
   std::vector<std::string> why;
   const bool few = used.size() < kFewest;
-  if (few) why.push_back("there are only " + std::to_string(used.size()));
-  if (step_mm > kWidestStep_mm) why.push_back("they lie " + lengthText(step_mm) + " apart");
+  if (few) why.push_back(tr("there are only {}", used.size()));
+  if (step_mm > kWidestStep_mm) why.push_back(tr("they lie {} apart", lengthText(step_mm)));
   if (thickness_mm > 0.0 && step_mm >= kMostThicknesses * thickness_mm) {
-    why.push_back("each is " + lengthText(thickness_mm) + " thick and the next is " +
-                  lengthText(step_mm) + " away");
+    why.push_back(tr("each is {} thick and the next is {} away", lengthText(thickness_mm),
+                     lengthText(step_mm)));
   }
   if (why.empty()) {
     if (thickness_mm > 0.0 && step_mm > 1.05 * thickness_mm) {
-      findings.notice(code::kGapsBetweenSlices,
-                      "The slices are " + lengthText(thickness_mm) + " thick and lie " +
-                          lengthText(step_mm) + " apart: what lies between was not scanned",
-                      "It is interpolated where the volume is drawn and cut");
+      findings.notice(
+          code::kGapsBetweenSlices,
+          tr("The slices are {} thick and lie {} apart: what lies between was not scanned",
+             lengthText(thickness_mm), lengthText(step_mm)),
+          tr("It is interpolated where the volume is drawn and cut"));
     }
     return;
   }
-  const std::string text = "The slices are too few or too far apart to be cut: " + listed(why);
+  const std::string text = tr("The slices are too few or too far apart to be cut: {}", listed(why));
   findings.askConsent(
       {code::kSparseSlices,
-       "The slices are too few or too far apart to be cut. Use them all the same?",
+       tr("The slices are too few or too far apart to be cut. Use them all the same?"),
        {"refuse", "accept"},
-       {"Do not use the series",
-        few ? "Use them: they cover next to nothing"
-            : "Use them: what lies between them was not scanned and is only guessed"}},
-      answers, text, "They were used all the same, as was agreed",
-      few ? "Choose a series that covers the anatomy" : "Choose a series of thin slices");
+       {tr("Do not use the series"),
+        few ? tr("Use them: they cover next to nothing")
+            : tr("Use them: what lies between them was not scanned and is only guessed")}},
+      answers, text, tr("They were used all the same, as was agreed"),
+      few ? tr("Choose a series that covers the anatomy") : tr("Choose a series of thin slices"));
 }
 
 void checkContradictions(const Headers& in_order, const Stack& stack, const Answers& answers,
@@ -261,17 +265,18 @@ void checkContradictions(const Headers& in_order, const Stack& stack, const Answ
   }
   if (whole && drift_mm <= 1.0) worst_mm = 0.0;
   if (worst_mm > std::max(0.15, 0.1 * step_mm)) {
-    const std::string text = "The slice locations contradict the positions: between two slices " +
-                             lengthText(is_mm) + " by position and " + lengthText(said_mm) +
-                             " by slice location";
+    const std::string text =
+        tr("The slice locations contradict the positions: between two slices {} by position and {} "
+           "by slice location",
+           lengthText(is_mm), lengthText(said_mm));
     findings.askConsent(
         {code::kLocationMismatch,
-         "Slice locations and positions contradict each other. Believe the positions?",
+         tr("Slice locations and positions contradict each other. Believe the positions?"),
          {"refuse", "positions"},
-         {"Do not use the series",
-          "Believe the positions: if they are wrong, lengths in the volume are wrong"}},
-        answers, text, "The positions were believed, as was agreed",
-        "Export the series again, or agree to believe the positions");
+         {tr("Do not use the series"),
+          tr("Believe the positions: if they are wrong, lengths in the volume are wrong")}},
+        answers, text, tr("The positions were believed, as was agreed"),
+        tr("Export the series again, or agree to believe the positions"));
   }
   std::optional<double> between_mm, tilt_deg;
   for (const DicomHeader* header : in_order) {
@@ -287,16 +292,16 @@ void checkContradictions(const Headers& in_order, const Stack& stack, const Answ
   if (between_mm && !near(*between_mm, step_mm, tolerance_mm) &&
       !near(*between_mm, step_mm * slant, tolerance_mm)) {
     findings.repaired(code::kSpacingMismatch,
-                      "The header says that slices lie " + lengthText(*between_mm) +
-                          " apart, by their positions it is " + lengthText(step_mm),
-                      "The positions were believed");
+                      tr("The header says that slices lie {} apart, by their positions it is {}",
+                         lengthText(*between_mm), lengthText(step_mm)),
+                      tr("The positions were believed"));
   }
   if (tilt_deg && !near(*tilt_deg, stack.tilt_deg, kTilt_deg)) {
     findings.repaired(code::kTiltMismatch,
-                      "The header says that the gantry was tilted by " + fixedText(*tilt_deg, 1) +
-                          " degrees, by the slices' positions it is " +
-                          fixedText(stack.tilt_deg, 1),
-                      "The positions were believed");
+                      tr("The header says that the gantry was tilted by {} degrees, by the slices' "
+                         "positions it is {}",
+                         fixedText(*tilt_deg, 1), fixedText(stack.tilt_deg, 1)),
+                      tr("The positions were believed"));
   }
 }
 

@@ -8,10 +8,11 @@
 #include <set>
 #include <tuple>
 
+#include "base/codes.h"
+#include "base/tr.h"
+#include "imaging/codes.h"
 #include "imaging/common/detail/text.h"
 #include "imaging/dicom/detail/transfer_syntax.h"
-#include "base/codes.h"
-#include "imaging/codes.h"
 #include "imaging/report/answers.h"
 #include "imaging/series/detail/findings.h"
 #include "imaging/series/detail/series.h"
@@ -35,39 +36,40 @@ const DicomHeader& typicalSlice(const std::vector<DicomHeader>& slices) {
 
 // Series of which no volume can come whatever their geometry. True where one of these it is.
 bool refusedByKind(const DicomHeader& first, Findings& findings) {
-  constexpr const char* kChooseCt = "Choose a CT series";
-  constexpr const char* kOpenAsStructures =
-      "It holds structures: open their CT first, then this file under Structures, Open";
+  const std::string choose_ct = tr("Choose a CT series");
+  const std::string open_as_structures =
+      tr("It holds structures: open their CT first, then this file under Structures, Open");
   const std::string& kind = first.sop_class;
   const bool secondary = kind.starts_with("1.2.840.10008.5.1.4.1.1.7");
   if (!first.has_pixels && first.modality == "RTSTRUCT") {
-    findings.refuse(code::kNotAnImageSeries, "The series holds structures as contours, not a CT",
-                    "Export them as a DICOM Segmentation or as a label map: contours are not read "
-                    "yet");
+    findings.refuse(
+        code::kNotAnImageSeries, tr("The series holds structures as contours, not a CT"),
+        tr("Export them as a DICOM Segmentation or as a label map: contours are not read "
+           "yet"));
   } else if (!first.has_pixels && first.defect == Defect::none) {
     findings.refuse(
         code::kNotAnImageSeries,
-        (first.modality.empty() ? "The files"
-                                : "The files of this " + shownTerm(first.modality) + " series") +
-            std::string(" hold no pixels"),
-        kChooseCt);
+        tr("{} hold no pixels",
+           (first.modality.empty() ? tr("The files")
+                                   : tr("The files of this {} series", shownTerm(first.modality)))),
+        choose_ct);
   } else if (secondary) {
-    findings.refuse(code::kSecondaryCapture, "The series holds captured pictures, not slices",
-                    kChooseCt);
+    findings.refuse(code::kSecondaryCapture, tr("The series holds captured pictures, not slices"),
+                    choose_ct);
   } else if (!isCt(first) || (!first.modality.empty() && first.modality != "CT")) {
     findings.refuse(code::kNotCt,
-                    "The series is " +
-                        (first.modality.empty() ? "no CT" : shownTerm(first.modality)) +
-                        ": its values are not HU",
-                    first.modality == "SEG" ? kOpenAsStructures : kChooseCt);
+                    tr("The series is {}: its values are not HU",
+                       (first.modality.empty() ? tr("no CT") : shownTerm(first.modality))),
+                    first.modality == "SEG" ? open_as_structures : choose_ct);
   } else if (isLocalizer(first)) {
-    findings.refuse(code::kLocalizer, "The series is a localizer (scout), not a stack of slices",
-                    kChooseCt);
+    findings.refuse(code::kLocalizer,
+                    tr("The series is a localizer (scout), not a stack of slices"), choose_ct);
   } else if (first.frames > 1 && !first.position_mm && first.defect != Defect::size_mismatch) {
-    findings.refuse(code::kMultiframe,
-                    "The series is stored as multi-frame pictures that do not say where each frame "
-                    "lies",
-                    "Export it as enhanced CT, or as classic CT with one file a slice");
+    findings.refuse(
+        code::kMultiframe,
+        tr("The series is stored as multi-frame pictures that do not say where each frame "
+           "lies"),
+        tr("Export it as enhanced CT, or as classic CT with one file a slice"));
   } else {
     return false;
   }
@@ -80,26 +82,26 @@ void checkTransferSyntax(const Series& series, Findings& findings) {
   for (const auto& [uid, count] : counts) {
     if (findTransferSyntax(uid)) continue;
     findings.refuse(code::kUnsupportedTransferSyntax,
-                    "The transfer syntax " + transferSyntaxName(uid) +
-                        (uid.starts_with("1.2.840.10008.") ? " (" + cleanUtf8(uid) + ")" : "") +
-                        " of " + counted(std::uint64_t(count), "slice") + " cannot be read",
-                    "Export the series uncompressed (Explicit VR Little Endian)");
+                    tr("The transfer syntax {}{} of {} cannot be read", transferSyntaxName(uid),
+                       (uid.starts_with("1.2.840.10008.") ? " (" + cleanUtf8(uid) + ")" : ""),
+                       counted(std::uint64_t(count), "slice")),
+                    tr("Export the series uncompressed (Explicit VR Little Endian)"));
   }
 }
 
 void checkLoss(const Answers& answers, Findings& findings) {
   const auto lossy = findings.slicesWhere([](const DicomHeader& h) { return h.lossy; });
   if (lossy.empty()) return;
-  const std::string text = countOfSlices(lossy, "was", "were") + " compressed with loss";
+  const std::string text = tr("{} compressed with loss", countOfSlices(lossy, "was", "were"));
   findings.askConsent(
       {code::kLossySource,
-       "The series was compressed with loss: its HU are not those of the scanner. Use it?",
+       tr("The series was compressed with loss: its HU are not those of the scanner. Use it?"),
        {"refuse", "accept"},
-       {"Do not use the series", "Use it for training, marked as lossy"}},
+       {tr("Do not use the series"), tr("Use it for training, marked as lossy")}},
       answers, text,
-      "They were taken as they are, as was agreed: small differences of HU are "
-      "not real",
-      "Use the original series, or agree to the loss", lossy);
+      tr("They were taken as they are, as was agreed: small differences of HU are "
+         "not real"),
+      tr("Use the original series, or agree to the loss"), lossy);
 }
 
 void checkValues(const Series& series, Findings& findings) {
@@ -107,8 +109,8 @@ void checkValues(const Series& series, Findings& findings) {
   const bool grey = first.photometric == "MONOCHROME1" || first.photometric == "MONOCHROME2";
   if (first.samples != 1 || (!grey && !first.photometric.empty())) {
     findings.refuse(code::kColour,
-                    "The pixels are colour (" + shownTerm(first.photometric) + "), not HU",
-                    "Export the original CT slices");
+                    tr("The pixels are colour ({}), not HU", shownTerm(first.photometric)),
+                    tr("Export the original CT slices"));
   }
   const auto odd_format = findings.slicesWhere([](const DicomHeader& h) {
     return h.has_pixels && h.samples == 1 &&
@@ -116,26 +118,26 @@ void checkValues(const Series& series, Findings& findings) {
   });
   if (!odd_format.empty()) {
     findings.refuse(code::kPixelFormat,
-                    countOfSlices(odd_format, "does", "do") +
-                        " not say 8 or 16 allocated bits, as many stored bits or fewer, rows and "
-                        "columns up to 8192 and photometric interpretation as CT must",
-                    "Export the series again as CT with 16-bit pixels", odd_format);
+                    tr("{} not say 8 or 16 allocated bits, as many stored bits or fewer, rows and "
+                       "columns up to 8192 and photometric interpretation as CT must",
+                       countOfSlices(odd_format, "does", "do")),
+                    tr("Export the series again as CT with 16-bit pixels"), odd_format);
   }
   const auto not_hu = findings.slicesWhere([](const DicomHeader& h) {
     return h.has_pixels && !h.rescale_type.empty() && h.rescale_type != "HU" &&
            h.rescale_type != "US";
   });
   if (!not_hu.empty()) {
-    findings.refuse(code::kNotHu, "The values are " + shownTerm(first.rescale_type) + ", not HU",
-                    "Choose the series in HU", not_hu);
+    findings.refuse(code::kNotHu, tr("The values are {}, not HU", shownTerm(first.rescale_type)),
+                    tr("Choose the series in HU"), not_hu);
   }
   const auto bad =
       findings.slicesWhere([](const DicomHeader& h) { return h.has_pixels && h.rescale_bad; });
   if (!bad.empty()) {
     findings.refuse(code::kBadRescale,
-                    "The rescale slope or intercept of " + countOfSlices(bad) +
-                        " is no number that CT could have",
-                    "Export the series again", bad);
+                    tr("The rescale slope or intercept of {} is no number that CT could have",
+                       countOfSlices(bad)),
+                    tr("Export the series again"), bad);
   }
   const auto raw = findings.slicesWhere(
       [](const DicomHeader& h) { return h.has_pixels && !h.intercept_given && !h.rescale_bad; });
@@ -144,20 +146,21 @@ void checkValues(const Series& series, Findings& findings) {
   if (!raw.empty() && !scaled.empty()) {
     findings.refuse(
         code::kBadRescale,
-        countOfSlices(raw, "lacks", "lack") + " the rescale intercept that the others have",
-        "Export the series again", raw);
+        tr("{} the rescale intercept that the others have", countOfSlices(raw, "lacks", "lack")),
+        tr("Export the series again"), raw);
   }
   const auto unscaled = findings.slicesWhere(
       [](const DicomHeader& h) { return h.has_pixels && !h.rescale_given && !h.rescale_bad; });
   if (!unscaled.empty()) {
     findings.notice(
         code::kRescaleDefault,
-        countOfSlices(unscaled, "lacks", "lack") + " a rescale slope (or have 0) or intercept",
-        "Slope 1 and intercept 0 were taken where absent", unscaled);
+        tr("{} a rescale slope (or have 0) or intercept", countOfSlices(unscaled, "lacks", "lack")),
+        tr("Slope 1 and intercept 0 were taken where absent"), unscaled);
   }
   if (first.photometric == "MONOCHROME1") {
-    findings.notice(code::kMonochrome1, "The series is meant to be shown with white for low values",
-                    "The HU are not touched by that");
+    findings.notice(code::kMonochrome1,
+                    tr("The series is meant to be shown with white for low values"),
+                    tr("The HU are not touched by that"));
   }
 }
 
@@ -170,11 +173,11 @@ void checkSizes(const Series& series, Findings& findings) {
     text = header.defect_text;
   }
   if (mismatched.empty()) return;
-  findings.refuse(
-      code::kSizeMismatch,
-      countOfSlices(mismatched, "contradicts itself (", "contradict themselves (the last: ") +
-          text + ")",
-      "Export the series again", mismatched);
+  findings.refuse(code::kSizeMismatch,
+                  countOfSlices(mismatched, tr("contradicts itself ("),
+                                tr("contradict themselves (the last: ")) +
+                      text + ")",
+                  tr("Export the series again"), mismatched);
 }
 
 bool isLost(const DicomHeader& header) {
@@ -193,13 +196,13 @@ bool isPlaced(const DicomHeader& header) {
 // "; of these cannot be read: slice 2 (its pixels are cut short)"
 std::string lostText(const std::vector<const DicomHeader*>& lost) {
   if (lost.empty()) return "";
-  std::string text = "; " + counted(lost.size(), "slice") + " cannot be read:";
+  std::string text = tr("; {} cannot be read:", counted(lost.size(), "slice"));
   for (std::size_t n = 0; n < std::min<std::size_t>(lost.size(), 5); ++n) {
     text += (n == 0 ? " " : ", ") + sliceName(*lost[n]);
   }
-  if (lost.size() > 5) text += " and others";
+  if (lost.size() > 5) text += tr(" and others");
   const std::string& why = lost.back()->defect_text;
-  return text + " (" + (why.empty() ? "it has no pixels" : why) + ")";
+  return text + " (" + (why.empty() ? tr("it has no pixels") : why) + ")";
 }
 
 // Slices that are cut before they say where they lie: their gap may not show.
@@ -209,23 +212,25 @@ void checkUnplaced(const std::vector<const DicomHeader*>& lost, bool others_are_
   std::vector<std::string> names;
   for (const DicomHeader* header : lost) names.push_back(sliceName(*header));
   const std::string& why = lost.back()->defect_text;
-  const std::string text = countOfSlices(names) + " cannot be read, and " +
-                           (names.size() == 1 ? "its place is" : "their places are") +
-                           " not known (" + (why.empty() ? "it has no pixels" : why) + ")";
+  const std::string text = tr("{} cannot be read, and {} not known ({})", countOfSlices(names),
+                              (names.size() == 1 ? tr("its place is") : tr("their places are")),
+                              (why.empty() ? tr("it has no pixels") : why));
   const auto given = answers.find(code::kMissingSlices);
   const bool agreed = others_are_placed && given != answers.end() && given->second != "refuse";
   const bool asked = std::ranges::find(report.choices, code::kMissingSlices, &Choice::code) !=
                      report.choices.end();
   if (!asked && others_are_placed) {
-    report.choices.push_back({code::kMissingSlices,
-                              "Slices are damaged before they say where they belong. Use the rest?",
-                              {"refuse", "part"},
-                              {"Do not use the series", "Use it without them"}});
+    report.choices.push_back(
+        {code::kMissingSlices,
+         tr("Slices are damaged before they say where they belong. Use the rest?"),
+         {"refuse", "part"},
+         {tr("Do not use the series"), tr("Use it without them")}});
   }
   if (agreed) {
-    findings.repaired(code::kMissingSlices, text, "They were left out", names);
+    findings.repaired(code::kMissingSlices, text, tr("They were left out"), names);
   } else {
-    findings.refuse(code::kMissingSlices, text, "Copy these files again from their source", names);
+    findings.refuse(code::kMissingSlices, text, tr("Copy these files again from their source"),
+                    names);
   }
 }
 
@@ -292,10 +297,9 @@ void checkBits(const Series& series, Findings& findings) {
   if (slices.empty()) return;
   const DicomHeader& one = *std::ranges::find_if(series.slices, more);
   findings.repaired(code::kBitsStored,
-                    "The header says " + std::to_string(one.said_bits_stored) +
-                        " bits a pixel, and the compressed pixels have " +
-                        std::to_string(one.format.bits_stored),
-                    "All of their bits were taken", slices);
+                    tr("The header says {} bits a pixel, and the compressed pixels have {}",
+                       one.said_bits_stored, one.format.bits_stored),
+                    tr("All of their bits were taken"), slices);
 }
 
 // Of one patient, by ID and birth date (series.cpp).
@@ -306,8 +310,8 @@ void checkNames(const std::vector<DicomHeader>& slices, Findings& findings) {
   }
   if (names.size() < 2) return;
   findings.notice(code::kNamesDiffer,
-                  "The patient's name is not the same in all slices; ID and birth date are",
-                  "Nothing was changed; look whether all of them are of one patient");
+                  tr("The patient's name is not the same in all slices; ID and birth date are"),
+                  tr("Nothing was changed; look whether all of them are of one patient"));
 }
 
 // Slices of one series whose values grow as HU do, and others whose values fall.
@@ -318,20 +322,21 @@ void checkSlopes(const Answers& answers, Findings& findings) {
       [](const DicomHeader& h) { return h.has_pixels && h.format.slope > 0.0; });
   if (!falling.empty() && rising.empty()) {
     findings.notice(code::kNegativeSlope,
-                    "The rescale slope is negative: a higher stored value is a lower HU",
-                    "Nothing was changed; look whether bone is bright");
+                    tr("The rescale slope is negative: a higher stored value is a lower HU"),
+                    tr("Nothing was changed; look whether bone is bright"));
   }
   if (falling.empty() || rising.empty()) return;
   const auto& fewer = falling.size() < rising.size() ? falling : rising;
   findings.askConsent(
       {code::kSlopesDiffer,
-       "In some slices a higher stored value is a lower HU, in the others a higher one. Use them?",
+       tr("In some slices a higher stored value is a lower HU, in the others a higher one. Use "
+          "them?"),
        {"refuse", "accept"},
-       {"Do not use the series", "Use them as their headers say"}},
+       {tr("Do not use the series"), tr("Use them as their headers say")}},
       answers,
-      "The rescale slope of " + countOfSlices(fewer) + " has another sign than the others'",
-      "Each was taken as its header says, as was agreed",
-      "Look at these slices: in one with a wrong sign bone is dark. Export the series again",
+      tr("The rescale slope of {} has another sign than the others'", countOfSlices(fewer)),
+      tr("Each was taken as its header says, as was agreed"),
+      tr("Look at these slices: in one with a wrong sign bone is dark. Export the series again"),
       fewer);
 }
 
@@ -353,26 +358,26 @@ void checkConcatenation(const std::vector<DicomHeader>& slices, const Answers& a
     const int last = std::min(kMost, std::max(total, *numbers.rbegin()));
     for (int n = 1; n <= last; ++n) {
       if (numbers.contains(n)) continue;
-      missing.push_back("part " + std::to_string(n) +
-                        (total > 0 ? " of " + std::to_string(total) : ""));
+      missing.push_back(tr("part {}{}", n, (total > 0 ? tr(" of {}", total) : "")));
     }
   }
   if (missing.empty()) return;
-  const std::string text = "The series was written in parts, of which " + listed(missing) +
-                           (missing.size() == 1 ? " is missing" : " are missing");
+  const std::string text = tr("The series was written in parts, of which {}{}", listed(missing),
+                              (missing.size() == 1 ? tr(" is missing") : tr(" are missing")));
   if (std::ranges::find(asked, code::kMissingSlices, &Choice::code) != asked.end()) {
     const std::string answer = answerTo(answers, code::kMissingSlices);
     return findings.notice(code::kIncomplete, text,
                            answer.empty() || answer == "refuse"
-                               ? "Copy all files of the series again"
-                               : "The gap that they leave became what was chosen for it");
+                               ? tr("Copy all files of the series again")
+                               : tr("The gap that they leave became what was chosen for it"));
   }
-  findings.askConsent({code::kIncomplete,
-                       "Not all parts of the series are there. Use those that are?",
-                       {"refuse", "accept"},
-                       {"Do not use the series", "Use them: the scan covers less than it did"}},
-                      answers, text, "The parts that are there were used, as was agreed",
-                      "Copy all files of the series again, or agree to use what is there");
+  findings.askConsent(
+      {code::kIncomplete,
+       tr("Not all parts of the series are there. Use those that are?"),
+       {"refuse", "accept"},
+       {tr("Do not use the series"), tr("Use them: the scan covers less than it did")}},
+      answers, text, tr("The parts that are there were used, as was agreed"),
+      tr("Copy all files of the series again, or agree to use what is there"));
 }
 
 // Slices that all claim one place and say beside it where they lie: cone-beam scanners write so.
@@ -395,14 +400,14 @@ void placeByLocation(const Headers& placed, const Vec3& normal, const Answers& a
   }
   if (high - low > kSamePlace_mm || !even) return;
   const std::string text =
-      "All slices claim one place, and their slice locations lie " + lengthText(step_mm) + " apart";
-  const std::string answer =
-      ask({code::kOneLocation,
-           "All slices claim one place. Shall they lie where their slice locations say?",
-           {"refuse", "locations"},
-           {"Do not use the series",
-            "Place them by slice location, upwards as it grows: head and foot may be exchanged"}},
-          answers, report.choices);
+      tr("All slices claim one place, and their slice locations lie {} apart", lengthText(step_mm));
+  const std::string answer = ask(
+      {code::kOneLocation,
+       tr("All slices claim one place. Shall they lie where their slice locations say?"),
+       {"refuse", "locations"},
+       {tr("Do not use the series"),
+        tr("Place them by slice location, upwards as it grows: head and foot may be exchanged")}},
+      answers, report.choices);
   if (answer == "refuse") return;  // said when they are stacked
   for (std::size_t n = 0; n < positions_mm.size(); ++n) {
     positions_mm[n] += normal * (locations_mm[n] - sorted.front());
@@ -411,7 +416,7 @@ void placeByLocation(const Headers& placed, const Vec3& normal, const Answers& a
                              Severity::repair,
                              text,
                              {},
-                             "They were placed by their slice locations, as was chosen"});
+                             tr("They were placed by their slice locations, as was chosen")});
 }
 
 SeriesPlan checkGeometry(Series& series, const Answers& answers, Findings& findings) {
@@ -420,9 +425,9 @@ SeriesPlan checkGeometry(Series& series, const Answers& answers, Findings& findi
       findings.slicesWhere([](const DicomHeader& h) { return h.has_pixels && !isPlaced(h); });
   if (!nowhere.empty()) {
     findings.refuse(code::kNoGeometry,
-                    countOfSlices(nowhere, "lacks", "lack") +
-                        " a usable position, orientation or pixel spacing",
-                    "Export the series again with its geometry", nowhere);
+                    tr("{} a usable position, orientation or pixel spacing",
+                       countOfSlices(nowhere, "lacks", "lack")),
+                    tr("Export the series again with its geometry"), nowhere);
     return plan;
   }
   Headers placed, unplaced, lost;

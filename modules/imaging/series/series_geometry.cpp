@@ -5,9 +5,10 @@
 #include <numbers>
 #include <numeric>
 
+#include "base/tr.h"
+#include "imaging/codes.h"
 #include "imaging/common/detail/text.h"
 #include "imaging/series/detail/series_steps.h"
-#include "imaging/codes.h"
 
 namespace trephine {
 
@@ -53,9 +54,9 @@ void planSideways(const StackInput& input, const Mat3& axes, Stack& stack) {
   const std::string angle = fixedText(stack.tilt_deg, 1) + " degrees";
   const std::string text =
       !on_a_line
-          ? "Slices lie up to " + fixedText(worst_off_line, 2) + " mm aside of the stack's line"
-      : tilted ? "The slices are sheared: the gantry was tilted by " + angle
-               : "The slices are sheared sideways, by " + angle + ", as no gantry tilts";
+          ? tr("Slices lie up to {} mm aside of the stack's line", fixedText(worst_off_line, 2))
+      : tilted ? tr("The slices are sheared: the gantry was tilted by {}", angle)
+               : tr("The slices are sheared sideways, by {}, as no gantry tilts", angle);
   Code code = !on_a_line ? code::kShiftedSlices
               : tilted   ? code::kGantryTilt
                          : code::kShearedSideways;
@@ -67,8 +68,8 @@ void planSideways(const StackInput& input, const Mat3& axes, Stack& stack) {
                               Severity::refusal,
                               text,
                               {},
-                              "The slices lie farther apart sideways than they are wide: use "
-                              "another series"});
+                              tr("The slices lie farther apart sideways than they are wide: use "
+                                 "another series")});
     return;
   }
   // The volume grows by whole voxels, so that the first slice stays on its own grid.
@@ -83,9 +84,9 @@ void planSideways(const StackInput& input, const Mat3& axes, Stack& stack) {
        Severity::repair,
        text,
        {},
-       std::string(on_a_line ? "They were straightened" : "They were moved to where they belong") +
-           ", each slice shifted as its position says; new corners are air, and fine detail is "
-           "slightly blurred within slices"});
+       tr("{}, each slice shifted as its position says; new corners are air, and fine detail is "
+          "slightly blurred within slices",
+          on_a_line ? tr("They were straightened") : tr("They were moved to where they belong"))});
 }
 
 }  // namespace
@@ -147,9 +148,9 @@ Stack stackSlices(const StackInput& input, const Answers& answers) {
   if (!axes) {
     stack.findings.push_back({code::kNotOrthonormal,
                               Severity::refusal,
-                              "The image orientation is not two perpendicular unit vectors",
+                              tr("The image orientation is not two perpendicular unit vectors"),
                               {},
-                              "Export the series again; its orientation is damaged"});
+                              tr("Export the series again; its orientation is damaged")});
     return stack;
   }
   geometry.direction = *axes;
@@ -178,20 +179,20 @@ Stack stackSlices(const StackInput& input, const Answers& answers) {
     if (!places.front().usable) {
       stack.findings.push_back({code::kMissingSlices,
                                 Severity::refusal,
-                                "The slice is missing" + input.lost_text,
+                                tr("The slice is missing{}", input.lost_text),
                                 {},
-                                "Copy the file again from its source"});
+                                tr("Copy the file again from its source")});
     }
     stack.places_mm.assign(count, places.front().place_mm);
     stack.findings.push_back(
         {code::kOneLocation,
          Severity::refusal,
-         count == 1 ? "A single slice is not a volume"
-                    : "All " + std::to_string(count) + " slices lie at one place: not a volume",
+         count == 1 ? tr("A single slice is not a volume")
+                    : tr("All {} slices lie at one place: not a volume", count),
          {placeText(places.front().place_mm)},
-         count == 1 ? "Choose a series that covers the anatomy; if other slices lie beside this "
-                      "file, open their folder"
-                    : "Choose a series that covers the anatomy"});
+         count == 1 ? tr("Choose a series that covers the anatomy; if other slices lie beside this "
+                         "file, open their folder")
+                    : tr("Choose a series that covers the anatomy")});
     return stack;
   }
   planAlongNormal(places, input, (*axes)[2], answers, stack);

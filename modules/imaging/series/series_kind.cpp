@@ -4,10 +4,11 @@
 #include <cmath>
 #include <map>
 
+#include "base/tr.h"
+#include "imaging/codes.h"
 #include "imaging/common/detail/text.h"
 #include "imaging/series/detail/findings.h"
 #include "imaging/series/detail/series_geometry.h"
-#include "imaging/codes.h"
 #include "volume/codes.h"
 
 namespace trephine {
@@ -26,55 +27,56 @@ struct Term {
 // PS3.3 C.8.2.1.1.1, C.8.15.2.1.1, C.8.16.1.3, C.8.16.1.4 and C.8.16.2.1: values 3 and 4 of Image
 // Type or Frame Type, volumetric properties and technique. Also what makers write for the same.
 constexpr Term kTerms[] = {
-    {"SUBTRACTION", Use::no_hu, "differences of two images"},
-    {"DIVISION", Use::no_hu, "ratios of two images"},
-    {"MULTIPLICATION", Use::no_hu, "products of two images"},
-    {"ADDITION", Use::no_hu, "sums of several images"},
-    {"STD DEVIATION", Use::no_hu, "standard deviations"},
-    {"QUANTITY", Use::no_hu, "a calculated quantity"},
-    {"T TEST", Use::no_hu, "a statistical map"},
-    {"Z SCORE", Use::no_hu, "a statistical map"},
-    {"RCBF", Use::no_hu, "a perfusion map (blood flow)"},
-    {"CBF", Use::no_hu, "a perfusion map (blood flow)"},
-    {"RCBV", Use::no_hu, "a perfusion map (blood volume)"},
-    {"CBV", Use::no_hu, "a perfusion map (blood volume)"},
-    {"MTT", Use::no_hu, "a perfusion map (mean transit time)"},
-    {"TTP", Use::no_hu, "a perfusion map (time to peak)"},
-    {"TMAX", Use::no_hu, "a perfusion map (time to maximum)"},
-    {"MAT SPECIFIC", Use::no_hu, "a map of one material"},
-    {"MAT FRACTIONAL", Use::no_hu, "a map of one material's share"},
-    {"MAT VALUE BASED", Use::no_hu, "a map of materials"},
-    {"EFF ATOMIC NUM", Use::no_hu, "effective atomic numbers"},
-    {"ELECTRON DENSITY", Use::no_hu, "electron densities"},
-    {"IODINE", Use::no_hu, "a map of one material"},
-    {"CALCIUM", Use::no_hu, "a map of one material"},
-    {"Z EFF", Use::no_hu, "effective atomic numbers"},
-    {"VRT", Use::projection, "a rendered picture"},
-    {"SSD", Use::projection, "a rendered picture"},
-    {"MAX IP", Use::projection, "a maximum intensity projection"},
-    {"MIP", Use::projection, "a maximum intensity projection"},
-    {"MAXIMUM", Use::projection, "the maximum of several images"},
-    {"MIN IP", Use::projection, "a minimum intensity projection"},
-    {"MINIP", Use::projection, "a minimum intensity projection"},
-    {"MINIMUM", Use::projection, "the minimum of several images"},
+    {"SUBTRACTION", Use::no_hu, trLater("differences of two images")},
+    {"DIVISION", Use::no_hu, trLater("ratios of two images")},
+    {"MULTIPLICATION", Use::no_hu, trLater("products of two images")},
+    {"ADDITION", Use::no_hu, trLater("sums of several images")},
+    {"STD DEVIATION", Use::no_hu, trLater("standard deviations")},
+    {"QUANTITY", Use::no_hu, trLater("a calculated quantity")},
+    {"T TEST", Use::no_hu, trLater("a statistical map")},
+    {"Z SCORE", Use::no_hu, trLater("a statistical map")},
+    {"RCBF", Use::no_hu, trLater("a perfusion map (blood flow)")},
+    {"CBF", Use::no_hu, trLater("a perfusion map (blood flow)")},
+    {"RCBV", Use::no_hu, trLater("a perfusion map (blood volume)")},
+    {"CBV", Use::no_hu, trLater("a perfusion map (blood volume)")},
+    {"MTT", Use::no_hu, trLater("a perfusion map (mean transit time)")},
+    {"TTP", Use::no_hu, trLater("a perfusion map (time to peak)")},
+    {"TMAX", Use::no_hu, trLater("a perfusion map (time to maximum)")},
+    {"MAT SPECIFIC", Use::no_hu, trLater("a map of one material")},
+    {"MAT FRACTIONAL", Use::no_hu, trLater("a map of one material's share")},
+    {"MAT VALUE BASED", Use::no_hu, trLater("a map of materials")},
+    {"EFF ATOMIC NUM", Use::no_hu, trLater("effective atomic numbers")},
+    {"ELECTRON DENSITY", Use::no_hu, trLater("electron densities")},
+    {"IODINE", Use::no_hu, trLater("a map of one material")},
+    {"CALCIUM", Use::no_hu, trLater("a map of one material")},
+    {"Z EFF", Use::no_hu, trLater("effective atomic numbers")},
+    {"VRT", Use::projection, trLater("a rendered picture")},
+    {"SSD", Use::projection, trLater("a rendered picture")},
+    {"MAX IP", Use::projection, trLater("a maximum intensity projection")},
+    {"MIP", Use::projection, trLater("a maximum intensity projection")},
+    {"MAXIMUM", Use::projection, trLater("the maximum of several images")},
+    {"MIN IP", Use::projection, trLater("a minimum intensity projection")},
+    {"MINIP", Use::projection, trLater("a minimum intensity projection")},
+    {"MINIMUM", Use::projection, trLater("the minimum of several images")},
     {"PROJECTION", Use::projection, "a projection"},
-    {"VOLUME RENDER", Use::projection, "a rendered picture"},
-    {"SURFACE RENDER", Use::projection, "a rendered picture"},
-    {"CURVED MPR", Use::projection, "slices along a curve"},
-    {"DISTORTED", Use::projection, "distorted slices"},
+    {"VOLUME RENDER", Use::projection, trLater("a rendered picture")},
+    {"SURFACE RENDER", Use::projection, trLater("a rendered picture")},
+    {"CURVED MPR", Use::projection, trLater("slices along a curve")},
+    {"DISTORTED", Use::projection, trLater("distorted slices")},
     {"SAMPLED", Use::projection, "a projection"},
-    {"MPR", Use::asked, "reformatted from other slices"},
-    {"REFORMATTED", Use::asked, "reformatted from other slices"},
-    {"RESAMPLED", Use::asked, "resampled from other slices"},
-    {"MEAN", Use::asked, "means of several images"},
-    {"AVERAGE", Use::asked, "means of several images"},
-    {"MASKED", Use::asked, "masked: parts of them are not what was scanned"},
+    {"MPR", Use::asked, trLater("reformatted from other slices")},
+    {"REFORMATTED", Use::asked, trLater("reformatted from other slices")},
+    {"RESAMPLED", Use::asked, trLater("resampled from other slices")},
+    {"MEAN", Use::asked, trLater("means of several images")},
+    {"AVERAGE", Use::asked, trLater("means of several images")},
+    {"MASKED", Use::asked, trLater("masked: parts of them are not what was scanned")},
     {"FILTERED", Use::asked, "filtered"},
-    {"VNC", Use::asked, "calculated as if contrast agent were not there"},
-    {"VMI", Use::asked, "virtual monoenergetic: their HU depend on the energy that was chosen"},
-    {"MAT REMOVED", Use::asked, "calculated as if a material were not there"},
-    {"MAT MODIFIED", Use::asked, "calculated with a material brought out or held back"},
-    {"ENERGY PROP WT", Use::asked, "weighted sums over energies"},
+    {"VNC", Use::asked, trLater("calculated as if contrast agent were not there")},
+    {"VMI", Use::asked,
+     trLater("virtual monoenergetic: their HU depend on the energy that was chosen")},
+    {"MAT REMOVED", Use::asked, trLater("calculated as if a material were not there")},
+    {"MAT MODIFIED", Use::asked, trLater("calculated with a material brought out or held back")},
+    {"ENERGY PROP WT", Use::asked, trLater("weighted sums over energies")},
 };
 
 // " A B / C ": words in capitals, so that each is found whole.
@@ -108,13 +110,13 @@ Kind kindOf(const DicomHeader& header) {
   }
   // A scan of the passing contrast holds HU, a map that was made of it does not.
   if (kind.use != Use::no_hu && said.find(" PERFUSION ") != said.npos) {
-    if (type.empty() || type.front() != "ORIGINAL") return {Use::no_hu, "a perfusion map"};
+    if (type.empty() || type.front() != "ORIGINAL") return {Use::no_hu, tr("a perfusion map")};
     if (kind.use == Use::hu)
       return {Use::asked,
-              "of a perfusion study, which is low in dose and shows contrast on its way"};
+              tr("of a perfusion study, which is low in dose and shows contrast on its way")};
   }
   if (kind.use == Use::hu && type.size() > 3 && type[3] == "MIXED") {
-    return {Use::asked, "of several kinds that they do not name"};
+    return {Use::asked, tr("of several kinds that they do not name")};
   }
   return kind;
 }
@@ -126,10 +128,10 @@ std::string otherScale(const DicomHeader& header) {
   };
   for (const DicomHeader::ValueMap& map : header.value_maps) {
     if (map.unit != "[hnsf'U]" && map.unit != "HU") {
-      return map.unit.empty() ? "an unnamed unit" : "'" + shownTerm(map.unit) + "'";
+      return map.unit.empty() ? tr("an unnamed unit") : "'" + shownTerm(map.unit) + "'";
     }
     if (!near(map.slope, header.format.slope) || !near(map.intercept, header.format.intercept)) {
-      return "other HU";
+      return tr("other HU");
     }
   }
   return "";
@@ -161,27 +163,29 @@ void checkKind(Series& series, const Answers& answers) {
   }
   Findings findings(series);
   if (!coloured.empty()) {
-    findings.refuse(code::kColour,
-                    countText(coloured, "holds", "hold") + "pixels that stand for colours, not HU",
-                    "Export the original CT slices", coloured);
+    findings.refuse(
+        code::kColour,
+        tr("{}pixels that stand for colours, not HU", countText(coloured, "holds", "hold")),
+        tr("Export the original CT slices"), coloured);
   }
   if (!tables.empty()) {
     findings.refuse(code::kNotHu,
-                    countText(tables, "needs", "need") +
-                        "a look-up table (Modality LUT) to become HU, which is not read",
-                    "Export the series with a rescale slope and intercept", tables);
+                    tr("{}a look-up table (Modality LUT) to become HU, which is not read",
+                       countText(tables, "needs", "need")),
+                    tr("Export the series with a rescale slope and intercept"), tables);
   }
   Slices derived;
   std::vector<std::string> derived_words;
   for (const auto& [kind, slices] : kinds) {
     if (kind.first == Use::no_hu) {
-      findings.refuse(code::kNotHu, countText(slices, "holds", "hold") + kind.second + ", not HU",
-                      "Choose the series that it was calculated from", slices);
+      findings.refuse(code::kNotHu,
+                      tr("{}{}, not HU", countText(slices, "holds", "hold"), kind.second),
+                      tr("Choose the series that it was calculated from"), slices);
     } else if (kind.first == Use::projection) {
       findings.refuse(
           code::kProjection,
-          countText(slices, "holds", "hold") + kind.second + ", not what lies at their place",
-          "Choose the series that it was calculated from", slices);
+          tr("{}{}, not what lies at their place", countText(slices, "holds", "hold"), kind.second),
+          tr("Choose the series that it was calculated from"), slices);
     } else {
       derived.insert(derived.end(), slices.begin(), slices.end());
       derived_words.push_back(kind.second);
@@ -190,26 +194,28 @@ void checkKind(Series& series, const Answers& answers) {
   if (!derived.empty()) {
     findings.askConsent(
         {code::kDerivedImages,
-         "The slices are not as they were scanned, or were scanned for another purpose. Use them?",
+         tr("The slices are not as they were scanned, or were scanned for another purpose. Use "
+            "them?"),
          {"refuse", "accept"},
-         {"Do not use the series",
-          "Use them: detail and HU may differ from those of the slices that were scanned"}},
+         {tr("Do not use the series"),
+          tr("Use them: detail and HU may differ from those of the slices that were scanned")}},
         answers, countText(derived, "is", "are") + listed(derived_words),
-        "They were taken as they are, as was agreed",
-        "Choose the series as it was scanned, or agree to use this one", derived);
+        tr("They were taken as they are, as was agreed"),
+        tr("Choose the series as it was scanned, or agree to use this one"), derived);
   }
   if (!scales.empty()) {
     const auto& [scale, slices] = *scales.begin();
     findings.askConsent(
         {code::kValueMap,
-         "The header gives the values another meaning beside HU. Take them as HU?",
+         tr("The header gives the values another meaning beside HU. Take them as HU?"),
          {"refuse", "accept"},
-         {"Do not use the series", "Take slope and intercept for HU and leave the map aside"}},
+         {tr("Do not use the series"),
+          tr("Take slope and intercept for HU and leave the map aside")}},
         answers,
-        countText(slices, "has", "have") + "a real-world value map to " + scale +
-            " beside slope and intercept",
-        "The map was left aside, as was agreed",
-        "Choose the series in HU, or agree to leave the map aside", slices);
+        tr("{}a real-world value map to {} beside slope and intercept",
+           countText(slices, "has", "have"), scale),
+        tr("The map was left aside, as was agreed"),
+        tr("Choose the series in HU, or agree to leave the map aside"), slices);
   }
 }
 

@@ -11,8 +11,9 @@
 
 #include "base/range.h"
 #include "base/sha256.h"
-#include "imaging/common/detail/text.h"
+#include "base/tr.h"
 #include "imaging/codes.h"
+#include "imaging/common/detail/text.h"
 #include "imaging/common/workers.h"
 #include "imaging/dicom/detail/dicom_pixels.h"
 #include "imaging/series/detail/series_geometry.h"
@@ -22,7 +23,7 @@ namespace trephine {
 namespace {
 
 constexpr int kMostPhases = 100;
-const ProgressPart kComparing{0.99, 0.99, "Comparing slices"};  // of the scan's
+const ProgressPart kComparing{0.99, 0.99, trLater("Comparing slices")};  // of the scan's
 constexpr std::size_t kMostCompared = 64;  // repeats that are read while the folder is scanned
 
 // [first, last) of the slices at each place.
@@ -53,16 +54,19 @@ std::vector<Key> keysOf(const std::vector<const DicomHeader*>& slices) {
   for (const DicomHeader* slice : slices) kernels[slice->kernel];
   double number = 0.0;
   for (auto& [kernel, its] : kernels) its = number++;
-  std::vector<Key> keys{{"convolution kernel", [kernels](const DicomHeader& h) {
+  std::vector<Key> keys{{trLater("convolution kernel"), [kernels](const DicomHeader& h) {
                            return h.kernel.empty() ? std::nullopt
                                                    : std::optional(kernels.at(h.kernel));
                          }}};
-  keys.push_back({"tube voltage", [](const DicomHeader& h) { return h.kvp; }, " kV"});
+  keys.push_back({trLater("tube voltage"), [](const DicomHeader& h) { return h.kvp; }, " kV"});
   constexpr std::pair<const char*, const char*> kNames[kPhaseKeys] = {
-      {"temporal position", ""}, {"cardiac phase", " % of the cycle"},
-      {"acquisition", ""},       {"trigger time", " ms"},
-      {"trigger delay", " ms"},  {"acquisition time", ""},
-      {"content time", ""}};
+      {trLater("temporal position"), ""},
+      {trLater("cardiac phase"), trLater(" % of the cycle")},
+      {"acquisition", ""},
+      {trLater("trigger time"), " ms"},
+      {trLater("trigger delay"), " ms"},
+      {trLater("acquisition time"), ""},
+      {trLater("content time"), ""}};
   for (std::size_t key = 0; key < kPhaseKeys; ++key) {
     const auto& [name, unit] = kNames[key];
     keys.push_back({name, [key](const DicomHeader& h) { return h.phase[key]; }, unit});
@@ -347,7 +351,7 @@ std::optional<Interleaved> interleaved(const std::vector<const DicomHeader*>& sl
     Numbers numbers = numbersBy(key.of);
     all.emplace_back(key.name, of_heart ? alike(std::move(numbers)) : std::move(numbers));
   }
-  all.emplace_back("instance number", numbersBy(instance));
+  all.emplace_back(tr("instance number"), numbersBy(instance));
   for (const auto& [name, numbers] : all) {
     for (std::vector<int> phases : {bySweep(numbers, places_mm), byPause(numbers, places_mm)}) {
       if (anyInterleaved(phases, places_mm)) return Interleaved{std::move(phases), name};
@@ -491,7 +495,7 @@ void dropEqualRepeats(Series& series, const Progress& progress) {
 
   PixelReader reader(progress);
   std::vector<bool> dropped(series.slices.size(), false);
-  Finding finding{code::kDuplicateFiles, Severity::notice, "", {}, "One of each was kept"};
+  Finding finding{code::kDuplicateFiles, Severity::notice, "", {}, tr("One of each was kept")};
   for (const Place& place : places) {
     if (place.count() < 2) continue;
     std::vector<std::optional<Pixels>> pixels(place.count());
@@ -515,8 +519,8 @@ void dropEqualRepeats(Series& series, const Progress& progress) {
     if (different && repeats > kMostCompared) break;  // too many to read them all
   }
   if (finding.slices.empty()) return;
-  finding.text = counted(finding.slices.size(), "slice", "repeats", "repeat") +
-                 " another at the same place, pixel by pixel";
+  finding.text = tr("{} another at the same place, pixel by pixel",
+                    counted(finding.slices.size(), "slice", "repeats", "repeat"));
   series.report.findings.push_back(std::move(finding));
   std::vector<DicomHeader> kept;
   for (std::size_t n = 0; n < series.slices.size(); ++n) {
@@ -566,7 +570,7 @@ std::vector<std::size_t> chooseRepeats(const std::vector<const DicomHeader*>& sl
     if (is_time) found(phasesInTurn(keys[key].of, slices, places), keys[key].name);
   }
   if (!phases && scanned_again) {
-    found(phasesInTurn(instance, slices, places), "instance number");
+    found(phasesInTurn(instance, slices, places), trLater("instance number"));
   }
   const auto take = [&](const std::vector<int>& of, int wanted) {
     for (const Place& place : places) {
@@ -581,10 +585,11 @@ std::vector<std::size_t> chooseRepeats(const std::vector<const DicomHeader*>& sl
     refine(slices, places_mm, keys, *phases, told_apart_by);
     report.phases = 1 + std::ranges::max(*phases);
     const bool by_kernel = told_apart_by == "convolution kernel";
-    Choice choice{code::kPhases,
-                  by_kernel ? "Which reconstruction shall be used?" : "Which phase shall be used?",
-                  {"refuse"},
-                  {"Do not use the series"}};
+    Choice choice{
+        code::kPhases,
+        by_kernel ? tr("Which reconstruction shall be used?") : tr("Which phase shall be used?"),
+        {"refuse"},
+        {tr("Do not use the series")}};
     choice.on_screen.emplace_back();
     choice.shown.push_back(-1);
     for (int phase = 0; phase < report.phases; ++phase) {
@@ -594,37 +599,41 @@ std::vector<std::size_t> chooseRepeats(const std::vector<const DicomHeader*>& sl
       }
       const DicomHeader& middle = *its[its.size() / 2];
       choice.options.push_back(std::to_string(phase + 1));
-      choice.words.push_back((by_kernel ? "Reconstruction " : "Phase ") +
-                             std::to_string(phase + 1) + (by_kernel ? "" : " by " + told_apart_by) +
-                             valueText(keys, first_key, middle) +
-                             (middle.kernel.empty() ? "" : ", kernel " + shownTerm(middle.kernel)) +
-                             timeText(middle) + ", " + counted(its.size(), "slice"));
+      choice.words.push_back(
+          (by_kernel ? "Reconstruction " : "Phase ") + std::to_string(phase + 1) +
+          (by_kernel ? "" : tr(" by {}", told_apart_by)) + valueText(keys, first_key, middle) +
+          (middle.kernel.empty() ? "" : tr(", kernel {}", shownTerm(middle.kernel))) +
+          timeText(middle) + ", " + counted(its.size(), "slice"));
       choice.on_screen.push_back(middle.description);
       choice.shown.push_back(int(&middle - all.data()));
     }
     if (single) {
       choice.options.emplace_back("all");
-      choice.words.push_back("They are one scan: use all " + counted(slices.size(), "slice"));
+      choice.words.push_back(tr("They are one scan: use all {}", counted(slices.size(), "slice")));
       choice.on_screen.emplace_back();
       choice.shown.push_back(-1);
     }
     const std::string answer = ask(std::move(choice), answers, report.choices);
-    const std::string text = "The series holds " + std::to_string(report.phases) +
-                             (by_kernel ? " reconstructions" : " phases or repeated acquisitions") +
-                             (woven ? " whose slices lie between one another" : "") +
-                             ", told apart by " + told_apart_by;
+    const std::string text =
+        tr("The series holds {}{}{}, told apart by {}", report.phases,
+           (by_kernel ? " reconstructions" : tr(" phases or repeated acquisitions")),
+           (woven ? tr(" whose slices lie between one another") : ""), told_apart_by);
     if (answer == "all") {
-      report.findings.push_back(
-          {code::kPhases, Severity::repair, text, {}, "All were taken as one scan, as was chosen"});
+      report.findings.push_back({code::kPhases,
+                                 Severity::repair,
+                                 text,
+                                 {},
+                                 tr("All were taken as one scan, as was chosen")});
       for (std::size_t n = 0; n < slices.size(); ++n) chosen.push_back(n);
       return chosen;
     }
     if (answer == "refuse") {
-      report.findings.push_back({code::kPhases, Severity::refusal, text, {}, "Choose one of them"});
+      report.findings.push_back(
+          {code::kPhases, Severity::refusal, text, {}, tr("Choose one of them")});
       take(*phases, 0);
     } else {
       report.findings.push_back(
-          {code::kPhases, Severity::repair, text, {}, "Number " + answer + " was taken"});
+          {code::kPhases, Severity::repair, text, {}, tr("Number {} was taken", answer)});
       take(*phases, *parseInteger(answer) - 1);
     }
     return chosen;
@@ -634,17 +643,16 @@ std::vector<std::size_t> chooseRepeats(const std::vector<const DicomHeader*>& sl
   for (const Place& place : places) {
     if (place.count() > 1) finding.slices.push_back(placeText(places_mm[place.first]));
   }
-  finding.text = std::to_string(finding.slices.size()) +
-                 (finding.slices.size() == 1 ? " place holds" : " places hold") +
-                 " more than one slice, with different pixels";
+  finding.text = tr("{}{} more than one slice, with different pixels", finding.slices.size(),
+                    (finding.slices.size() == 1 ? tr(" place holds") : tr(" places hold")));
   // Where most places repeat and nothing tells the phases apart, any choice would mix them.
   std::string answer = "refuse";
   if (!scanned_again) {
     answer = ask({code::kDuplicatePositions,
-                  "Which of the slices at one place shall be used?",
+                  tr("Which of the slices at one place shall be used?"),
                   {"refuse", "first", "last"},
-                  {"Do not use the series", "The one that was acquired first",
-                   "The one that was acquired last"}},
+                  {tr("Do not use the series"), tr("The one that was acquired first"),
+                   tr("The one that was acquired last")}},
                  answers, report.choices);
   }
   std::vector<int> wanted = rank.of;
@@ -657,11 +665,12 @@ std::vector<std::size_t> chooseRepeats(const std::vector<const DicomHeader*>& sl
   }
   if (answer == "refuse") {
     finding.action =
-        scanned_again ? "Export one of the scans alone: nothing in them tells them apart"
-                      : "Choose which to use, or remove the slices that do not belong to the scan";
+        scanned_again
+            ? tr("Export one of the scans alone: nothing in them tells them apart")
+            : tr("Choose which to use, or remove the slices that do not belong to the scan");
   } else {
     finding.severity = Severity::repair;
-    finding.action = "Of each place the " + answer + " was taken, the others left out";
+    finding.action = tr("Of each place the {} was taken, the others left out", answer);
   }
   report.findings.push_back(std::move(finding));
   take(wanted, 0);

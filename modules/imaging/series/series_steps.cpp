@@ -4,8 +4,9 @@
 #include <cmath>
 #include <limits>
 
-#include "imaging/common/detail/text.h"
+#include "base/tr.h"
 #include "imaging/codes.h"
+#include "imaging/common/detail/text.h"
 
 namespace trephine {
 
@@ -89,7 +90,7 @@ Slices longestPart(const Slices& slices, double step_mm, double tolerance_mm) {
 }
 
 std::string rangeText(const Slices& slices) {
-  return placeText(slices.front().place_mm) + " to " + placeText(slices.back().place_mm);
+  return tr("{} to {}", placeText(slices.front().place_mm), placeText(slices.back().place_mm));
 }
 
 // The places where a slice is wanted and none can be had, and how many slices that is.
@@ -107,8 +108,8 @@ std::vector<std::string> missingPlaces(const Slices& slices, const Steps& steps,
     missing += gap;
     std::string text = placeText(slices[i].place_mm + step);
     if (gap > 1) {
-      text += " to " + placeText(slices[i + 1].place_mm - step) + " (" +
-              counted(std::uint64_t(gap), "slice") + ")";
+      text += tr(" to {} ({})", placeText(slices[i + 1].place_mm - step),
+                 counted(std::uint64_t(gap), "slice"));
     }
     places.push_back(std::move(text));
   }
@@ -166,12 +167,13 @@ void planAsTheyAre(const Slices& slices, Stack& stack) {
 }
 
 void keepPart(const Slices& part, Code code, const std::string& text, Stack& stack) {
-  stack.findings.push_back({code,
-                            Severity::repair,
-                            text,
-                            {},
-                            "Only the longest even part was taken, " + rangeText(part) + ", " +
-                                counted(part.size(), "slice") + "; the rest is not there"});
+  stack.findings.push_back(
+      {code,
+       Severity::repair,
+       text,
+       {},
+       tr("Only the longest even part was taken, {}, {}; the rest is not there", rangeText(part),
+          counted(part.size(), "slice"))});
   planSlices(part, std::int64_t(part.size()), stack);
 }
 
@@ -186,10 +188,10 @@ struct Line {
 Finding roundedFinding(double grid_mm, double step_mm) {
   return {code::kRoundedPositions,
           Severity::repair,
-          "The positions of the slices were rounded to " + fixedText(grid_mm, 1) + " mm",
+          tr("The positions of the slices were rounded to {} mm", fixedText(grid_mm, 1)),
           {},
-          "They were put back on the line that explains them all, with a step of " +
-              fixedText(step_mm, 3) + " mm"};
+          tr("They were put back on the line that explains them all, with a step of {} mm",
+             fixedText(step_mm, 3))};
 }
 
 // Slices that are not there, or are there and lost, in a stack that is even otherwise (or nearly).
@@ -198,21 +200,22 @@ void planGaps(Slices slices, const Steps& steps, const Answers& answers,
               Stack& stack) {
   std::int64_t missing = 0;
   const std::vector<std::string> places = missingPlaces(slices, steps, missing);
-  const std::string gaps = counted(std::uint64_t(missing), "slice", "is", "are") +
-                           " missing from a stack with a step of " + lengthText(steps.step_mm);
-  const std::string text = rounded ? "Either " + gaps +
-                                         ", or none is and the positions were rounded to " +
-                                         fixedText(grid_mm, 1) + " mm from steps of " +
-                                         fixedText(rounded->step_mm, 3) + " mm"
-                                   : gaps + lost_text;
+  const std::string gaps =
+      tr("{} missing from a stack with a step of {}",
+         counted(std::uint64_t(missing), "slice", "is", "are"), lengthText(steps.step_mm));
+  const std::string text =
+      rounded
+          ? tr("Either {}, or none is and the positions were rounded to {} mm from steps of {} mm",
+               gaps, fixedText(grid_mm, 1), fixedText(rounded->step_mm, 3))
+          : gaps + lost_text;
   const Slices part =
       longestPart(slices, steps.step_mm,
                   steps.even ? stepTolerance_mm(steps.step_mm) : kJitter * steps.step_mm);
-  Choice choice{
-      code::kMissingSlices,
-      places.size() == 1 ? "What shall become of the gap?" : "What shall become of the gaps?",
-      {"refuse"},
-      {"Do not use the series"}};
+  Choice choice{code::kMissingSlices,
+                places.size() == 1 ? tr("What shall become of the gap?")
+                                   : tr("What shall become of the gaps?"),
+                {"refuse"},
+                {tr("Do not use the series")}};
   // From the first usable slice to the last.
   std::int64_t filled = steps.total + 1;
   for (std::size_t i = 0; i < slices.size() && !slices[i].usable; ++i) filled -= steps.multiples[i];
@@ -224,18 +227,18 @@ void planGaps(Slices slices, const Steps& steps, const Answers& answers,
   if (fillable) {
     choice.options.push_back("fill");
     choice.words.push_back(
-        "Fill in by interpolation between the slices beside, and name them in the report");
+        tr("Fill in by interpolation between the slices beside, and name them in the report"));
   }
   if (part.size() > 1) {
     choice.options.push_back("part");
-    choice.words.push_back("Use only the longest part without a gap: " + rangeText(part) + ", " +
-                           counted(part.size(), "slice"));
+    choice.words.push_back(tr("Use only the longest part without a gap: {}, {}", rangeText(part),
+                              counted(part.size(), "slice")));
   }
   if (rounded) {
     choice.options.push_back("line");
-    choice.words.push_back("None is missing: their positions were rounded to " +
-                           fixedText(grid_mm, 1) + " mm, from even steps of " +
-                           fixedText(rounded->step_mm, 3) + " mm");
+    choice.words.push_back(
+        tr("None is missing: their positions were rounded to {} mm, from even steps of {} mm",
+           fixedText(grid_mm, 1), fixedText(rounded->step_mm, 3)));
   }
   const std::string answer = ask(std::move(choice), answers, stack.choices);
   if (answer == "line") {
@@ -243,9 +246,9 @@ void planGaps(Slices slices, const Steps& steps, const Answers& answers,
                               Severity::repair,
                               text,
                               {},
-                              "None is missing, as was chosen: positions that were rounded to " +
-                                  fixedText(grid_mm, 1) + " mm were put back on even steps of " +
-                                  fixedText(rounded->step_mm, 3) + " mm"});
+                              tr("None is missing, as was chosen: positions that were rounded to "
+                                 "{} mm were put back on even steps of {} mm",
+                                 fixedText(grid_mm, 1), fixedText(rounded->step_mm, 3))});
     planAsTheyAre(rounded->slices, stack);
     stack.geometry.spacing_mm.z = rounded->step_mm;
     return;
@@ -257,20 +260,20 @@ void planGaps(Slices slices, const Steps& steps, const Answers& answers,
     const bool trimmed = slices.size() < before;
     planSlices(slices, filled, stack);
     stack.findings.push_back({code::kMissingSlices, Severity::repair, text, places,
-                              std::string("Filled in by interpolation: what lies there was not "
-                                          "scanned, and a lesion in it cannot be seen") +
-                                  (trimmed ? ". Ends that cannot be read were cut off" : "")});
+                              tr("Filled in by interpolation: what lies there was not scanned, and "
+                                 "a lesion in it cannot be seen{}",
+                                 (trimmed ? tr(". Ends that cannot be read were cut off") : ""))});
     return;
   }
   planAsTheyAre(slices, stack);
   stack.findings.push_back(
       {code::kMissingSlices, Severity::refusal, text, places,
        rounded    ? rounded->numbered_on
-                        ? "Choose which it is: its slices are numbered without a break, as where "
-                          "none is missing"
-                        : "Choose which it is: count the slices where the series comes from"
-       : fillable ? "Copy or export the series again, or choose to fill in"
-                  : "Copy or export the series again"});
+                        ? tr("Choose which it is: its slices are numbered without a break, as where "
+                                "none is missing")
+                        : tr("Choose which it is: count the slices where the series comes from")
+          : fillable ? tr("Copy or export the series again, or choose to fill in")
+                  : tr("Copy or export the series again")});
 }
 
 void planUneven(const Slices& slices, const Steps& steps, const Answers& answers, Stack& stack) {
@@ -279,23 +282,23 @@ void planUneven(const Slices& slices, const Steps& steps, const Answers& answers
   const double extent = whole.back().place_mm - whole.front().place_mm;
   const double wanted = std::round(extent / steps.median_mm) + 1.0;
   const auto count = std::int64_t(std::min(wanted, double(kMostSlices) + 1.0));
-  const std::string text = "The steps between slices vary from " + fixedText(steps.least_mm, 3) +
-                           " to " + fixedText(steps.most_mm, 3) + " mm (median " +
-                           fixedText(steps.median_mm, 3) + " mm)";
+  const std::string text =
+      tr("The steps between slices vary from {} to {} mm (median {} mm)",
+         fixedText(steps.least_mm, 3), fixedText(steps.most_mm, 3), fixedText(steps.median_mm, 3));
   const Slices part = longestPart(slices, steps.median_mm, stepTolerance_mm(steps.median_mm));
   Choice choice{code::kUnevenSpacing,
-                "How shall the uneven steps be used?",
+                tr("How shall the uneven steps be used?"),
                 {"refuse"},
-                {"Do not use the series"}};
+                {tr("Do not use the series")}};
   if (count > 1 && count <= kMostSlices) {
     choice.options.push_back("resample");
-    choice.words.push_back("Interpolate " + counted(std::uint64_t(count), "slice") +
-                           " at even steps of about " + lengthText(steps.median_mm));
+    choice.words.push_back(tr("Interpolate {} at even steps of about {}",
+                              counted(std::uint64_t(count), "slice"), lengthText(steps.median_mm)));
   }
   if (part.size() > 1) {
     choice.options.push_back("part");
-    choice.words.push_back("Use only the longest even part: " + rangeText(part) + ", " +
-                           counted(part.size(), "slice"));
+    choice.words.push_back(tr("Use only the longest even part: {}, {}", rangeText(part),
+                              counted(part.size(), "slice")));
   }
   const std::string answer = ask(std::move(choice), answers, stack.choices);
   if (answer == "part") return keepPart(part, code::kUnevenSpacing, text, stack);
@@ -305,9 +308,9 @@ void planUneven(const Slices& slices, const Steps& steps, const Answers& answers
                               Severity::repair,
                               text,
                               {},
-                              "Slices were interpolated at even steps of " +
-                                  lengthText(stack.geometry.spacing_mm.z) +
-                                  "; where the scan is coarse, detail is only apparent"});
+                              tr("Slices were interpolated at even steps of {}; where the scan is "
+                                 "coarse, detail is only apparent",
+                                 lengthText(stack.geometry.spacing_mm.z))});
     return;
   }
   planAsTheyAre(slices, stack);
@@ -315,7 +318,7 @@ void planUneven(const Slices& slices, const Steps& steps, const Answers& answers
                             Severity::refusal,
                             text,
                             {},
-                            "Export the series with even spacing, or choose how to use it"});
+                            tr("Export the series with even spacing, or choose how to use it")});
 }
 
 // The coarsest grid that a writer rounds to and that all positions lie on, along the axes on which
@@ -579,10 +582,10 @@ void planAlongNormal(Slices slices, const StackInput& input, const Vec3& normal,
     planAsTheyAre(slices, stack);
     stack.findings.push_back({code::kMissingSlices,
                               Severity::refusal,
-                              std::to_string(slices.size() - std::size_t(usable)) + " of " +
-                                  counted(slices.size(), "slice") + " cannot be used" + lost_text,
+                              tr("{} of {} cannot be used{}", slices.size() - std::size_t(usable),
+                                 counted(slices.size(), "slice"), lost_text),
                               {},
-                              "Copy these files again from their source"});
+                              tr("Copy these files again from their source")});
   } else if ((steps.gaps || lost) && (steps.even || steps.jittered) && steps.total < kMostSlices) {
     planGaps(slices, steps, answers, lost_text, lost ? std::nullopt : offered, grid_mm, stack);
   } else if (steps.even && !steps.gaps) {
@@ -592,14 +595,14 @@ void planAlongNormal(Slices slices, const StackInput& input, const Vec3& normal,
   } else if (steps.jittered && !steps.gaps) {
     planSlices(slices, std::int64_t(slices.size()), stack);
     if (stack.oneToOne()) return;  // within what even steps may differ
-    stack.findings.push_back(
-        {code::kResampledSpacing,
-         Severity::repair,
-         "The steps between slices vary from " + fixedText(steps.least_mm, 3) + " to " +
-             fixedText(steps.most_mm, 3) + " mm",
-         {},
-         "Slices were interpolated at even steps of " + fixedText(stack.geometry.spacing_mm.z, 3) +
-             " mm; the scan's extent is kept, and fine detail is slightly blurred"});
+    stack.findings.push_back({code::kResampledSpacing,
+                              Severity::repair,
+                              tr("The steps between slices vary from {} to {} mm",
+                                 fixedText(steps.least_mm, 3), fixedText(steps.most_mm, 3)),
+                              {},
+                              tr("Slices were interpolated at even steps of {} mm; the scan's "
+                                 "extent is kept, and fine detail is slightly blurred",
+                                 fixedText(stack.geometry.spacing_mm.z, 3))});
   } else {
     planUneven(slices, steps, answers, stack);
   }

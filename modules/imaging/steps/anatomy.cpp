@@ -6,6 +6,8 @@
 #include <thread>
 #include <vector>
 
+#include "base/tr.h"
+
 namespace trephine {
 
 namespace {
@@ -265,7 +267,7 @@ const char* bodyRegionName(BodyRegion part) {
 
 Anatomy anatomyOf(const Volume& volume, const Progress& progress) {
   Anatomy found;
-  progress.at(0.0, "Looking at what the CT shows");
+  progress.at(0.0, tr("Looking at what the CT shows"));
   Cells cells = cellsOf(volume);
   if (progress.cancelled()) return found;
   found.body_ml = double(keepLargest(cells, cells.body)) * cells.ml();
@@ -292,7 +294,7 @@ Anatomy anatomyOf(const Volume& volume, const Progress& progress) {
   for (std::size_t a = 0; a < 3; ++a) extents[a] = (high[a] - low[a] + 1) * cells.mm[int(a)];
   std::sort(extents.begin(), extents.end());
   found.width_mm = extents[1];
-  progress.at(0.4, "Looking at what the CT shows");
+  progress.at(0.4, tr("Looking at what the CT shows"));
 
   CavityRun best;
   for (std::size_t axis = 0; axis < 3 && !progress.cancelled(); ++axis) {
@@ -301,7 +303,7 @@ Anatomy anatomyOf(const Volume& volume, const Progress& progress) {
   }
   found.cavity_mm = best.mm;
   found.cavity_ml = best.ml;
-  progress.at(0.7, "Looking at what the CT shows");
+  progress.at(0.7, tr("Looking at what the CT shows"));
   if (progress.cancelled()) return {};
   if (best.mm >= kCavityRun_mm && best.ml >= kCavityLeast_ml &&
       best.ml >= kCavityOfBody * found.body_ml) {
@@ -328,7 +330,7 @@ Anatomy anatomyOf(const Volume& volume, const Progress& progress) {
       best.ml < kCavityOfBody * found.body_ml) {
     found.region = BodyRegion::abdomen;
   }
-  progress.at(1.0, "Looking at what the CT shows");
+  progress.at(1.0, tr("Looking at what the CT shows"));
   return found;
 }
 

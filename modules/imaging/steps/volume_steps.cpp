@@ -2,10 +2,11 @@
 
 #include <algorithm>
 
+#include "base/codes.h"
+#include "base/tr.h"
+#include "imaging/codes.h"
 #include "imaging/common/detail/text.h"
 #include "imaging/series/detail/series_geometry.h"
-#include "base/codes.h"
-#include "imaging/codes.h"
 #include "imaging/steps/coarse_grid.h"
 #include "imaging/steps/couch.h"
 #include "imaging/steps/face.h"
@@ -21,29 +22,28 @@ bool stepCouch(const CoarseGrid& grid, const Answers& answers, SeriesReport& ser
                Volume& volume) {
   const CouchFinding couch = findCouch(grid);
   if (!couch.found) return false;
-  const std::string answer =
-      ask({code::kCouch,
-           "A patient couch or head holder is in the scan. Take it out?",
-           {"keep", "remove"},
-           {"Leave the scan as it is", "Set couch and holder to air; the patient is not touched"}},
-          answers, series.choices);
-  const std::string text = "The scan shows a couch or holder, " + fixedText(couch.width_mm, 0) +
-                           " mm wide and " + fixedText(couch.length_mm, 0) + " mm long";
+  const std::string answer = ask({code::kCouch,
+                                  tr("A patient couch or head holder is in the scan. Take it out?"),
+                                  {"keep", "remove"},
+                                  {tr("Leave the scan as it is"),
+                                   tr("Set couch and holder to air; the patient is not touched")}},
+                                 answers, series.choices);
+  const std::string text = tr("The scan shows a couch or holder, {} mm wide and {} mm long",
+                              fixedText(couch.width_mm, 0), fixedText(couch.length_mm, 0));
   if (answer != "remove") {
     series.findings.push_back({code::kCouch,
                                Severity::notice,
                                text,
                                {},
-                               "It was left in; tools can touch and cut it like tissue"});
+                               tr("It was left in; tools can touch and cut it like tissue")});
     return false;
   }
   const std::uint64_t voxels = removeCouch(volume, couch);
-  series.findings.push_back(
-      {code::kCouch,
-       Severity::repair,
-       text,
-       {},
-       "It was taken out as was agreed: " + std::to_string(voxels) + " voxels became air"});
+  series.findings.push_back({code::kCouch,
+                             Severity::repair,
+                             text,
+                             {},
+                             tr("It was taken out as was agreed: {} voxels became air", voxels)});
   return true;
 }
 
@@ -52,7 +52,7 @@ constexpr double kStillThere = 0.25;
 // Flesh and bone beyond the face that go without a question.
 constexpr double kLittle_mL = 20.0;
 
-const char* const kFaceText = "The patient's face can be reconstructed from this scan";
+const char* const kFaceText = trLater("The patient's face can be reconstructed from this scan");
 
 // Whether the crop keeps some of what the cut would take, or an eye, nose or mouth elsewhere. A
 // face that it leaves out needs no cut.
@@ -79,9 +79,10 @@ bool keepsFace(const VoxelBox& kept, const CoarseGrid& grid, const FaceFinding& 
 // What is wrong after the cut, in words; empty where the face is gone for sure.
 std::string faceDoubt(const FaceMarks& marks, const CoarseGrid& before, const CoarseGrid& after) {
   if (marks.eyes.empty() && !marks.nose) {
-    return "neither eyes nor nose can be recognised in this scan, so that nothing tells whether "
-           "the "
-           "cut took them";
+    return tr(
+        "neither eyes nor nose can be recognised in this scan, so that nothing tells whether "
+        "the "
+        "cut took them");
   }
   const FaceLeft left = faceLeft(marks, before, after);
   std::vector<std::string> there;
@@ -89,17 +90,17 @@ std::string faceDoubt(const FaceMarks& marks, const CoarseGrid& before, const Co
   if (left.nose >= kStillThere) there.emplace_back("nose");
   if (left.mouth >= kStillThere) there.emplace_back("mouth");
   if (there.empty()) return "";
-  return listed(there) + " can still be seen after the cut";
+  return tr("{} can still be seen after the cut", listed(there));
 }
 
 std::string beyondText(const BeyondFace& beyond) {
   std::string text;
-  if (beyond.throat_mL >= 1.0) text += fixedText(beyond.throat_mL, 0) + " mL of the throat";
+  if (beyond.throat_mL >= 1.0) text += tr("{} mL of the throat", fixedText(beyond.throat_mL, 0));
   if (beyond.beside_mL >= 1.0) {
-    text += (text.empty() ? "" : " and ") + fixedText(beyond.beside_mL, 0) +
-            " mL beside and above the face, such as arms or hands";
+    text += tr("{}{} mL beside and above the face, such as arms or hands",
+               (text.empty() ? "" : " and "), fixedText(beyond.beside_mL, 0));
   }
-  if (beyond.bone_mL >= 1.0) text += ", bone included";
+  if (beyond.bone_mL >= 1.0) text += tr(", bone included");
   return text;
 }
 
@@ -120,17 +121,17 @@ Result<bool> stepFace(const CoarseGrid& grid, const ImportRequest& request, Seri
     series.findings.push_back(
         {code::kFace,
          Severity::notice,
-         kFaceText,
+         tr(kFaceText),
          {},
-         why + "It was kept: the case must stay on this computer until the face is cut away"});
+         tr("{}It was kept: the case must stay on this computer until the face is cut away", why)});
     return false;
   };
   const std::string answer =
       ask({code::kFace,
-           "The patient's face can be reconstructed from this scan. Cut it away?",
+           tr("The patient's face can be reconstructed from this scan. Cut it away?"),
            {"keep", "deface"},
-           {"Keep it; the case must then stay on this computer",
-            "Cut the face away below the brow, bone included; vault, brain and ears stay"}},
+           {tr("Keep it; the case must then stay on this computer"),
+            tr("Cut the face away below the brow, bone included; vault, brain and ears stay")}},
           request.answers, series.choices);
   if (answer != "deface") return kept("");
 
@@ -139,15 +140,16 @@ Result<bool> stepFace(const CoarseGrid& grid, const ImportRequest& request, Seri
   if (beyond.throat_mL + beyond.beside_mL >= kLittle_mL) {
     const std::string agreed = ask(
         {code::kFaceTakesMore,
-         "The cut that takes the face away takes more than the face: " + more + ". Cut it away?",
+         tr("The cut that takes the face away takes more than the face: {}. Cut it away?", more),
          {"refuse", "accept", "keep"},
-         {"Do not read this series so", "Cut all of it away",
-          "Keep face and all; the case must then stay on this computer"}},
+         {tr("Do not read this series so"), tr("Cut all of it away"),
+          tr("Keep face and all; the case must then stay on this computer")}},
         request.answers, series.choices);
-    if (agreed == "keep") return kept("The cut would have taken more: " + more + ". ");
+    if (agreed == "keep") return kept(tr("The cut would have taken more: {}. ", more));
     if (agreed != "accept") {
-      return refuse(code::kFaceTakesMore, "The cut that takes the face away takes more: " + more,
-                    "Accept it, keep the face, or crop the scan to the head", series);
+      return refuse(code::kFaceTakesMore,
+                    tr("The cut that takes the face away takes more: {}", more),
+                    tr("Accept it, keep the face, or crop the scan to the head"), series);
     }
   }
 
@@ -159,17 +161,18 @@ Result<bool> stepFace(const CoarseGrid& grid, const ImportRequest& request, Seri
   const std::uint64_t voxels = deface(volume, face, may_keep ? &taken : nullptr);
   const std::string doubt = faceDoubt(marks, before, faceGrid(volume));
   if (!doubt.empty()) {
-    const std::string text = "It could not be made sure that the face is gone: " + doubt;
+    const std::string text = tr("It could not be made sure that the face is gone: {}", doubt);
     ask({code::kFaceRemains,
-         text + ". Keep the face?",
+         tr("{}. Keep the face?", text),
          {"refuse", "keep"},
-         {"Do not read this series so",
-          "Keep the whole face; the case must then stay on this computer"}},
+         {tr("Do not read this series so"),
+          tr("Keep the whole face; the case must then stay on this computer")}},
         request.answers, series.choices);
     if (!may_keep) {
       return refuse(
           code::kFaceRemains, text,
-          "Crop the head away, or keep the face; the case must then stay on this computer", series);
+          tr("Crop the head away, or keep the face; the case must then stay on this computer"),
+          series);
     }
     for (const auto& slice : taken) {
       for (const auto& [n, hu] : slice) volume.hu[n] = hu;
@@ -178,12 +181,11 @@ Result<bool> stepFace(const CoarseGrid& grid, const ImportRequest& request, Seri
   }
   series.findings.push_back({code::kFace,
                              Severity::repair,
-                             kFaceText,
+                             tr(kFaceText),
                              {},
-                             "The face was cut away as was agreed: " + std::to_string(voxels) +
-                                 " voxels became air" +
-                                 (more.empty() ? "" : ", with them " + more) +
-                                 ". Eyes, nose and mouth were looked for again: none is left"});
+                             tr("The face was cut away as was agreed: {} voxels became air{}. "
+                                "Eyes, nose and mouth were looked for again: none is left",
+                                voxels, (more.empty() ? "" : tr(", with them {}", more)))});
   return true;
 }
 
@@ -192,9 +194,9 @@ Result<bool> stepFace(const CoarseGrid& grid, const ImportRequest& request, Seri
 Status takeVolumeSteps(const ImportRequest& request, const Progress& progress, SeriesReport& series,
                        Volume& volume, std::optional<MeasuredLoss>& loss) {
   const auto cancelled = [&] {
-    return Error{code::kCancelled, "The import was cancelled", "", ""};
+    return Error{code::kCancelled, tr("The import was cancelled"), "", ""};
   };
-  progress.at(0.9, "Looking for couch and face");
+  progress.at(0.9, tr("Looking for couch and face"));
   CoarseGrid grid = coarseGrid(volume);
   bool changed = stepCouch(grid, request.answers, series, volume);
   if (progress.cancelled()) return cancelled();
@@ -211,21 +213,20 @@ Status takeVolumeSteps(const ImportRequest& request, const Progress& progress, S
     changed = true;
   }
   if (request.reduction != 1) {
-    progress.at(0.93, "Reducing the resolution");
+    progress.at(0.93, tr("Reducing the resolution"));
     Result<Volume> small = reduced(volume, request.reduction);
     if (!small) return small.error();
     const ReductionLoss measured = reductionLoss(volume, *small, request.reduction);
     loss = MeasuredLoss{measured.rms_hu, measured.p99_hu, measured.bone_volume_change_percent};
     series.findings.push_back({code::kReduced,
                                Severity::repair,
-                               "The resolution was reduced to " +
-                                   std::string(request.reduction == 2 ? "a half" : "a quarter") +
-                                   " along each axis",
+                               tr("The resolution was reduced to {} along each axis",
+                                  request.reduction == 2 ? "a half" : "a quarter"),
                                {},
-                               "Against the full resolution HU differ by " +
-                                   fixedText(loss->rms_hu, 1) + " (rms), 99 % of them by at most " +
-                                   fixedText(loss->p99_hu, 0) + "; the volume of bone changed by " +
-                                   fixedText(loss->bone_volume_change_percent, 1) + " %"});
+                               tr("Against the full resolution HU differ by {} (rms), 99 % of them "
+                                  "by at most {}; the volume of bone changed by {} %",
+                                  fixedText(loss->rms_hu, 1), fixedText(loss->p99_hu, 0),
+                                  fixedText(loss->bone_volume_change_percent, 1))});
     volume = *std::move(small);
     changed = true;
   }

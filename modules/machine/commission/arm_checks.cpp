@@ -10,6 +10,7 @@
 #include "base/formatted.h"
 #include "base/locked_folder.h"
 #include "base/system.h"
+#include "base/tr.h"
 #include "device/find_arms.h"
 #include "machine/codes.h"
 #include "machine/commission/commission.h"
@@ -47,9 +48,9 @@ std::vector<CommissionCheck> both(Fitness verdict, const Error& why) {
 }  // namespace
 
 std::vector<CommissionCheck> judgedArms(const std::vector<ArmAnswered>& arms) {
-  constexpr const char* kHold = "Commission again, and hold each arm lightly by its tip meanwhile";
-  constexpr const char* kStiller =
-      "Commission again, and hold each arm more lightly and as still as you can";
+  const std::string hold = tr("Commission again, and hold each arm lightly by its tip meanwhile");
+  const std::string stiller =
+      tr("Commission again, and hold each arm more lightly and as still as you can");
   // Beyond it the pushes differ too much to say that an arm is well: the hand moved, or is firm.
   constexpr double kTooUnlike = 0.03, kSurely = 3.0;
   std::string scatter, pushed;
@@ -59,9 +60,9 @@ std::vector<CommissionCheck> judgedArms(const std::vector<ArmAnswered>& arms) {
     const ArmAnswered& arm = arms[i];
     const std::string name = (i == 0 ? "" : "; ") + std::to_string(i + 1) + ", " + arm.model + ": ";
     const bool done = arm.phase == MotorEncoderCheck::Phase::done;
-    const char* why = arm.phase == MotorEncoderCheck::Phase::untouched ? "nobody held it"
-                      : done ? "not pushed, as its samples scatter, or it states no mass"
-                             : "it was let go of, moved too fast, or went away";
+    const char* why = arm.phase == MotorEncoderCheck::Phase::untouched ? tr("nobody held it")
+                      : done ? tr("not pushed, as its samples scatter, or it states no mass")
+                             : tr("it was let go of, moved too fast, or went away");
     all_heard = all_heard && done;
     all_pushed = all_pushed && done && arm.pushed;
     scatter += name + (done ? formatted("%.3f mm", 1e3 * arm.noise_m) : std::string(why));
@@ -89,13 +90,13 @@ std::vector<CommissionCheck> judgedArms(const std::vector<ArmAnswered>& arms) {
   };
   // One that was not tried says nothing of the others, but is not passed either.
   if (!all_heard && checks[0].verdict == Fitness::pass) {
-    checks[0] = unknown("arm_encoders", scatter, kHold);
+    checks[0] = unknown("arm_encoders", scatter, hold);
   }
   if (forces.verdict == Fitness::pass && !(all_pushed && all_sure)) {
     forces = unknown("arm_forces", pushed,
-                     !all_heard    ? kHold
-                     : !all_pushed ? "See to its encoders first"
-                                   : kStiller);
+                     !all_heard    ? hold
+                     : !all_pushed ? tr("See to its encoders first")
+                                   : stiller);
   }
   checks.push_back(forces);
   return checks;
@@ -113,11 +114,11 @@ std::vector<CommissionCheck> tryArms(double patience_s, const Progress& progress
     return checks;
   };
   if (here.arms.empty())
-    return with(
-        both(Fitness::warn, {code::kNoArms, "No arm is plugged in", "", "See to the arms first"}));
+    return with(both(Fitness::warn,
+                     {code::kNoArms, tr("No arm is plugged in"), "", tr("See to the arms first")}));
   if (patience_s <= 0.0) {
-    return with(both(Fitness::warn, {code::kNotTried, "The arms were not tried", "",
-                                     "Commission again, and hold each arm meanwhile"}));
+    return with(both(Fitness::warn, {code::kNotTried, tr("The arms were not tried"), "",
+                                     tr("Commission again, and hold each arm meanwhile")}));
   }
   const std::unique_ptr<ArmTrial> trial = ArmTrial::start(here.arms);
   for (std::size_t i = 0; i < trial->size(); ++i) {
@@ -127,7 +128,7 @@ std::vector<CommissionCheck> tryArms(double patience_s, const Progress& progress
   const auto begun = std::chrono::steady_clock::now();
   bool over = false;
   for (double now_s = 0.0; !over && now_s < patience_s + kPushes_s && !progress.cancelled();) {
-    progress.at(now_s / (patience_s + kPushes_s), "Hold each arm and move it a little");
+    progress.at(now_s / (patience_s + kPushes_s), tr("Hold each arm and move it a little"));
     std::this_thread::sleep_for(kLookEvery);
     const TriedArms& tried = trial->state();
     over = true;
@@ -154,24 +155,25 @@ std::vector<CommissionCheck> checkArms(double patience_s, const Progress& progre
     return checks;
   };
   const auto failed = [&](const char* what) {
-    return failedFor({code::kNotAnswered, what, "",
-                      "Unplug one device after the other, commission again each time, and have the "
-                      "driver mended of the one without which it passes"});
+    return failedFor(
+        {code::kNotAnswered, what, "",
+         tr("Unplug one device after the other, commission again each time, and have the "
+            "driver mended of the one without which it passes")});
   };
-  constexpr const char* kTemporaryNext = "Let TMPDIR name a folder that you may write to";
+  const std::string temporary_next = tr("Let TMPDIR name a folder that you may write to");
   const Result<std::filesystem::path> temporary = temporaryFolder();
   if (!temporary) {
     return failedFor(
-        {code::kCannotWrite, "There is no folder for temporary files", "", kTemporaryNext});
+        {code::kCannotWrite, tr("There is no folder for temporary files"), "", temporary_next});
   }
   const Result<LockedFolder> folder = LockedFolder::make(*temporary, ".trephine-arms-", *temporary);
   if (!folder) {
-    return failedFor({code::kCannotWrite, "The folder for temporary files cannot be written to", "",
-                      kTemporaryNext});
+    return failedFor({code::kCannotWrite, tr("The folder for temporary files cannot be written to"),
+                      "", temporary_next});
   }
   if (const Status fits = tryRoom(folder->path(), 100'000); !fits) {
-    return failedFor({code::kCannotWrite, "The folder for temporary files has no room", "",
-                      std::string("Free some space there. ") + kTemporaryNext});
+    return failedFor({code::kCannotWrite, tr("The folder for temporary files has no room"), "",
+                      tr("Free some space there. {}", temporary_next)});
   }
   const Result<ChildRun> run =
       runChild({{labProgram().string(), "commission", "--arms", "--json", "--out",
@@ -179,18 +181,19 @@ std::vector<CommissionCheck> checkArms(double patience_s, const Progress& progre
                 folder->path() / "said",
                 {},
                 patience_s + kPushes_s + kOpening_s,
-                "Hold each arm and move it a little"},
+                tr("Hold each arm and move it a little")},
                progress);
   const Result<Json> json = readJsonFile(folder->path() / kArmsAnswer);
   if (!run) return failedFor(run.error());
-  if (run->timed_out) return failed("The driver of a device does not answer");
-  if (run->exit_code > 128) return failed("The driver of a device ended the program that asked it");
+  if (run->timed_out) return failed(tr("The driver of a device does not answer"));
+  if (run->exit_code > 128)
+    return failed(tr("The driver of a device ended the program that asked it"));
   const auto checks =
       json && json->contains("checks") ? checksOf(json->at("checks")) : std::nullopt;
   if (checks) return *checks;
   const auto said = errorSaid(folder->path() / "said");
   return said ? failedFor(*said)
-              : failed("The program that tries the arms did not come to its end");
+              : failed(tr("The program that tries the arms did not come to its end"));
 }
 
 }  // namespace trephine

@@ -14,6 +14,7 @@
 #include "base/memory.h"
 #include "base/release.h"
 #include "base/system.h"
+#include "base/tr.h"
 #include "headset/headset.h"
 #include "machine/codes.h"
 #include "machine/commission/arm_checks.h"
@@ -35,20 +36,20 @@ constexpr double kDiskMost_s = 20.0;
 constexpr double kRates_hz[] = {1000.0, 2000.0, 4000.0};  // of which lateness is asked
 
 Error stopped() {
-  return {code::kCancelled, "The commissioning was cancelled", "commission", ""};
+  return {code::kCancelled, tr("The commissioning was cancelled"), "commission", ""};
 }
 
 std::string machineName() {
   utsname system{};
   ::uname(&system);
-  return std::to_string(std::thread::hardware_concurrency()) + " processors, " + system.sysname +
-         " " + std::string(system.release).substr(0, std::string(system.release).find('-')) +
-         (::geteuid() == 0 ? ", as an administrator" : "");
+  return tr("{} processors, {} {}{}", std::thread::hardware_concurrency(), system.sysname,
+            std::string(system.release).substr(0, std::string(system.release).find('-')),
+            (::geteuid() == 0 ? tr(", as an administrator") : ""));
 }
 
 // No limit holds root: what it has says nothing of those who practise.
 const char* const kRootsOwn =
-    ::geteuid() == 0 ? "an administrator always has it: commission as one who practises" : "";
+    ::geteuid() == 0 ? tr("an administrator always has it: commission as one who practises") : "";
 
 class Run {
  public:
@@ -87,25 +88,24 @@ Status Run::lateness() {
   JitterOptions options;
   options.seconds = options_.seconds;
   const Result<JitterMeasurement> measured =
-      measureJitter(options, {}, Progress(progress_, 0.0, 0.35, "How late ticks come"));
+      measureJitter(options, {}, Progress(progress_, 0.0, 0.35, tr("How late ticks come")));
   if (!measured) return measured.error();
   granted_ = measured->advice.empty();
   add("priority", granted_ ? 1.0 : 0.0, kRootsOwn);
   for (const JitterRow& row : measured->rows) {
-    CommissionCheck check =
-        judged(latenessName(row.rate_hz, row.real_time), row.p999_us,
-               std::to_string(row.missed) + " missed of " + std::to_string(row.ticks));
+    CommissionCheck check = judged(latenessName(row.rate_hz, row.real_time), row.p999_us,
+                                   tr("{} missed of {}", row.missed, row.ticks));
     if (granted_ && !row.real_time) {  // an exercise has priority then
       check.verdict = Fitness::pass;
       check.next.clear();
-      check.remark += "; matters only where priority is not granted";
+      check.remark += tr("; matters only where priority is not granted");
     }
     checks.push_back(std::move(check));
   }
   for (const double rate_hz : kRates_hz) {
     if (granted_) continue;
     add(latenessName(rate_hz, true), Fitness::warn,
-        {code::kNoRealTime, "Real-time priority was not granted", "",
+        {code::kNoRealTime, tr("Real-time priority was not granted"), "",
          commissionLimit("priority")->next});
   }
   return {};
@@ -119,8 +119,7 @@ void Run::memory() {
   add("locked_memory", unlimited ? kEnough_MB : std::min(kEnough_MB, double(limit.rlim_cur) / kMB),
       kRootsOwn);
   const double pages = double(::sysconf(_SC_PHYS_PAGES)) * double(::sysconf(_SC_PAGESIZE));
-  add("memory", availableMemoryMb() * kMB / kGB,
-      "of " + std::to_string(std::lround(pages / kGB)) + " GB");
+  add("memory", availableMemoryMb() * kMB / kGB, tr("of {} GB", std::lround(pages / kGB)));
 }
 
 // The best of what this machine keeps: a rate whose ticks come late here is not recommended.
@@ -137,7 +136,7 @@ Status Run::trades() {
   }
   std::erase_if(options.rates_hz, [&](double rate_hz) { return rate_hz > kept_hz; });
   const Result<TradesMeasurement> measured =
-      measureTrades(options, {}, Progress(progress_, 0.35, 0.42, "What touch costs"));
+      measureTrades(options, {}, Progress(progress_, 0.35, 0.42, tr("What touch costs")));
   if (!measured) return measured.error();
   recommended = recommendedOf(measured->rows);
   std::string words;
@@ -157,7 +156,7 @@ Status Run::drawing() {
   if (const Status display = probeDisplay(); !display) {
     Error why = display.error();
     // A virtual screen would be measured in the place of the one that is looked at.
-    if (why.code == code::kNoDisplay) why.next = "Commission inside a desktop session";
+    if (why.code == code::kNoDisplay) why.next = tr("Commission inside a desktop session");
     for (const char* name : kDrawn) add(name, Fitness::fail, why);
     return {};
   }
@@ -178,11 +177,11 @@ Status Run::drawing() {
       renderSubjects("", Progress(progress_, 0.5, 0.58, "Pictures"));
   if (!subjects) return subjects.error();
   const auto turned = measureTurning(subjects->front(), options,
-                                     Progress(progress_, 0.58, 0.72, "A camera that turns"));
+                                     Progress(progress_, 0.58, 0.72, tr("A camera that turns")));
   if (progress_.cancelled()) return stopped();
   turned ? add("frame_time", turned->ms_median) : add("frame_time", Fitness::fail, turned.error());
-  const auto cut = measureCutting(*subjects, options,
-                                  Progress(progress_, 0.72, 1.0, "Exercises as they are drawn"));
+  const auto cut = measureCutting(
+      *subjects, options, Progress(progress_, 0.72, 1.0, tr("Exercises as they are drawn")));
   if (progress_.cancelled()) return stopped();
   if (!cut) {
     add("removal_to_pixel", Fitness::fail, cut.error());
@@ -212,11 +211,12 @@ Fitness fitnessOf(const Commissioning& of) {
 
 Result<Commissioning> commission(const CommissionOptions& options, const Progress& progress) {
   if (!(options.seconds >= 0.2 && options.seconds <= 60.0)) {
-    return Error{code::kBadOption, "Seconds are from 0.2 to 60", "commission", "Give others"};
+    return Error{code::kBadOption, tr("Seconds are from 0.2 to 60"), "commission",
+                 tr("Give others")};
   }
   if (!(options.patience_s >= 0.0 && options.patience_s <= 600.0)) {
-    return Error{code::kBadOption, "Arms are waited for from 0 to 600 s", "commission",
-                 "Give others"};
+    return Error{code::kBadOption, tr("Arms are waited for from 0 to 600 s"), "commission",
+                 tr("Give others")};
   }
   Commissioning result{{}, localTime("%Y-%m-%d %H:%M"), buildName(), machineName(), {}};
   Run run(options, progress);
@@ -227,7 +227,7 @@ Result<Commissioning> commission(const CommissionOptions& options, const Progres
     return traded.error().code == code::kCancelled ? stopped() : traded.error();
   }
   run.memory();
-  progress.at(0.42, "The disk");
+  progress.at(0.42, tr("The disk"));
   run.take(checkDisk(options.storage, kDiskTry, kDiskMost_s, progress, options.storage_is_set));
   run.take({judgedClock(std::time(nullptr), localTime("%Y-%m-%d %H:%M"))});
   run.take(checkArms(options.patience_s, Progress(progress, 0.44, 0.5)));

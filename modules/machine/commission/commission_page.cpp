@@ -5,13 +5,14 @@
 #include "base/codes.h"
 #include "base/html.h"
 #include "base/purpose.h"
+#include "base/tr.h"
 #include "machine/commission/commission.h"
 #include "machine/common/spread.h"
 
 namespace trephine {
 
 std::string shownValue(const std::optional<double>& value, const std::string& unit) {
-  if (!value) return "not measured";
+  if (!value) return tr("not measured");
   char text[64];
   const double size = std::abs(*value);
   std::snprintf(text, sizeof text,
@@ -21,8 +22,8 @@ std::string shownValue(const std::optional<double>& value, const std::string& un
                 *value, unit.c_str());
   if (unit == "us") std::snprintf(text, sizeof text, "%.0f \u00b5s", *value);
   if (unit == "granted" || unit == "installed") return *value > 0.0 ? "yes" : "no";
-  if (unit == "drawn by") return *value > 0.0 ? "a graphics card" : "the processors";
-  if (unit == "MB" && *value >= 1e6) return "without limit";
+  if (unit == "drawn by") return *value > 0.0 ? tr("a graphics card") : tr("the processors");
+  if (unit == "MB" && *value >= 1e6) return tr("without limit");
   if (unit == "arms") std::snprintf(text, sizeof text, "%.0f", *value);
   if (unit == "lines") std::snprintf(text, sizeof text, "%.0f lines", *value);
   if (unit == "of 1") std::snprintf(text, sizeof text, "%.2f", *value);
@@ -35,9 +36,10 @@ constexpr const char* kFormat = "trephine.commission";
 constexpr int kVersion = 1;
 
 const char* inWords(Fitness verdict) {
-  return verdict == Fitness::pass   ? "This workstation is fit for exercises."
-         : verdict == Fitness::warn ? "This workstation can be used; some of it could be better."
-                                    : "This workstation is not fit for exercises yet.";
+  return verdict == Fitness::pass ? tr("This workstation is fit for exercises.")
+         : verdict == Fitness::warn
+             ? tr("This workstation can be used; some of it could be better.")
+             : tr("This workstation is not fit for exercises yet.");
 }
 
 std::optional<Fitness> fitnessNamed(const std::string& name) {
@@ -50,47 +52,47 @@ std::optional<Fitness> fitnessNamed(const std::string& name) {
 std::string limitWords(const CommissionCheck& check) {
   const CommissionLimit* by = commissionLimit(check.name);
   if (!check.limit || !by) return "";
-  for (const char* yes_or_no : {"granted", "installed", "drawn by"}) {
+  for (const char* yes_or_no : {"granted", "installed", tr("drawn by")}) {
     if (check.unit == yes_or_no) return shownValue(check.limit, check.unit);
   }
-  if (check.unit == "years") return "not before it";
-  const std::string side = by->at_least ? "at least " : "at most ";
+  if (check.unit == "years") return tr("not before it");
+  const std::string side = by->at_least ? tr("at least ") : tr("at most ");
   std::string words = side + shownValue(by->warn, check.unit);
   // That of a failure may be raised on this machine: a larger case is kept.
   const std::optional<double> fail = check.verdict == Fitness::fail ? check.limit : by->fail;
   if (fail && *fail != by->warn) {
-    words += "; to practise at all " + side + shownValue(fail, check.unit);
+    words += tr("; to practise at all {}{}", side, shownValue(fail, check.unit));
   }
   return words;
 }
 
 // Those of that verdict; none: nothing.
-std::string tableOf(const Commissioning& of, const char* title, Fitness verdict) {
+std::string tableOf(const Commissioning& of, const std::string& title, Fitness verdict) {
   const bool passed = verdict == Fitness::pass;
   std::string rows;
   for (const CommissionCheck& check : of.checks) {
     if (check.verdict != verdict) continue;
     const CommissionLimit* by = commissionLimit(check.name);
     rows += "<tr><td class=\"" + std::string(nameOf(verdict)) + "\">" + nameOf(verdict) +
-            "</td><td>" + inHtml(check.words) + "<br><small>" + (by ? inHtml(by->reason) : "") +
+            "</td><td>" + inHtml(check.words) + "<br><small>" + (by ? inHtml(tr(by->reason)) : "") +
             "</small></td><td>" + inHtml(shownValue(check.value, check.unit));
     if (!check.remark.empty()) rows += "<br><small>" + inHtml(check.remark) + "</small>";
     rows += "</td><td>" + inHtml(limitWords(check)) + "</td>";
     rows += passed ? "</tr>\n" : "<td>" + inHtml(check.next) + "</td></tr>\n";
   }
   if (rows.empty()) return rows;
-  return std::string("<h2>") + title +
-         "</h2>\n<table width=\"100%\">\n<tr><th width=\"64\"></th><th>What</th><th>Here</th>"
-         "<th width=\"16%\">Limit</th>" +
-         (passed ? "" : "<th width=\"30%\">Next step</th>") + "</tr>\n" + rows + "</table>\n";
+  return "<h2>" + title + "</h2>\n<table width=\"100%\">\n<tr><th width=\"64\"></th><th>" +
+         tr("What") + "</th><th>" + tr("Here") + "</th><th width=\"16%\">" + tr("Limit") + "</th>" +
+         (passed ? "" : "<th width=\"30%\">" + tr("Next step") + "</th>") + "</tr>\n" + rows +
+         "</table>\n";
 }
 
 }  // namespace
 
 std::string changeText(const CommissionChange& change) {
-  return change.words + ": " + shownValue(change.value_before, change.unit) + " (" +
-         nameOf(change.before) + ") before, " + shownValue(change.value_now, change.unit) + " (" +
-         nameOf(change.now) + ") now";
+  return tr("{}: {} ({}) before, {} ({}) now", change.words,
+            shownValue(change.value_before, change.unit), nameOf(change.before),
+            shownValue(change.value_now, change.unit), nameOf(change.now));
 }
 
 Json toJson(const std::vector<CommissionCheck>& checks) {
@@ -152,14 +154,14 @@ Result<Commissioning> readCommissioning(const std::filesystem::path& file) {
   constexpr std::uintmax_t kMostBytes = 1'000'000;
   std::error_code ec;
   if (std::filesystem::file_size(file, ec) > kMostBytes && !ec) {
-    return Error{code::kTooLarge, "This is no commissioning of ours: it is too large",
-                 file.string(), "Commission the workstation anew"};
+    return Error{code::kTooLarge, tr("This is no commissioning of ours: it is too large"),
+                 file.string(), tr("Commission the workstation anew")};
   }
   const Result<Json> json = readJsonFile(file);
   if (!json) return json.error();
   const auto bad = [&](const char* field) {
-    return Error{code::kBadField, "This is no commissioning of ours", file.string() + ": " + field,
-                 "Commission the workstation anew"};
+    return Error{code::kBadField, tr("This is no commissioning of ours"),
+                 file.string() + ": " + field, tr("Commission the workstation anew")};
   };
   try {
     if (json->at("format") != kFormat) return bad("format");
@@ -183,37 +185,41 @@ std::string toText(const Commissioning& of, const CommissionChanges& changes) {
     if (check.verdict != Fitness::pass && !check.next.empty()) text += "      " + check.next + "\n";
   }
   for (const CommissionChange& change : changes.value_or(std::vector<CommissionChange>()))
-    text += "since last time: " + changeText(change) + "\n";
+    text += tr("since last time: {}\n", changeText(change));
   return text + inWords(fitnessOf(of)) + "\n";
 }
 
 std::string toHtml(const Commissioning& of, const CommissionChanges& changes) {
   std::string page =
       "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\n"
-      "<title>Commissioning of a Trephine workstation</title>\n<style>\n"
+      "<title>" +
+      tr("Commissioning of a Trephine workstation") +
+      "</title>\n<style>\n"
       "body{font-family:sans-serif;margin:2em;color:#222}table{border-collapse:collapse;width:100%}"
       "\n"
       "td,th{text-align:left;padding:.3em .6em;border-bottom:1px solid #bbb;vertical-align:top}\n"
       ".pass{color:#166534}.warn{color:#92400e;font-weight:bold}.fail{color:#991b1b;font-weight:"
       "bold}\n"
       "small{color:#555}@media print{body{margin:0}}\n</style></head><body>\n"
-      "<h1>Commissioning of this workstation</h1>\n";
+      "<h1>" +
+      tr("Commissioning of this workstation") + "</h1>\n";
   page += "<p class=\"" + std::string(nameOf(fitnessOf(of))) + "\">" + inWords(fitnessOf(of)) +
           "</p>\n";
-  page +=
-      "<p>Workstation ____________ &nbsp; Room ____________ &nbsp; Checked by ____________</p>\n";
+  constexpr const char* kLine = " ____________";
+  page += "<p>" + tr("Workstation") + kLine + " &nbsp; " + tr("Room") + kLine + " &nbsp; " +
+          tr("Checked by") + kLine + "</p>\n";
   page += "<p>" + inHtml(of.when) + " &middot; Trephine " + inHtml(of.build) + " &middot; " +
           inHtml(of.machine) + "</p>\n";
-  page += tableOf(of, "What keeps trainees from practising", Fitness::fail) +
-          tableOf(of, "What could be better", Fitness::warn) +
-          tableOf(of, "What is well", Fitness::pass);
-  page += "<h2>Since the last commissioning</h2>\n";
-  if (!changes) page += "<p>There is none to compare with.</p>\n";
-  if (changes && changes->empty()) page += "<p>Nothing has changed.</p>\n";
+  page += tableOf(of, tr("What keeps trainees from practising"), Fitness::fail) +
+          tableOf(of, tr("What could be better"), Fitness::warn) +
+          tableOf(of, tr("What is well"), Fitness::pass);
+  page += "<h2>" + tr("Since the last commissioning") + "</h2>\n";
+  if (!changes) page += "<p>" + tr("There is none to compare with.") + "</p>\n";
+  if (changes && changes->empty()) page += "<p>" + tr("Nothing has changed.") + "</p>\n";
   for (const CommissionChange& change : changes.value_or(std::vector<CommissionChange>())) {
     page += "<p>" + inHtml(changeText(change)) + "</p>\n";
   }
-  return page + "<p><small>" + kPurpose + ".</small></p>\n</body></html>\n";
+  return page + "<p><small>" + tr(kPurpose) + ".</small></p>\n</body></html>\n";
 }
 
 }  // namespace trephine

@@ -10,6 +10,7 @@
 #include "base/codes.h"
 #include "base/descriptor.h"
 #include "base/file.h"
+#include "base/tr.h"
 
 namespace trephine {
 
@@ -54,9 +55,9 @@ std::vector<CommissionCheck> checkDisk(const std::filesystem::path& folder, std:
                                        bool has_to_be_there) {
   std::error_code ec;
   if (has_to_be_there && !std::filesystem::is_directory(folder, ec)) {
-    const Error why{code::kMissingFolder, "This folder is not there", folder.string(),
-                    "Check its name in /etc/trephine/settings.json, and whether its disk is "
-                    "connected"};
+    const Error why{code::kMissingFolder, tr("This folder is not there"), folder.string(),
+                    tr("Check its name in /etc/trephine/settings.json, and whether its disk is "
+                       "connected")};
     return {notMeasured("disk_room", Fitness::fail, why),
             notMeasured("disk_write", Fitness::fail, why)};
   }
@@ -77,7 +78,7 @@ std::vector<CommissionCheck> checkDisk(const std::filesystem::path& folder, std:
   constexpr std::uintmax_t kLeast = 4'000'000;  // of less no speed can be told
   return {
       judged("disk_room", double(space.available) / kBytesOfGB,
-             there ? "" : "the folder is not there yet: of the disk that it would be on"),
+             there ? "" : tr("the folder is not there yet: of the disk that it would be on")),
       space.available < kLeast
           ? notMeasured("disk_write", Fitness::fail, writeError(folder, ENOSPC))
           : written(existing, std::min<std::size_t>(bytes, space.available / 4), most_s, progress)};

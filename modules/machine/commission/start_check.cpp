@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "base/tr.h"
 #include "machine/codes.h"
 #include "machine/commission/arm_checks.h"
 #include "machine/commission/disk_check.h"
@@ -25,7 +26,8 @@ Result<Commissioning> lastCommissioning(const std::filesystem::path& own_folder,
     if (read && (!last || read->when > last->when)) last = *std::move(read);
   }
   if (last) return *std::move(last);
-  return Error{code::kNotCommissioned, "This workstation was not commissioned yet", "", "See Help"};
+  return Error{code::kNotCommissioned, tr("This workstation was not commissioned yet"), "",
+               tr("See Help")};
 }
 
 Result<std::vector<CommissionCheck>> checkAtStart(const StartSurroundings& surroundings,
@@ -70,26 +72,26 @@ std::optional<StartWords> storageWords(const StartSurroundings& surroundings) {
   if (!surroundings.storage_is_set || std::filesystem::is_directory(surroundings.storage, ec)) {
     return {};
   }
-  return StartWords{Fitness::fail,
-                    "The folder of cases is not there: see whether its disk is connected.",
-                    surroundings.storage.string() + ", as /etc/trephine/settings.json has it."};
+  return StartWords{
+      Fitness::fail, tr("The folder of cases is not there: see whether its disk is connected."),
+      tr("{}, as /etc/trephine/settings.json has it.", surroundings.storage.string())};
 }
 
 StartWords startWords(const std::optional<Commissioning>& commissioned,
                       const std::vector<CommissionCheck>& now) {
   if (!commissioned) {
-    return {Fitness::warn, "This workstation has not been commissioned yet: File, Commission.",
-            "It then says what the machine is fit for, and what has changed at each start."};
+    return {Fitness::warn, tr("This workstation has not been commissioned yet: File, Commission."),
+            tr("It then says what the machine is fit for, and what has changed at each start.")};
   }
   Commissioning compared = *commissioned;
   compared.checks = now;
   const std::vector<CommissionChange> changes = changesSince(*commissioned, compared);
-  StartWords said{Fitness::pass, "As commissioned on " + commissioned->when + ".",
-                  "Arms, ticks, disk and screen are as they were then."};
+  StartWords said{Fitness::pass, tr("As commissioned on {}.", commissioned->when),
+                  tr("Arms, ticks, disk and screen are as they were then.")};
   if (fitnessOf(*commissioned) == Fitness::fail) {
     said = {Fitness::fail,
-            "Commissioned on " + commissioned->when +
-                ", and not fit for exercises: see File, Commission.",
+            tr("Commissioned on {}, and not fit for exercises: see File, Commission.",
+               commissioned->when),
             ""};
     for (const CommissionCheck& check : commissioned->checks) {
       if (check.verdict == Fitness::fail) said.all += check.words + ": " + check.next + "\n";
@@ -104,11 +106,11 @@ StartWords startWords(const std::optional<Commissioning>& commissioned,
     said.all += changeText(change) + ". " + next + "\n";
     if (worse++ == 0 || change.now > said.fitness) {
       said.words =
-          change.words + ", now " + shownValue(change.value_now, change.unit) + ": " + next;
+          tr("{}, now {}: {}", change.words, shownValue(change.value_now, change.unit), next);
     }
     said.fitness = std::max(said.fitness, change.now);
   }
-  if (worse > 1) said.words += " (" + std::to_string(worse - 1) + " more: point here)";
+  if (worse > 1) said.words += tr(" ({} more: point here)", worse - 1);
   return said;
 }
 

@@ -14,6 +14,7 @@
 #include "base/codes.h"
 #include "base/progress.h"
 #include "base/result.h"
+#include "base/tr.h"
 #include "case/placement.h"
 #include "exercise/landmark.h"
 #include "machine/drawing/ray_settings.h"
@@ -51,7 +52,7 @@ inline double msSince(RenderClock::time_point start) {
 }
 double medianOf(std::vector<double> values);
 inline Error drawingCancelled() {
-  return {code::kCancelled, "The measurement was cancelled", "pictures", ""};
+  return {code::kCancelled, tr("The measurement was cancelled"), "pictures", ""};
 }
 
 constexpr double kEqual_dB = 100.0;          // stand for equal pictures

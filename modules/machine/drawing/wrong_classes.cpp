@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "base/codes.h"
+#include "base/tr.h"
 #include "machine/common/on_all_processors.h"
 #include "machine/drawing/drawing_parts.h"
 #include "render/view_camera.h"
@@ -72,7 +73,7 @@ Status colourApart(ClassSubject& subject) {
     }
     if (tissue.opacity == 0.0) continue;
     if (subject.visible.size() == kCorners.size()) {
-      return Error{code::kBadArgument, "No more than 7 visible tissues can be told apart",
+      return Error{code::kBadArgument, tr("No more than 7 visible tissues can be told apart"),
                    subject.name, ""};
     }
     const auto& corner = kCorners[subject.visible.size()];
@@ -172,7 +173,7 @@ std::optional<double> percentWrong(const ClassSubject& subject, SceneRenderer& r
   Count all;
   for (std::size_t n = 0; n < directions.size(); ++n) {
     if (progress.cancelled()) return std::nullopt;
-    progress.at(double(n) / double(directions.size()), subject.name + ", tissues");
+    progress.at(double(n) / double(directions.size()), tr("{}, tissues", subject.name));
     const Vec3 up = std::abs(directions[n].z) > 0.5 ? Vec3(0, -1, 0) : Vec3(0, 0, 1);
     renderer.resetCamera(directions[n], up);
     const Count count = countWrong(subject, renderer.picture(), renderer, step);

@@ -10,6 +10,7 @@
 
 #include "base/codes.h"
 #include "base/memory.h"
+#include "base/tr.h"
 #include "base/utf8.h"
 #include "case/placement.h"
 #include "exercise/arm_limits.h"
@@ -101,7 +102,7 @@ Result<Json> warningsAtStart(Exercise& exercise, const Rig& rig, const Progress&
   if (of->error) return *of->error;
   const Exercise& fixed = of->exercise;
   const double needed_mb = exerciseMb(of->patient.volume->geometry.voxelCount());
-  if (Status enough = enoughMemory(needed_mb, "The first tick", "the case"); !enough) {
+  if (Status enough = enoughMemory(needed_mb, tr("The first tick"), tr("the case")); !enough) {
     return enough.error();
   }
   Grid grid(Volume(*of->patient.volume), of->labels);
@@ -195,7 +196,7 @@ Result<Json> explainExercise(Exercise exercise, const std::vector<RecommendedSet
   double timed = 0.0;
   const auto time = [&](const std::string& part, const std::function<void()>& call) {
     if (progress.cancelled()) return 0.0;
-    progress.at(0.5 + 0.5 * timed++ / parts, "Timing " + part);
+    progress.at(0.5 + 0.5 * timed++ / parts, tr("Timing {}", part));
     return medianNs(call);
   };
   for (std::size_t i = 0; i < exercise.arms.size(); ++i) {
@@ -232,7 +233,7 @@ Result<Json> explainExercise(Exercise exercise, const std::vector<RecommendedSet
     const Pose at_surface{Vec3(0.0, 0.0, 10.0), Quat(1, 0, 0, 0)};
     for (LawKind kind : exercise.laws) {
       Law law = makeLaw(kind, points.size(), tool, grid.geometry());
-      add("law " + nameOf(kLawNames, kind), [&] {
+      add(tr("law {}", nameOf(kLawNames, kind)), [&] {
         input.tip_m.x += 1e-6;
         law_tissues.ask(law, tissue, at_surface, input);
         ContactForce force;
@@ -259,7 +260,7 @@ Result<Json> explainExercise(Exercise exercise, const std::vector<RecommendedSet
     std::vector<RemovedVoxel> removed;
     removed.reserve(Removal::kMostVoxels);
     Pose moving;
-    add("removal sweep", [&] {
+    add(tr("removal sweep"), [&] {
       moving.position.x = moving.position.x > 5.0 ? -5.0 : moving.position.x + 0.01;
       removal.sweep(tissue, moving, removed);
     });
@@ -269,7 +270,7 @@ Result<Json> explainExercise(Exercise exercise, const std::vector<RecommendedSet
     to_controller.touching = true;
     to_controller.period_s = parameters.period_s;
     to_controller.velocity_m_s = Vec3(-0.01, 0.0, 0.0);
-    add("controller " + std::string(controllerName(exercise.controller)), [&] {
+    add(tr("controller {}", controllerName(exercise.controller)), [&] {
       const Impedance limited = limitImpedance(controller, {12.0, 900.0});
       to_controller.rendered =
           springAndDamper(Vec3(1.0, 0.5, 0.2), limited.stiffness, limited.damping);
@@ -279,25 +280,27 @@ Result<Json> explainExercise(Exercise exercise, const std::vector<RecommendedSet
       keep(to_controller.last_sent_N);
     });
     OutputLimiter limiter;
-    add("clamp and gate", [&] {
+    add(tr("clamp and gate"), [&] {
       keep(limiter.limit(clampForce(Vec3(4.0, 0.0, 1.0), arm.max_force_N), true, true, 0,
                          parameters.period_s));
     });
   }
 
   const double removal_ns = progress.cancelled() ? 0.0 : removalNs();
-  cost.push_back({{"part", "removal of one voxel"}, {"arm", nullptr}, {"ns_per_tick", removal_ns}});
+  cost.push_back(
+      {{"part", tr("removal of one voxel")}, {"arm", nullptr}, {"ns_per_tick", removal_ns}});
   HapticCore core(parameters, *grid.takeWriter());
   TickInput input;
   TickRecord record;
-  const double tick_ns = time("whole tick", [&] {
+  const double tick_ns = time(tr("whole tick"), [&] {
     ++input.tick;
     input.journal = core.journalState();
     input.arms[0].position_m.x = 1e-6 * double(input.tick % 1000);
     core.tick(input, nullptr, 0, record);
   });
 
-  if (progress.cancelled()) return Error{code::kCancelled, "The explanation was cancelled", "", ""};
+  if (progress.cancelled())
+    return Error{code::kCancelled, tr("The explanation was cancelled"), "", ""};
 
   Json tissues = Json::array(), laws = Json::array();
   for (const Tissue& tissue : exercise.tissues.tissues) tissues.push_back(tissue.id);
@@ -313,23 +316,24 @@ Result<Json> explainExercise(Exercise exercise, const std::vector<RecommendedSet
   }
   const double journal_mb = double(core.journal().ramBytes()) / (1024.0 * 1024.0);
   const bool named_case = phantomNamed(exercise.case_source).has_value();
-  Json answer{{"scene", exercise.name},
-              {"goal", exercise.card ? Json(exercise.card->en.goal) : Json(nullptr)},
-              {"case", named_case ? Json(exercise.case_source) : Json(nullptr)},
-              {"rate_hz", exercise.rate_hz},
-              {"controller", controllerName(exercise.controller)},
-              {"laws", laws},
-              {"force_at", nameOf(kForceAtNames, exercise.force_at)},
-              {"removal", nameOf(kRemovalNames, exercise.removal)},
-              {"barrier", stopAtSolid(exercise.laws) ? "solid tissue stops a tool until it is cut"
-                                                     : "no barrier: a tool is where its arm is"},
-              {"tissues", tissues},
-              {"arms", arms},
-              {"warnings", *warnings},
-              {"bounded", bounded},
-              {"journal_mb", journal_mb},
-              {"cost", cost},
-              {"tick_ns", tick_ns}};
+  Json answer{
+      {"scene", exercise.name},
+      {"goal", exercise.card ? Json(exercise.card->en.goal) : Json(nullptr)},
+      {"case", named_case ? Json(exercise.case_source) : Json(nullptr)},
+      {"rate_hz", exercise.rate_hz},
+      {"controller", controllerName(exercise.controller)},
+      {"laws", laws},
+      {"force_at", nameOf(kForceAtNames, exercise.force_at)},
+      {"removal", nameOf(kRemovalNames, exercise.removal)},
+      {"barrier", stopAtSolid(exercise.laws) ? tr("solid tissue stops a tool until it is cut")
+                                             : tr("no barrier: a tool is where its arm is")},
+      {"tissues", tissues},
+      {"arms", arms},
+      {"warnings", *warnings},
+      {"bounded", bounded},
+      {"journal_mb", journal_mb},
+      {"cost", cost},
+      {"tick_ns", tick_ns}};
   const Json settings = settingsOf(exercise, recommended);
   if (!settings.is_null()) answer["settings"] = settings;
   return answer;
@@ -354,11 +358,11 @@ std::string explanationText(const Json& explained) {
   };
   text += word(explained, "scene") + "\n";
   if (explained.at("goal").is_string()) text += "  " + word(explained, "goal") + "\n";
-  if (explained.at("case").is_string()) text += "  case: " + word(explained, "case") + "\n";
+  if (explained.at("case").is_string()) text += tr("  case: {}\n", word(explained, "case"));
   add("  %.0f Hz, controller '%s', force at: %s, removal: %s\n", number(explained, "rate_hz"),
       word(explained, "controller").c_str(), word(explained, "force_at").c_str(),
       word(explained, "removal").c_str());
-  text += "  laws: " + list("laws") + "\n  tissues: " + list("tissues") + "\n";
+  text += tr("  laws: {}\n  tissues: {}\n", list("laws"), list("tissues"));
   text += "  " + word(explained, "barrier") + "\n";
   for (const Json& arm : explained.at("arms")) {
     const Json& most = arm.at("renderable");
@@ -366,7 +370,7 @@ std::string explanationText(const Json& explained) {
         word(arm, "name").c_str(), word(arm, "plugin").c_str(), word(arm, "tool").c_str(),
         arm.at("points").get<int>(), number(most, "b_max_Ns_per_m"), number(most, "k_max_N_per_m"));
     for (const Json& other : arm.at("other_tools")) {
-      text += "    may be given the tool '" + cleanUtf8(other.get<std::string>()) + "'\n";
+      text += tr("    may be given the tool '{}'\n", cleanUtf8(other.get<std::string>()));
     }
   }
   for (const Json& b : explained.at("bounded")) {
@@ -377,24 +381,24 @@ std::string explanationText(const Json& explained) {
         number(b, "stiffness_felt_N_per_m"));
   }
   if (!explained.at("locks").empty()) {
-    text += "  locked at this workstation or by the exercise: " + list("locks") + "\n";
+    text += tr("  locked at this workstation or by the exercise: {}\n", list("locks"));
   }
   if (explained.at("refused").is_string()) {
-    text += "  not practised at this workstation: " + word(explained, "refused") + "\n";
+    text += tr("  not practised at this workstation: {}\n", word(explained, "refused"));
   }
   for (const Json& warning : explained.at("warnings")) text += "  " + word(warning, "text") + "\n";
   add("  a tick of all arms takes %.2f us here, of %.0f us; its parts, each alone:\n",
       number(explained, "tick_ns") / 1e3, 1e6 / number(explained, "rate_hz"));
   for (const Json& part : explained.at("cost")) {
     add("    %8.3f us  %s%s\n", number(part, "ns_per_tick") / 1e3, word(part, "part").c_str(),
-        part.at("arm").is_string() ? (", " + word(part, "arm") + " arm").c_str() : "");
+        part.at("arm").is_string() ? (tr(", {} arm", word(part, "arm"))).c_str() : "");
   }
   add("  the journal of what is removed takes %.0f MB of memory\n",
       number(explained, "journal_mb"));
   if (!explained.contains("settings")) return text;
   for (const Json& s : explained.at("settings")) {
-    text += "  " + word(s, "knob") + ": " + word(s, "setting") +
-            " (recommended: " + word(s, "recommended") + ")\n";
+    text += tr("  {}: {} (recommended: {})\n", word(s, "knob"), word(s, "setting"),
+               word(s, "recommended"));
   }
   return text;
 }

@@ -19,6 +19,7 @@
 #include "base/file.h"
 #include "base/rt/alloc_guard.h"
 #include "base/rt/thread.h"
+#include "base/tr.h"
 #include "machine/codes.h"
 
 namespace trephine {
@@ -44,16 +45,17 @@ bool canHaveRealTime() {
 }
 
 Error noRealTime() {
-  const std::string limit = " - rtprio " + std::to_string(kPriority);
+  const std::string limit = tr(" - rtprio {}", kPriority);
   return {code::kNoRealTime,
-          "Real-time priority was not granted: as root, write the line 'NAME" + limit +
-              "' with your user's name, or '@GROUP" + limit +
-              "' with a group of yours, to /etc/security/limits.d/trephine.conf, then log in again",
+          tr("Real-time priority was not granted: as root, write the line 'NAME{}' with your "
+             "user's name, or '@GROUP{}' with a group of yours, to "
+             "/etc/security/limits.d/trephine.conf, then log in again",
+             limit, limit),
           "", ""};
 }
 
 Error cancelled() {
-  return {code::kCancelled, "The measurement was cancelled", "measure jitter", ""};
+  return {code::kCancelled, tr("The measurement was cancelled"), tr("measure jitter"), ""};
 }
 
 const char* priorityName(bool real_time) {
@@ -128,7 +130,7 @@ Result<JitterRow> measureJitterRow(double rate_hz, bool real_time, double second
   }
   if (!granted.get()) {
     if (real_time) return noRealTime();
-    return Error{code::kNoNormalPriority, "Real-time priority could not be given up", step, ""};
+    return Error{code::kNoNormalPriority, tr("Real-time priority could not be given up"), step, ""};
   }
   return summarizeJitter(rate_hz, real_time, std::move(late_ns), schedule.missed());
 }
@@ -137,8 +139,8 @@ Result<JitterMeasurement> measureJitter(const JitterOptions& options,
                                         const std::filesystem::path& out,
                                         const Progress& progress) {
   if (!(options.seconds >= 0.1 && options.seconds <= 600.0)) {
-    return Error{code::kBadArgument, "The time must lie between 0.1 and 600 seconds", "--seconds",
-                 ""};
+    return Error{code::kBadArgument, tr("The time must lie between 0.1 and 600 seconds"),
+                 "--seconds", ""};
   }
   if (!out.empty()) {
     if (Status made = makeFolder(out); !made) return made.error();
@@ -189,7 +191,7 @@ Json toJson(const JitterMeasurement& measurement) {
 
 std::string toText(const JitterMeasurement& measurement) {
   std::string text =
-      "late by [us]          median      99 %    99.9 %       max    missed     ticks\n";
+      tr("late by [us]          median      99 %    99.9 %       max    missed     ticks\n");
   for (const JitterRow& row : measurement.rows) {
     char line[160];
     std::snprintf(line, sizeof(line), "%5.0f Hz  %-7s  %9.1f %9.1f %9.1f %9.1f %9llu %9llu\n",

@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "base/codes.h"
+#include "base/tr.h"
 #include "exercise/codes.h"
 #include "haptics/haptic_core.h"
 #include "machine/common/quantile.h"
@@ -88,8 +89,9 @@ class Variant {
 Result<LawCosts> measureLawCosts(const Exercise& exercise, const Progress& progress) {
   if (exercise.arms.empty() || exercise.tissues.tissues.empty() ||
       !exercise.findTool(exercise.arms[0].tool)) {
-    return Error{code::kBadScene, "The exercise has no arm, no tool or no tissue to measure with",
-                 "", "Give it one of each"};
+    return Error{code::kBadScene,
+                 tr("The exercise has no arm, no tool or no tissue to measure with"), "",
+                 tr("Give it one of each")};
   }
   const Tissue& firmest = *std::ranges::max_element(
       exercise.tissues.tissues, {},
@@ -111,15 +113,15 @@ Result<LawCosts> measureLawCosts(const Exercise& exercise, const Progress& progr
   for (const HapticParameters& parameters : wanted) {
     variants.push_back(std::make_unique<Variant>(parameters, hu));
     (void)variants.back()->run();  // to warm it
-    if (progress.cancelled()) return Error{code::kCancelled, "It was cancelled", "", ""};
+    if (progress.cancelled()) return Error{code::kCancelled, tr("It was cancelled"), "", ""};
   }
   std::vector<std::vector<double>> ns(variants.size());
   for (int round = 0; round < kRounds; ++round) {
     for (std::size_t v = 0; v < variants.size(); ++v) {
       ns[v].push_back(variants[v]->run());
-      if (progress.cancelled()) return Error{code::kCancelled, "It was cancelled", "", ""};
+      if (progress.cancelled()) return Error{code::kCancelled, tr("It was cancelled"), "", ""};
     }
-    progress.at(double(round + 1) / kRounds, "Measuring the laws");
+    progress.at(double(round + 1) / kRounds, tr("Measuring the laws"));
   }
   const auto quantileOf = [](std::vector<double> values, int thousandths) {
     std::ranges::sort(values);

@@ -5,6 +5,7 @@
 
 #include "base/log.h"
 #include "base/system.h"
+#include "base/tr.h"
 
 namespace trephine {
 
@@ -42,7 +43,7 @@ Result<std::vector<RecommendedSetting>> readRecommended(const std::filesystem::p
     s.error_unit = item.text("error_unit");
     s.cost = item.number("cost", kFigure);
     s.cost_unit = item.text("cost_unit");
-    if (!seen.insert(s.knob).second) item.fail("knob", "The knob '" + s.knob + "' is given twice");
+    if (!seen.insert(s.knob).second) item.fail("knob", tr("The knob '{}' is given twice", s.knob));
     settings.push_back(std::move(s));
   }
   if (Status read = reader.finish(); !read) return read.error();

@@ -7,6 +7,7 @@
 #include "base/codes.h"
 #include "base/progress.h"
 #include "base/result.h"
+#include "base/tr.h"
 #include "haptics/tool.h"
 #include "machine/trades/trades_measurement.h"
 #include "volume/volume.h"
@@ -39,7 +40,7 @@ TradeRows tradeRayCasting(const TradesOptions& options, const Progress& progress
 std::string rayCastingSetting(double distance_voxels, bool plain);
 
 inline Error tradesCancelled() {
-  return {code::kCancelled, "The measurement was cancelled", "trades", ""};
+  return {code::kCancelled, tr("The measurement was cancelled"), "trades", ""};
 }
 
 }  // namespace trephine

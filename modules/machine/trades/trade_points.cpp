@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/tr.h"
 #include "machine/common/shell_phantom.h"
 #include "machine/trades/trade_knobs.h"
 #include "machine/trades/trade_stroke.h"
@@ -91,13 +92,13 @@ TradeRows tradePoints(ToolKind kind, const std::vector<int>& counts, const Trade
     row.knob = kind == ToolKind::burr ? "points_burr" : "points_blade";
     row.setting = std::to_string(points);
     row.error = rmsError_percent(one->whole.demanded_N, reference->whole.demanded_N);
-    row.error_unit = "% of force";
+    row.error_unit = tr("% of force");
     row.cost = one->whole.tick_ns;
-    row.cost_unit = "ns per tick without removal";
+    row.cost_unit = tr("ns per tick without removal");
     row.reference =
-        "RMS force over an oblique stroke through the surface of bone, and the volume "
-        "it removes by the hand's work, with " +
-        std::to_string(kReferenceTimes * most) + " points";
+        tr("RMS force over an oblique stroke through the surface of bone, and the volume it "
+           "removes by the hand's work, with {} points",
+           kReferenceTimes * most);
     const double volume_error =
         reference->removed > 0.0 ? std::abs(one->removed / reference->removed - 1.0) : 1.0;
     row.extra = {{"volume_error_percent", 100.0 * volume_error}};
@@ -139,12 +140,12 @@ TradeRows tradeForceAt(const TradesOptions& options, const Progress& progress) {
     row.knob = "force_at";
     row.setting = std::string(name);
     row.error = rmsError_percent(run->demanded_N, exact_N);
-    row.error_unit = "% of force";
+    row.error_unit = tr("% of force");
     row.cost = run->tick_ns;
-    row.cost_unit = "ns per tick without removal";
+    row.cost_unit = tr("ns per tick without removal");
     row.reference =
-        "RMS force of the line integral of eq. 1 along a blade of 16 mm, half in "
-        "tissue, that turns at 2 rad/s";
+        tr("RMS force of the line integral of eq. 1 along a blade of 16 mm, half in "
+           "tissue, that turns at 2 rad/s");
     rows.push_back(row);
   }
   return rows;

@@ -10,6 +10,7 @@
 
 #include "base/codes.h"
 #include "base/file.h"
+#include "base/tr.h"
 #include "machine/trades/trade_knobs.h"
 
 namespace trephine {
@@ -24,28 +25,28 @@ Status check(const TradesOptions& options) {
   };
   for (const auto& [counts, where] : {std::pair(&options.blade_points, "blade_points"),
                                       std::pair(&options.burr_points, "burr_points")}) {
-    if (counts->empty()) return bad("There must be a number of points to measure", where);
+    if (counts->empty()) return bad(tr("There must be a number of points to measure"), where);
     for (int count : *counts) {
-      if (count < 2 || count > 1024) return bad("A tool here has 2 to 1024 points", where);
+      if (count < 2 || count > 1024) return bad(tr("A tool here has 2 to 1024 points"), where);
     }
   }
-  if (options.rates_hz.empty()) return bad("There must be a rate to measure", "rates_hz");
+  if (options.rates_hz.empty()) return bad(tr("There must be a rate to measure"), "rates_hz");
   for (double rate_hz : options.rates_hz) {
     const double steps = kRateUnit_hz / rate_hz;
     if (!(rate_hz >= 100.0 && rate_hz <= 40000.0) || steps != std::floor(steps)) {
-      return bad("A rate lies between 100 and 40000 Hz and divides 160 kHz", "rates_hz");
+      return bad(tr("A rate lies between 100 and 40000 Hz and divides 160 kHz"), "rates_hz");
     }
   }
   if (options.grid < 32 || options.grid > 512 || options.grid % 4 != 0) {
-    return bad("The grid has 32 to 512 voxels along an edge, a multiple of 4", "grid");
+    return bad(tr("The grid has 32 to 512 voxels along an edge, a multiple of 4"), "grid");
   }
   for (double distance : options.ray_distances) {
     if (!(distance >= 0.1 && distance <= 8.0)) {
-      return bad("Samples lie 0.1 to 8 voxels apart", "ray_distances");
+      return bad(tr("Samples lie 0.1 to 8 voxels apart"), "ray_distances");
     }
   }
   if (!(options.stroke_s >= 0.2 && options.stroke_s <= 20.0)) {
-    return bad("A stroke takes 0.2 to 20 s", "stroke_s");
+    return bad(tr("A stroke takes 0.2 to 20 s"), "stroke_s");
   }
   return {};
 }
@@ -211,8 +212,8 @@ std::string toText(const TradesMeasurement& measurement) {
       knob = row.knob;
       const auto found =
           std::find_if(kKnobs.begin(), kKnobs.end(), [&](const Knob& k) { return k.id == knob; });
-      text += found == kKnobs.end() ? knob : std::string(found->title);
-      text += " (error: " + row.reference + ")\n";
+      text += found == kKnobs.end() ? knob : tr(found->title.data());
+      text += tr(" (error: {})\n", row.reference);
     }
     std::snprintf(line, sizeof line, "  %c %-20s %10.3f %-19s %10.3f %-28s",
                   row.recommended ? '*' : ' ', row.setting.c_str(), row.error,
@@ -224,7 +225,7 @@ std::string toText(const TradesMeasurement& measurement) {
     }
     text += '\n';
   }
-  return text + "* recommended: the cheapest that is good enough\n";
+  return tr("{}* recommended: the cheapest that is good enough\n", text);
 }
 
 }  // namespace trephine

@@ -16,6 +16,7 @@
 #include "base/json.h"
 #include "base/progress.h"
 #include "base/result.h"
+#include "base/tr.h"
 #include "machine/trades/recommended.h"
 
 namespace trephine {
@@ -47,16 +48,16 @@ struct Knob {
   std::string_view unit = "";  // of the settings
 };
 inline constexpr std::array<Knob, 6> kKnobs{{
-    {"points_blade", "Points along a blade", 5.0, "volume_error_percent", 5.0},
-    {"points_burr", "Points on a burr's shell", 5.0, "volume_error_percent", 5.0},
-    {"force_at", "Where the force acts", 10.0},
+    {"points_blade", trLater("Points along a blade"), 5.0, "volume_error_percent", 5.0},
+    {"points_burr", trLater("Points on a burr's shell"), 5.0, "volume_error_percent", 5.0},
+    {"force_at", trLater("Where the force acts"), 10.0},
     // Bone by two springs (coulomb, elastic), of what the arm shows at that rate: the rest is for
     // what the hand and its delays take.
-    {"rate_hz", "Rate of touch", 10.0, "cost", 25.0, "bone_of_k_max_percent", 60.0, "Hz"},
-    {"grid", "Resolution of the grid", 5.0, "surface_distance_mm", 0.5},
+    {"rate_hz", trLater("Rate of touch"), 10.0, "cost", 25.0, "bone_of_k_max_percent", 60.0, "Hz"},
+    {"grid", trLater("Resolution of the grid"), 5.0, "surface_distance_mm", 0.5},
     // The worst picture: 1 % of 255 are 40 dB. Beyond, bone is seen to shine through thin skin.
-    {"ray_casting", "Samples of a ray", 4.0, "luminance_error_percent", 2.5, "picture_rms_percent",
-     1.0},
+    {"ray_casting", trLater("Samples of a ray"), 4.0, "luminance_error_percent", 2.5,
+     "picture_rms_percent", 1.0},
 }};
 
 struct TradesOptions {

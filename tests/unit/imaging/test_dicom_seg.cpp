@@ -3,12 +3,11 @@
 #include <random>
 #include <set>
 
+#include "imaging/codes.h"
 #include "imaging/common/detail/cielab.h"
 #include "imaging/common/detail/text.h"
 #include "imaging/dicom/detail/frame_stack.h"
 #include "imaging/dicom/detail/seg_codes.h"
-#include "imaging/codes.h"
-#include "imaging/dicom/seg_codes.h"
 #include "imaging/dicom/seg_reader.h"
 #include "imaging/dicom/seg_writer.h"
 #include "series_fixture.h"

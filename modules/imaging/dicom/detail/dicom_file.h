@@ -133,9 +133,6 @@ struct DicomHeader {
   }
 };
 
-// The end of the reason for skipping an archive or a compressed file.
-inline constexpr const char* kUnpackFirst = ": unpack it first";
-
 // Reads everything but the pixels, once; one header a frame. The Error's `what` is the reason for
 // skipping the file, without its name: it may not be read, is empty, packed, no DICOM, cut short, a
 // DICOMDIR, or lacks a UID.

@@ -20,6 +20,7 @@ struct UnpackedArchives {
   struct NotWhole {
     std::filesystem::path folder;
     std::string why;
+    bool damaged;  // rather than locked, or more than may be unpacked
   };
   std::vector<NotWhole> not_whole;
 };

@@ -31,6 +31,7 @@ struct ScannedFiles {
   int not_looked_at = 0;                             // since a series was chosen before the end
   std::set<std::filesystem::path> folders_left;      // in which those files lie
   std::map<std::string, int> skipped;                // by reason; none names a file
+  std::set<std::string> packed;                      // reasons that say that files are packed
   std::map<std::filesystem::path, int> empty_files;  // by folder
   FileIds came_upon;                                 // files and folders, read or not
 };

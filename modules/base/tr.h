@@ -1,0 +1,51 @@
+// Sentences that a person reads, in that person's language. A room writes each as an English
+// sentence with a place for every argument, which is the key of its translation; the window's
+// translation files hold them in the context "trephine". Any thread; not for the tick.
+#pragma once
+
+#include <concepts>
+#include <initializer_list>
+#include <string>
+#include <string_view>
+
+namespace trephine {
+
+// What stands in one place of a sentence: text as it is, a whole number in digits. How many digits
+// another number has is for the caller to say (base/formatted.h).
+class TrArg {
+ public:
+  TrArg(const std::string& text) : text_(text) {}
+  TrArg(std::string_view text) : text_(text) {}
+  TrArg(const char* text) : text_(text) {}
+  template <std::integral Number>
+  requires(!std::same_as<Number, bool> && !std::same_as<Number, char>) TrArg(Number number)
+      : text_(std::to_string(number)) {}
+
+  const std::string& text() const { return text_; }
+
+ private:
+  std::string text_;
+};
+
+// `source` in the language that was set, with the arguments in their places: {} one after another,
+// or {0}, {1} by number, since another language may want another order. {{ and }} stand for braces.
+// A translation whose places are not those of the source is not used.
+std::string trWith(const char* source, std::initializer_list<TrArg> args);
+
+template <class... Args>
+std::string tr(const char* source, const Args&... args) {
+  return trWith(source, {TrArg(args)...});
+}
+
+// Marks a sentence of a table for translation; who shows it calls tr().
+constexpr const char* trLater(const char* source) {
+  return source;
+}
+
+// Gives the translation of a source sentence, or the sentence itself.
+using Translator = std::string (*)(const char* source);
+
+// Called once, before other threads begin; English holds until then.
+void setTranslator(Translator translator);
+
+}  // namespace trephine
