@@ -53,7 +53,7 @@ class HandWork {
   template <class Self, class Archive>
   static void visitState(Self& self, Archive& archive) {
     archive(self.done_J_, self.taken_J_, self.motor_J_, self.stored_J_, self.most_lost_J_);
-    archive(self.share_, self.started_, self.shown_);
+    archive(self.share_, self.started_);
   }
 
  private:

@@ -65,7 +65,7 @@ class Proxy {
     archive(self.surface_, self.pose_, self.cutting_);
     archive(self.gathered_, self.stale_, self.next_stale_, self.gone_);
     archive(self.travelled_, self.next_travelled_, self.last_step_mm_);
-    archive(self.loaded_, self.stiffness_);
+    archive(self.stiffness_);
     archive.within(self.held_by_, -1, kMaxTissues);
   }
 

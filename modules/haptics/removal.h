@@ -83,7 +83,7 @@ class Removal {
 
   template <class Self, class Archive>
   static void visitState(Self& self, Archive& archive) {
-    archive(self.recent_J_, self.credit_J_, self.lost_J_, self.spent_J_);
+    archive(self.recent_J_, self.credit_J_, self.spent_J_);
     archive(self.known_, self.clear_, self.last_);
     archive(self.passing_, self.paid_, self.backwards_, self.goal_);
     archive(self.slice_, self.row_);
