@@ -25,6 +25,7 @@ inline constexpr Code kNoOpengl{"NO_OPENGL"};
 inline constexpr Code kNoRandomNumbers{"NO_RANDOM_NUMBERS"};
 inline constexpr Code kNoStructure{"NO_STRUCTURE"};
 inline constexpr Code kNoTemporaryFolder{"NO_TEMPORARY_FOLDER"};
+inline constexpr Code kOlderVersion{"OLDER_VERSION"};
 inline constexpr Code kOutOfMemory{"OUT_OF_MEMORY"};
 inline constexpr Code kTooLarge{"TOO_LARGE"};
 inline constexpr Code kUnexpected{"UNEXPECTED"};

@@ -53,23 +53,23 @@ std::string typeWords(const FieldShape& field) {
     case FieldKind::number:
       return "number";
     case FieldKind::whole:
-      return tr("whole number");
+      return "whole number";
     case FieldKind::three_numbers:
-      return tr("three numbers");
+      return "three numbers";
     case FieldKind::direction:
       return "direction";
     case FieldKind::flag:
-      return tr("true or false");
+      return "true or false";
     case FieldKind::text:
     case FieldKind::reference:
       return "text";
     case FieldKind::lines:
     case FieldKind::references:
-      return tr("list of texts");
+      return "list of texts";
     case FieldKind::choice:
       return listed(field.names, "`");
     case FieldKind::choices:
-      return tr("list of {}", listed(field.names, "`"));
+      return "list of " + listed(field.names, "`");
   }
   return {};
 }
@@ -223,9 +223,9 @@ std::string optionOf(const FieldRow& row) {
 }
 
 std::string schemaHead() {
-  return tr(
+  return
       "| of | key | type | range | unit | without it | meaning "
-      "|\n|---|---|---|---|---|---|---|\n");
+      "|\n|---|---|---|---|---|---|---|\n";
 }
 
 std::string schemaLine(std::string_view of, const FieldRow& row, std::string_view type,
@@ -235,7 +235,7 @@ std::string schemaLine(std::string_view of, const FieldRow& row, std::string_vie
   };
   const std::string range =
       type.ends_with("number") || type.ends_with("numbers")
-          ? tr("{} to {}", pageNumber(row.range.low), pageNumber(row.range.high))
+          ? pageNumber(row.range.low) + " to " + pageNumber(row.range.high)
           : "";
   return "|" + cell(of) + cell("`" + std::string(row.key) + "`") + cell(type) + cell(range) +
          cell(row.range.unit) + cell(row.given == Given::always ? "refused" : fallback) +

@@ -36,7 +36,9 @@ Result<std::string> readWholeFile(const std::filesystem::path& file, std::size_t
 
 Status writeTextFile(const std::filesystem::path& target, std::string_view text);
 
-// Whether `bytes` can be written into this folder now. Error: CANNOT_WRITE, of the folder.
+// Whether `bytes` can be written into this folder now: so many are written, and taken away again.
+// For some 100 kB; base/disk_room.h tells of more. One thread at a time in a folder. Error:
+// CANNOT_WRITE, of the folder.
 Status tryRoom(const std::filesystem::path& folder, std::size_t bytes);
 
 // Makes the folder and its parents.

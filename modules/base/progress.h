@@ -14,9 +14,9 @@ class Progress {
       : report_(std::move(report)) {}
   // A part of `whole`, between two of its fractions; cancelled with it. `whole` outlives it. All of
   // it is one step where that has a `name`.
-  Progress(const Progress& whole, double from, double to, const char* name = nullptr)
+  Progress(const Progress& whole, double from, double to, const std::string& name = {})
       : report_([&whole, from, to, name](double fraction, const std::string& step) {
-          whole.at(from + fraction * (to - from), name ? name : step);
+          whole.at(from + fraction * (to - from), name.empty() ? step : name);
         }),
         whole_(&whole) {}
 

@@ -1,8 +1,9 @@
-// When this version was made.
+// When this version was made: a date that CMakeLists.txt sets (TREPHINE_RELEASED), not the time of
+// the build.
 #pragma once
 
 namespace trephine {
 
-extern const char* const kReleased;  // "2026-11-24"
+extern const char* const kReleased;  // such as "2026-11-24"
 
 }  // namespace trephine

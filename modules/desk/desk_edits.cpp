@@ -47,7 +47,7 @@ void Desk::takeBack() {
   say(DeskChange::controller);
 }
 
-Status Desk::notLocked(Lock lock, const char* what) const {
+Status Desk::notLocked(Lock lock, const std::string& what) const {
   if (!isLocked(lock)) return {};
   return Error{code::kLocked, tr("{} locked on this workstation or by this exercise", what), "",
                unlocking(policy_)};

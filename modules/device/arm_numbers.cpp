@@ -34,7 +34,7 @@ std::string impossibleCapability(const TrephineCapabilities& capabilities) {
 std::string capabilityPage() {
   std::string page = schemaHead();
   for (const CapabilityNumber& number : kCapabilityNumbers) {
-    page += schemaLine("arm", number.row, number.count == 3 ? tr("three numbers") : "number", "");
+    page += schemaLine("arm", number.row, number.count == 3 ? "three numbers" : "number", "");
   }
   return page;
 }

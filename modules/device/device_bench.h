@@ -12,6 +12,7 @@
 
 namespace trephine {
 
+// An `arm` is its place in the plugin's enumeration.
 class DeviceBench {
  public:
   virtual ~DeviceBench() = default;
@@ -19,7 +20,7 @@ class DeviceBench {
   // Two arms, anew, in hands that swing them. False where that did not work.
   virtual bool plugIn() = 0;
   virtual void unplug(std::uint32_t arm) = 0;
-  // For so long the devices answer no call that gives them something.
+  // For so long the devices answer no call that gives them something; it returns at once.
   virtual void block(double seconds) = 0;
   // The size of the force that an arm has now [N].
   virtual double force_N(std::uint32_t arm) = 0;
@@ -31,14 +32,14 @@ class DeviceBench {
   };
   virtual std::vector<Given> given(std::uint32_t) { return {}; }
   virtual std::vector<std::int64_t> samples_ns(std::uint32_t) { return {}; }
-  // How far a force may be from what was sent: rounding, and the arm's way meanwhile.
+  // How far a force of given() may be from what was sent: rounding, and the arm's way meanwhile.
   virtual double tolerance_N() const { return 1e-9; }
   // Samples that found no room on their way, since they were plugged in.
   virtual std::optional<std::uint64_t> lost() { return {}; }
 };
 
-// Of a library that exports `DeviceBench* trephine_device_bench()`; it stays loaded. Error:
-// NO_BENCH.
+// Of a library that exports `extern "C" DeviceBench* trephine_device_bench()`; it stays loaded, and
+// the bench is its own: nobody deletes it. Error: NO_BENCH.
 Result<DeviceBench*> loadDeviceBench(const std::filesystem::path& library);
 
 }  // namespace trephine

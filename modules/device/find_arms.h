@@ -1,4 +1,5 @@
-// What is plugged in: every plugin of a folder is asked for its arms.
+// What is plugged in: every plugin of a folder is asked for its arms, "simulated" and "pedal" as
+// well, so that an arm that is found need not be hardware. A folder that is not there has none.
 #pragma once
 
 #include <cstdint>

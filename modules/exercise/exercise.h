@@ -92,7 +92,7 @@ const CardText* cardFor(const Exercise& exercise, std::string_view language);
 Exercise onCase(Exercise exercise, const std::string& case_source);
 
 // Files that an exercise names are found beside it. Errors: MISSING_FILE, BAD_JSON, BAD_FIELD
-// (file, field and value named), BAD_TISSUE, BAD_SCENE.
+// (file, field and value named; a name that is unknown or stands twice, too), BAD_TISSUE.
 Result<Exercise> readExercise(const std::filesystem::path& file);
 Result<Exercise> parseExercise(const Json& json, const std::filesystem::path& file);
 // Self-contained: tissues inline and none for elsewhere, no file names, no label map, and a case
@@ -110,7 +110,7 @@ Json toJson(const RecordedExercise& recorded);
 Result<RecordedExercise> parseRecordedExercise(const Json& json, const std::string& where);
 
 // As a file that readExercise() reads: everything, tissues inline and those for elsewhere beside
-// them, files named from the root. Neither the labels of a case nor the devices of its arms are an
+// them, files named as the exercise has them: from the root, where it was read so. Neither the labels of a case nor the devices of its arms are an
 // exercise's.
 Json exerciseFile(const Exercise& exercise);
 
@@ -156,8 +156,9 @@ struct BoundedTissue {
 // Empty under another controller than `bounded`. Of arms whose dynamics are known.
 std::vector<BoundedTissue> boundedTissues(const Exercise& exercise, const Rig& rig);
 
-// What the core needs of an exercise whose maps are fixed. Arms whose dynamics are not known are as
-// the usual one.
+// What the core needs of an exercise whose maps are fixed (withFixedMaps) and whose tissues have the
+// labels of their structures (exercise_structures.h); case/placement.h does all of it. A tissue
+// without its label lies nowhere. Arms whose dynamics are not known are as the usual one.
 HapticParameters hapticParameters(const Exercise& exercise, const Rig& rig = {});
 
 }  // namespace trephine

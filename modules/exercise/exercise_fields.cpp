@@ -53,7 +53,7 @@ std::string exerciseFieldsPage() {
          schemaLines<Landmark>("landmark", kLandmarkFields) +
          schemaLines<ExerciseArm>("arm", kArmFields) +
          schemaLines<ExerciseMap>("arm, `map`", kExerciseMapFields) +
-         schemaLines<WorkspaceMap>(tr("arm, fixed `map`"), kWorkspaceMapFields) +
+         schemaLines<WorkspaceMap>("arm, fixed `map`", kWorkspaceMapFields) +
          schemaLines<ArmDevice>("arm, `device`", kDeviceFields) +
          schemaLines<ArmDynamics>("arm, `dynamics`", kArmDynamicsFields);
 }

@@ -36,7 +36,7 @@ inline constexpr FieldOf<Exercise> kExerciseFields[] = {
       {},
       Given::always,
       trLater("`cranium` or `abdomen`: which cases it fits"),
-      "For",
+      trLater("For"),
       trLater("On a case of another part of the body it asks before it starts.")},
      ReferenceIn<Exercise>{&Exercise::anatomy}},
     {{"structures",
@@ -47,7 +47,7 @@ inline constexpr FieldOf<Exercise> kExerciseFields[] = {
           "tissues "
           "name another set for `elsewhere`, that is used and a warning says so (LACKS_STRUCTURE); "
           "without such a set the scene is refused (NO_STRUCTURE)"),
-      "Needs",
+      trLater("Needs"),
       trLater("A case that lacks one is helped to it first.")},
      ReferencesIn<Exercise>{&Exercise::structures}},
 };
@@ -155,7 +155,7 @@ inline constexpr FieldOf<LandmarkFrame> kOutlineFrameFields[] = {
 inline bool isRay(const Landmark& of) { return !of.is_place && !(of.bulk_radius_mm > 0.0); }
 inline bool isBulk(const Landmark& of) { return !of.is_place && of.bulk_radius_mm > 0.0; }
 inline constexpr FieldOf<Landmark> kLandmarkFields[] = {
-    {{"id", kIdLetters, Given::always, trLater("by it arms and view name the landmark"), "Called",
+    {{"id", kIdLetters, Given::always, trLater("by it arms and view name the landmark"), trLater("Called"),
       trLater("By this name arms and view have it.")},
      &Landmark::id},
     {{"tissue",
@@ -168,17 +168,17 @@ inline constexpr FieldOf<Landmark> kLandmarkFields[] = {
     {{"from", kBoxFraction, Given::always,
       trLater("where the ray begins, in fractions of the box that holds the tissue")},
      &Landmark::from,
-     {trLater("landmark, ray"), isRay}},
+     {"landmark, ray", isRay}},
     {{"towards", kBoxFraction, Given::always, trLater("where it goes, likewise")},
      &Landmark::towards,
-     {trLater("landmark, ray"), isRay}},
+     {"landmark, ray", isRay}},
     {{"bulk_radius_mm", kBulkRadius_mm, Given::always,
       trLater("the ray goes to the place with most of the tissue within this radius")},
      &Landmark::bulk_radius_mm,
-     {trLater("landmark, organ"), isBulk}},
+     {"landmark, organ", isBulk}},
     {{"at_mm", kPlace_mm, Given::always, trLater("the place itself, in the patient's LPS frame")},
      &Landmark::at_mm,
-     {trLater("landmark, place"), [](const Landmark& of) { return of.is_place; }}},
+     {"landmark, place", [](const Landmark& of) { return of.is_place; }}},
     {{"outward",
       {-1, 1},
       Given::always,
@@ -197,7 +197,7 @@ inline constexpr FieldOf<ArmDevice> kDeviceFields[] = {
 };
 inline constexpr FieldOf<ExerciseArm> kArmFields[] = {
     {{"name", kIdLetters, Given::always,
-      trLater("`left` and `right` are those that the workstation has devices for"), "Called",
+      trLater("`left` and `right` are those that the workstation has devices for"), trLater("Called"),
       trLater("Left and right are the hands that people have.")},
      &ExerciseArm::name},
     {{"tool",
@@ -212,7 +212,7 @@ inline constexpr FieldOf<ExerciseArm> kArmFields[] = {
       Given::may_be,
       trLater(
           "ids of at most 3 further tools that it may be given while the exercise runs, each once"),
-      "Others",
+      trLater("Others"),
       trLater("What may be taken meanwhile (Ctrl+T).")},
      ReferencesIn<ExerciseArm>{&ExerciseArm::other_tools}},
     {{"max_force_N", kPeakForce_N, Given::may_be,
@@ -285,7 +285,7 @@ inline constexpr FieldOf<ToolDescription> kToolFields[] = {
     {{"radius_mm", kToolRadius_mm, Given::may_be,
       trLater("of the solid that cuts: half the width of a slot or hole")},
      &ToolDescription::radius_mm,
-     {trLater("needle, blade"), isNoBurr}},
+     {"needle, blade", isNoBurr}},
     {{"radius_mm", kToolRadius_mm, Given::always, trLater("of its head")},
      &ToolDescription::radius_mm,
      {"burr", isBurr}},
@@ -306,7 +306,7 @@ inline constexpr FieldOf<ToolDescription> kToolFields[] = {
 };
 // Of an exercise's tool alone.
 inline constexpr FieldOf<ExerciseTool> kToolIdFields[] = {
-    {{"id", kIdLetters, Given::always, trLater("by it the arms name the tool"), "Name",
+    {{"id", kIdLetters, Given::always, trLater("by it the arms name the tool"), trLater("Name"),
       trLater("By it the arms name the tool.")},
      &ExerciseTool::id},
 };

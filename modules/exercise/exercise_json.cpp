@@ -163,7 +163,7 @@ void checkReferences(JsonReader& reader, const Exercise& exercise) {
 
 Result<TissueSet> readTissues(const Json& value, const fs::path& folder, const std::string& file) {
   if (value.is_string()) return readTissueSet((folder / value.get<std::string>()).lexically_normal());
-  Result<TissueSet> set = parseTissueSet(value, tr("{}: tissues", file));
+  Result<TissueSet> set = parseTissueSet(value, file + ": tissues");
   if (set && !set->elsewhere_file.empty()) {
     set->elsewhere_file = (folder / set->elsewhere_file).lexically_normal().string();
   }
@@ -195,7 +195,7 @@ Result<Exercise> parse(const Json& json, const fs::path& file, Rig* rig) {
     exercise.tissues_elsewhere = *std::move(elsewhere);
   } else if (reader.has("tissues_elsewhere")) {
     Result<TissueSet> elsewhere =
-        parseTissueSet(reader.raw("tissues_elsewhere"), tr("{}: tissues_elsewhere", file.string()));
+        parseTissueSet(reader.raw("tissues_elsewhere"), file.string() + ": tissues_elsewhere");
     if (reader.ok() && !elsewhere) return elsewhere.error();
     if (elsewhere) exercise.tissues_elsewhere = *std::move(elsewhere);
   }

@@ -31,7 +31,7 @@ Status validate(const WorkspaceMap& map, const std::string& of) {
   if (std::abs(length - 1.0) <= 1e-6) return {};
   return Error{code::kImpossibleNumber,
                tr("The rotation has a length of {}, and a rotation has 1", plainNumber(length)),
-               tr("{}: rotation_wxyz", of), tr("Correct it")};
+               of + ": rotation_wxyz", tr("Correct it")};
 }
 
 Status validate(const HapticParameters& parameters) {

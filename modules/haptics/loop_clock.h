@@ -42,7 +42,8 @@ class TickSchedule {
 
 // Ticks by the samples of an arm that has a clock of its own: each is due a period after the one
 // before. One that does not come is waited for 4 ms longer, less than what takes force away; from
-// then on the host's clock takes its place, until samples come again.
+// then on the host's clock takes its place, until samples come again: only the first missing sample
+// makes a tick late and counts as missed. Whether an arm still answers, `wait` alone tells.
 class SampleSchedule {
  public:
   static constexpr std::int64_t kPatience_ns = 4'000'000;

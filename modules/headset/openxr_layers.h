@@ -10,7 +10,8 @@ namespace trephine {
 
 EyeView viewOf(const XrView& of);
 
-// It points into itself, and so stays where it was made.
+// One for each frame, on which one of the three functions is called once: it has room for two
+// layers. It points into itself, and so stays where it was made.
 class OpenXrLayers {
  public:
   using Images = std::array<XrSwapchainSubImage, 2>;  // left, right

@@ -330,7 +330,7 @@ void OpenXrSession::changeState(XrSessionState state) {
                 tr("The exercise goes on in the window; put the headset on again when you like")},
           true);
     case XR_SESSION_STATE_LOSS_PENDING:
-      check(XR_SESSION_LOSS_PENDING, tr("a loss that is announced"));
+      check(XR_SESSION_LOSS_PENDING, "a loss that is announced");
       break;
     default:
       break;
@@ -345,7 +345,7 @@ bool OpenXrSession::pollEvents() {
     if (result == XR_EVENT_UNAVAILABLE) break;
     check(result, "xrPollEvent");
     if (event.type == XR_TYPE_EVENT_DATA_INSTANCE_LOSS_PENDING) {
-      check(XR_ERROR_INSTANCE_LOST, tr("a loss that is announced"));
+      check(XR_ERROR_INSTANCE_LOST, "a loss that is announced");
     }
     if (event.type == XR_TYPE_EVENT_DATA_REFERENCE_SPACE_CHANGE_PENDING) {
       const auto& change = reinterpret_cast<const XrEventDataReferenceSpaceChangePending&>(event);

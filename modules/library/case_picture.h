@@ -21,10 +21,10 @@ struct CasePicture {
 // a head without bone: a coronal slice through the middle of the body, in a window for soft tissue,
 // as one sees a patient who faces one; where the scan is too short for that, an axial one. Spacings
 // and axes are those of the volume. Below half a second for 512 x 512 x 300, on two threads.
-// std::bad_alloc where there is no memory.
+// The volume has a voxel at least on each axis. std::bad_alloc where there is no memory.
 CasePicture casePicture(const Volume& volume, BodyRegion region);
 
-// Says in its text that it is for training, not for diagnosis or treatment planning.
+// The bytes of a PNG; none of a picture without pixels. Says in its text that it is for training, not for diagnosis or treatment planning.
 std::string pngOf(const CasePicture& picture);
 
 }  // namespace trephine

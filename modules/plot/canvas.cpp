@@ -20,7 +20,7 @@ constexpr double kEdge = 10.0;  // no text comes closer to the picture's edge
 constexpr double kSmallest = 10.0;
 
 QFont fontOf(const Font& font) {
-  QFont result(tr("DejaVu Sans"));  // or what the machine has instead
+  QFont result("DejaVu Sans");  // or what the machine has instead
   result.setPixelSize(std::max(1, int(font.size_px)));
   result.setBold(font.bold);
   result.setHintingPreference(QFont::PreferNoHinting);

@@ -70,6 +70,8 @@ class BrickLabels {
 // One byte a brick, i fastest: 0 where a visible HU can be met, else at most the number of bricks
 // (in the largest of the three axes, up to 255) to the nearest brick where one can. From a brick
 // with n a ray may leap to the faces of the cube of 2n - 1 bricks around it.
+// Maps and boxes are on the grid of the constructor; where other HU become visible, another one is
+// made. setRows() comes before update() of that brick.
 class EmptySpaceDistance {
  public:
   EmptySpaceDistance() = default;

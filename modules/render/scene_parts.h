@@ -54,6 +54,7 @@ struct SceneRenderer::View {
   void cast(const Canvas& into, const Span& span, const PixelRect& part, double ray_step);
   VolumePictures::Cast caster();
   void drawAt(double level);
+  // True where the picture changed and is to be composed again; more may be left either way.
   bool work(double budget_ms);
   // Around the points, in the view's pixels.
   PixelRect around(const Vec3* points, std::size_t count, int margin) const;

@@ -301,9 +301,9 @@ ToolDrawing::~ToolDrawing() = default;
 void ToolDrawing::warn(const ToolView& view, const Error& why) {
   if (!warned_.insert(view.mesh_file).second) return;
   // A log names neither folder nor file: a scene may lie beside a patient's scan.
-  const char* tool = view.shape == ToolShape::needle  ? tr("the mesh of a needle")
-                     : view.shape == ToolShape::blade ? tr("the mesh of a blade")
-                                                      : tr("the mesh of a burr");
+  const char* tool = view.shape == ToolShape::needle  ? "the mesh of a needle"
+                     : view.shape == ToolShape::blade ? "the mesh of a blade"
+                                                      : "the mesh of a burr";
   const Error said{why.code, why.what, tool, why.next};
   spdlog::warn("{} The built-in shape is drawn instead.", said.sentence());
 }

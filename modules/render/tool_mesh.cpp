@@ -86,7 +86,7 @@ Result<ToolMesh> readToolMesh(const std::filesystem::path& file) {
   ToolMesh mesh;
   vtkPolyData* read = reader->GetOutput();
   for (vtkIdType first = 0; first + 2 < read->GetNumberOfPoints(); first += 3) {
-    const auto fault = [&](Code code, const char* what) {
+    const auto fault = [&](Code code, const std::string& what) {
       return meshError(code, tr("A corner of triangle {} {}", first / 3 + 1, what), file);
     };
     Vec3 corners[3];

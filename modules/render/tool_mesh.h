@@ -17,7 +17,8 @@ constexpr std::uintmax_t kLargestToolMesh_bytes = std::uintmax_t(64) << 20;
 constexpr double kFarthestToolMesh_mm = 10000.0;  // a corner's place along an axis, or the tip's
 
 // Triangles without area are left out. Errors: MISSING_FILE, CANNOT_READ, MESH_TOO_LARGE, NOT_STL
-// (nor where it is damaged), MESH_EMPTY, MESH_NOT_FINITE, MESH_TOO_FAR (the unit is not mm).
+// (nor where it is damaged), MESH_EMPTY, MESH_NOT_FINITE, MESH_TOO_FAR (kFarthestToolMesh_mm). The
+// order of corners is the file's; a file has no unit, and millimetres are taken.
 Result<ToolMesh> readToolMesh(const std::filesystem::path& file);
 
 // What readToolMesh would say of the file: for importers.

@@ -136,7 +136,7 @@ std::string toText(const RunReport& report) {
     }
     const ArmFault& f = report.done.faults[i];
     add("  FAULT at %.3f s, %s: %s\n", double(f.tick) / report.done.rate_hz,
-        report.done.arms[std::size_t(f.arm)].name.c_str(), nameOf(f.fault).words);
+        report.done.arms[std::size_t(f.arm)].name.c_str(), tr(nameOf(f.fault).words).c_str());
   }
   if (report.machine.memory_locked == false) {
     text += "  " + memoryNotLocked(report.machine.memory_not_locked).sentence() + "\n";

@@ -16,8 +16,8 @@ namespace trephine {
 
 // Of the machine on which a session ran in real time.
 struct MachineHealth {
-  std::optional<bool> memory_locked;
-  std::string memory_not_locked;  // why not
+  std::optional<bool> memory_locked;  // none: not known
+  std::string memory_not_locked;      // why not, where it is not
   std::uint64_t missed_deadlines = 0;
   std::uint64_t nonfinite = 0;
   std::uint64_t events_dropped = 0;
@@ -25,6 +25,7 @@ struct MachineHealth {
   DurationSummary tick_ns;
 };
 
+// Session::report() fills it; `done` names one controller at least.
 struct RunReport {
   RunMetrics done;
   std::vector<CutStructure> structures_cut;  // of the case; empty where it has none

@@ -7,7 +7,7 @@
 namespace trephine {
 
 Status checkMap(const LabelMap& map, int label);
-Status checkMm(double mm, double least, double most, const char* what);
+Status checkMm(double mm, double least, double most, const std::string& what);
 
 // Whether a voxel may become `own`: it is of nothing, or of a structure that may be taken over.
 inline bool isFree(std::uint8_t before, std::uint8_t own, const Labels& over) {

@@ -342,7 +342,7 @@ Status checkMap(const LabelMap& map, int label) {
   return {};
 }
 
-Status checkMm(double mm, double least, double most, const char* what) {
+Status checkMm(double mm, double least, double most, const std::string& what) {
   if (mm >= least && mm <= most) return {};
   char range[60];
   std::snprintf(range, sizeof range, " is from %g to %g mm", least, most);

@@ -38,7 +38,8 @@ struct Skull {
   std::vector<std::string> steps;  // what was done, in words
 };
 
-// Two threads inside; takes a byte a voxel beside the volume, and 12 a run of voxels. Errors:
+// The largest bone of whatever the volume shows, a head or not; the mask lists no structures. Two
+// threads inside; takes a byte a voxel beside the volume, and 12 a run of voxels. Errors:
 // NO_BONE (no piece of kLeastBone_ml), CANCELLED, OUT_OF_MEMORY.
 Result<Skull> skullOf(const Volume& volume, const Progress& progress = Progress());
 

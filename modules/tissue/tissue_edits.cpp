@@ -154,8 +154,8 @@ Result<TissueSet> withoutTissue(const TissueSet& set, std::size_t tissue) {
 TissueSet startingSet(const std::string& name) {
   Tissue soft = softTissue("soft", tr("Soft tissue"), {-200, 225});
   soft.colour = Vec3(0.80, 0.50, 0.42);
-  Tissue bone = softTissue("bone", "Bone", {226, 3071});
-  bone.hu_source = tr("common CT threshold for bone, 226 HU");
+  Tissue bone = softTissue("bone", tr("Bone"), {226, 3071});
+  bone.hu_source = "common CT threshold for bone, 226 HU";
   bone.colour = Vec3(0.93, 0.88, 0.77);
   bone.opacity = 0.9;
   bone.damping_Ns_per_m = tuned(12.0);

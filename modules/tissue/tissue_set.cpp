@@ -207,7 +207,7 @@ std::string tissueFieldsPage() {
   std::string page = schemaHead() + schemaLines<Tissue>("tissue", kTissueFields) +
                      schemaLines<Tissue::Shell>("tissue, `shell`", kShellFields);
   for (const TissueNumber& number : kTissueNumbers) {
-    page += schemaLine("`mechanics`", number.row(), tr("sourced number"), "none");
+    page += schemaLine("`mechanics`", number.row(), "sourced number", "none");
   }
   return page + schemaLines<Tissue>("`mechanics`", kCuttingFields);
 }

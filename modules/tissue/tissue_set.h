@@ -86,7 +86,7 @@ inline constexpr FieldOf<Tissue::Shell> kShellFields[] = {
       {},
       Given::always,
       trLater("the structure whose outermost layer it is where the case lacks the tissue's own"),
-      "Else"},
+      trLater("Else")},
      ReferenceIn<Tissue::Shell>{&Tissue::Shell::of}},
     {{"thickness_mm", kShellRange, Given::always,
       trLater("of that layer, which is closed: a capsule, which no CT shows")},

@@ -9,7 +9,6 @@ inline constexpr Code kBadRecording{"BAD_RECORDING"};
 inline constexpr Code kLetGo{"LET_GO"};
 inline constexpr Code kNewerVersion{"NEWER_VERSION"};
 inline constexpr Code kNotReplayable{"NOT_REPLAYABLE"};
-inline constexpr Code kOlderVersion{"OLDER_VERSION"};
 inline constexpr Code kRecordingGone{"RECORDING_GONE"};
 inline constexpr Code kStartsInTissue{"STARTS_IN_TISSUE"};
 inline constexpr Code kTakesTooLong{"TAKES_TOO_LONG"};

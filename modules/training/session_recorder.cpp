@@ -162,11 +162,12 @@ struct SessionRecorder::File {
 
   Status fail() {
     if (!failure) {
+      const int error = errno;
       failure = Error{code::kCannotWrite,
                       tr("The recording can no longer be written: {}",
-                         (errno ? std::strerror(errno) : tr("unknown reason"))),
+                         error ? std::strerror(error) : tr("unknown reason")),
                       path.filename().string(),
-                      tr("{}; what was recorded until now is kept", afterFailedWrite(errno))};
+                      tr("{}; what was recorded until now is kept", afterFailedWrite(error))};
     }
     return *failure;
   }
@@ -205,10 +206,11 @@ Result<std::unique_ptr<SessionRecorder>> SessionRecorder::create(const std::file
   H5Pclose(access);
   if (f.file >= 0) keepOwn(path);
   const auto cannot = [&path] {
+    const int error = errno;
     return Error{code::kCannotWrite,
                  tr("The recording cannot be started: {}",
-                    (errno ? std::strerror(errno) : tr("unknown reason"))),
-                 path.string(), afterFailedWrite(errno)};
+                    error ? std::strerror(error) : tr("unknown reason")),
+                 path.string(), afterFailedWrite(error)};
   };
   if (f.file < 0) {
     const Error error = cannot();

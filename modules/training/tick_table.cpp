@@ -84,10 +84,11 @@ Status writeTickTable(const SessionReader& recording, const std::filesystem::pat
     Status written = writeTo(recording, out, progress);
     if (out) out.close();
     if (!written || out) return written;
+    const int error = errno;
     return Error{code::kCannotWrite,
                  tr("The table could not be written: {}",
-                    (errno ? std::strerror(errno) : tr("unknown reason"))),
-                 file.string(), afterFailedWrite(errno)};
+                    error ? std::strerror(error) : tr("unknown reason")),
+                 file.string(), afterFailedWrite(error)};
   });
 }
 

@@ -15,7 +15,8 @@ std::array<Vec3, 8> cornerVoxels(const GridGeometry& grid);
 double cornersApart_mm(const GridGeometry& a, const GridGeometry& b);
 
 // The farthest that a corner voxel of the one lies from the nearest of the other, in whatever order
-// they count their voxels [mm]. Infinite where their sizes are not the same three.
+// they count their voxels [mm]: of two that are 0 apart, voxels of one index may lie elsewhere.
+// Infinite where their sizes are not the same three.
 double cornersFrom_mm(const GridGeometry& of, const GridGeometry& other);
 
 }  // namespace trephine

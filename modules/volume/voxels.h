@@ -2,7 +2,7 @@
 //
 // std::vector would write every zero itself, on one thread, which takes longer than reading a CT
 // into it. Here pages come when they are first written, by whichever thread does so, and large ones
-// where the kernel gives them.
+// where the kernel gives them. For numbers alone: no constructor runs.
 #pragma once
 
 #include <sys/mman.h>

@@ -15,6 +15,8 @@ FOREIGN = {
     "modules/imaging/dicom/transfer_syntax.cpp": "names of transfer syntaxes, as DICOM has them",
     "modules/base/crash_report.cpp": "a file for those who mend Trephine",
 }
+# Texts of a standard or of files, in rooms that say sentences as well.
+NAMES = {'"Series Instance UID"', '"SOP Class UID"', '"SOP Instance UID"', '"Trephine case"'}
 # What takes texts that no person reads, or only in a log.
 CALLS = re.compile(
     r"(?:\b(?:tr|trLater|static_assert|starts_with|ends_with|contains|find|rfind|getenv|setenv)"
@@ -37,7 +39,7 @@ def raw_sentences(source):
             open_calls.append(bool(CALLS.search(word)))
         elif token in ")]}" and open_calls:
             open_calls.pop()
-        elif token.startswith('"') and SENTENCE.match(token) and not any(open_calls):
+        elif token.startswith('"') and token not in NAMES and SENTENCE.match(token) and not any(open_calls):
             found.append((source.count("\n", 0, match.start()) + 1, token))
         word = token if token[0].isalpha() or token[0] == "_" else ""
     return found

@@ -7,6 +7,7 @@
 
 #include "base/utf8.h"
 #include "tissue/tissue_edits.h"
+#include "ui/common/translations.h"
 #include "ui/common/words.h"
 
 namespace trephine {
@@ -57,11 +58,11 @@ void TissueMechanics::addNumber(const TissueNumber& row) {
   number.box->setLimits(row.row().range.low, row.most);
   number.box->setSingleStep(row.step);
   number.box->setSuffix(' ' + unitOf(row));
-  number.box->setAccessibleName(tr(row.label));
+  number.box->setAccessibleName(fromRoom(row.label));
   number.bar->setObjectName(QString(row.label).toLower() + "Limit");
   number.bar->setRange(row.most, row.step, row.decimals);
   number.source->setObjectName(QString(row.label).toLower() + "Source");
-  number.source->setAccessibleName(tr("Source of %1").arg(tr(row.label)));
+  number.source->setAccessibleName(tr("Source of %1").arg(fromRoom(row.label)));
   number.source->setPlaceholderText(tr("where the number comes from"));
   number.source->setFrame(false);
   number.source->setMaxLength(300);
@@ -84,7 +85,7 @@ void TissueMechanics::addNumber(const TissueNumber& row) {
   rows->setSpacing(0);
   rows->addLayout(number.box->withReason());
   rows->addLayout(below);
-  static_cast<QFormLayout*>(layout())->addRow(tr(row.label), rows);
+  static_cast<QFormLayout*>(layout())->addRow(fromRoom(row.label), rows);
 }
 
 void TissueMechanics::show(const Tissue& tissue, const Tissue& declared) {
@@ -120,7 +121,7 @@ void TissueMechanics::showOutcome() {
     n.source->setCursorPosition(0);
     n.source->setToolTip(source);
     n.box->setToolTip(tr("%1. From %2 to %3 %4.")
-                          .arg(tr(n.row->meaning))
+                          .arg(fromRoom(n.row->meaning))
                           .arg(n.row->row().range.low)
                           .arg(n.row->most, 0, 'g', 6)
                           .arg(unitOf(*n.row)) +

@@ -14,7 +14,8 @@ void sharpenTimers();
 // Writes to the pages of the stack that a tick may use, so that none is first met in one.
 void touchStack();
 
-// Holds all that the program has in memory in place until release(). What comes later is not held.
+// Holds all that the program has in memory in place until release(). What comes later is not held:
+// make it on the thread that is to be held, after touchStack() and before requestRealTime().
 class LockedMemory {
  public:
   LockedMemory();

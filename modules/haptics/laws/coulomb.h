@@ -17,7 +17,7 @@ namespace trephine {
 // F its friction [N], both for the whole tool.
 struct CoulombLaw {
   static constexpr LawWords kWords{
-      "coulomb", "Coulomb",
+      "coulomb", trLater("Coulomb"),
       trLater("Dry friction: a tool that rests is held, one that slides is braked.")};
   static constexpr std::array kNumbers{&TickNumbers::stiffness_N_per_m, &TickNumbers::friction_N};
 

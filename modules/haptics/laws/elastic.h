@@ -22,7 +22,7 @@ namespace trephine {
 // does not come back on the way out.
 struct ElasticLaw {
   static constexpr LawWords kWords{
-      "elastic", "Elastic",
+      "elastic", trLater("Elastic"),
       trLater("Tissue pushes back with its stiffness, and solid tissue stops a tool.")};
   static constexpr std::array kNumbers{&TickNumbers::stiffness_N_per_m};
 

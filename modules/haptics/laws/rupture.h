@@ -18,7 +18,7 @@ struct ElasticLaw;
 // tip that draws back before that leaves it whole. One capsule at a time.
 struct RuptureLaw {
   static constexpr LawWords kWords{
-      "rupture", "Rupture",
+      "rupture", trLater("Rupture"),
       trLater("A capsule gives way at its rupture force, and the force drops.")};
   static constexpr std::array kNumbers{&TickNumbers::stiffness_N_per_m, &TickNumbers::rupture_N};
 

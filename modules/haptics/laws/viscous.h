@@ -12,7 +12,7 @@ namespace trephine {
 // tool: f_i = -w_i b_i (v + omega x r_i).
 struct ViscousLaw {
   static constexpr LawWords kWords{
-      "viscous", "Viscous",
+      "viscous", trLater("Viscous"),
       trLater("Tissue resists speed: f = -b v, the seed paper's puncture and cutting.")};
   static constexpr std::array kNumbers{&TickNumbers::damping_Ns_per_m};
 

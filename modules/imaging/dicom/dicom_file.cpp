@@ -528,9 +528,9 @@ Result<std::vector<DicomHeader>> readDicomHeaders(const std::filesystem::path& f
                         trimmedText(data, DCM_SeriesDate) + "\\" +
                         trimmedText(data, DCM_SeriesTime);
   }
-  for (const auto& [uid, name] : {std::pair(&header.series_uid, tr("Series Instance UID")),
-                                  std::pair(&header.sop_class, tr("SOP Class UID")),
-                                  std::pair(&header.sop_instance, tr("SOP Instance UID"))}) {
+  for (const auto& [uid, name] : {std::pair(&header.series_uid, "Series Instance UID"),
+                                  std::pair(&header.sop_class, "SOP Class UID"),
+                                  std::pair(&header.sop_instance, "SOP Instance UID")}) {
     if (!uid->empty()) continue;
     return cut ? damagedHeader(file) : skip(tr("a DICOM file without a {}", name));
   }

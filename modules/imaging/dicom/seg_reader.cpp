@@ -289,7 +289,7 @@ Result<DicomSegmentation> read(const fs::path& file, double threshold, const Pro
 
   DicomSegmentation result;
   Segmentation& out = result.segmentation;
-  out.format = tr("DICOM SEG");
+  out.format = "DICOM SEG";
   out.geometry = stack->geometry;
   out.notes = header.notes;
   out.notes.insert(out.notes.end(), stack->notes.begin(), stack->notes.end());
@@ -322,7 +322,7 @@ Result<DicomSegmentation> read(const fs::path& file, double threshold, const Pro
       out.notes.push_back(tr("Left out: {} of segments that the file does not name.",
                              counted(frames.unnamed(), "voxel")));
     }
-    out.format = tr("DICOM label map");
+    out.format = "DICOM label map";
     out.named = std::ranges::any_of(out.segments, [](const auto& s) { return !s.name.empty(); });
     progress.at(1.0, "Done");
     return result;

@@ -29,7 +29,7 @@ struct RawSourceUids {
 
 struct SegWriting {
   // Of the CT's files; the segmentation has its patient, too.
-  CtSeriesText text{tr("Trephine case"), "", "TREPHINE^CASE", "CASE"};
+  CtSeriesText text{"Trephine case", "", "TREPHINE^CASE", "CASE"};
   std::optional<RawSourceUids> source{};  // to refer to it, and write no CT
 };
 

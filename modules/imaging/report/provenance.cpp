@@ -2,7 +2,7 @@
 
 #include "base/file.h"
 #include "base/tr.h"
-#include "training/codes.h"
+#include "base/codes.h"
 
 namespace trephine {
 

@@ -89,6 +89,18 @@ std::string sentencesOf(const Finding& finding) {
   return text;
 }
 
+const char* severityName(Severity severity) {
+  switch (severity) {
+    case Severity::notice:
+      return "notice";
+    case Severity::repair:
+      return "repair";
+    case Severity::refusal:
+      return "refusal";
+  }
+  return "";
+}
+
 const char* verdictName(Verdict verdict) {
   switch (verdict) {
     case Verdict::pass:

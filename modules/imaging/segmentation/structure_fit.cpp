@@ -459,7 +459,7 @@ Result<StructureFit> fitted(Segmentation& of, const Volume& ct, const Answers& a
         doubtful.push_back(
             tr("'{}' has a median of {} HU, {} to {} but for a tenth, and {} has {} to {}",
                structure.name, number(median), number((*card.hu)[0]), number((*card.hu)[2]),
-               kind->kind, number(kind->low), number(kind->high)));
+               tr(kind->kind), number(kind->low), number(kind->high)));
         card.findings.push_back({code::kHuNotTissue, Severity::notice, doubtful.back(), {}, ""});
       }
     }

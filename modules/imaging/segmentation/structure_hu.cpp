@@ -26,18 +26,18 @@ const std::vector<NamedKind>& kinds() {
   static const std::vector<NamedKind> all = {
       {{"lung", "lungs", "trachea", "bronchus", "airway", "sinus"},
        {trLater("lung or airway"), -1024, -300}},
-      {{"fat", "adipose"}, {"fat", -200, 0}},
+      {{"fat", "adipose"}, {trLater("fat"), -200, 0}},
       {{"bone", "bones", "skull", "cranium", "mandible", "vertebra", "vertebrae", "rib", "ribs",
         "femur", "humerus", "sacrum", "hip", "pelvis", "clavicula", "scapula", "sternum", "table"},
-       {"bone", 100, 3071}},
+       {trLater("bone"), 100, 3071}},
       {{"liver", "spleen", "pancreas", "kidney", "kidneys", "prostate", "thyroid"},
        {trLater("a solid organ"), -20, 300}},
-      {{"tumour", "tumor", "lesion", "metastasis"}, {"a tumour", -50, 300}},
+      {{"tumour", "tumor", "lesion", "metastasis"}, {trLater("a tumour"), -50, 300}},
       {{"muscle", "autochthon", "iliopsoas", "gluteus", "heart", "myocardium"},
-       {"muscle", -50, 300}},
-      {{"vessel", "vessels", "aorta", "vein", "artery", "cava", "portal"}, {"a vessel", -10, 700}},
-      {{"brain", "cerebellum", "ventricle", "ventricles"}, {"brain", -10, 120}},
-      {{"bladder", "gallbladder"}, {"a bladder", -50, 700}},
+       {trLater("muscle"), -50, 300}},
+      {{"vessel", "vessels", "aorta", "vein", "artery", "cava", "portal"}, {trLater("a vessel"), -10, 700}},
+      {{"brain", "cerebellum", "ventricle", "ventricles"}, {trLater("brain"), -10, 120}},
+      {{"bladder", "gallbladder"}, {trLater("a bladder"), -50, 700}},
       {{"skin", "scalp", "capsule"}, {trLater("skin or a capsule"), -300, 300}}};
   return all;
 }

@@ -212,7 +212,9 @@ std::vector<Series> splitSeries(std::vector<DicomHeader> headers) {
       if (home) break;
     }
     if (!home) {
-      if (reason && std::ranges::find(reasons, reason) == reasons.end()) reasons.push_back(reason);
+      if (reason && std::ranges::find(reasons, tr(reason)) == reasons.end()) {
+        reasons.push_back(tr(reason));
+      }
       home = &parts.emplace_back();
     }
     home->slices.push_back(std::move(header));

@@ -119,7 +119,7 @@ void checkAcquisition(const Headers& used, const Answers& answers, Findings& fin
       auto& [first, count] = said[inCapitals(text)];
       if (count++ == 0) first = text;
     }
-    if (!said.empty() && silent > 0) unsaid.push_back(name + (tr(" in {}", silent)));
+    if (!said.empty() && silent > 0) unsaid.push_back(tr("{} in {}", tr(name), silent));
     if (said.size() < 2) return;
     std::vector<std::string> some;
     for (const auto& [key_, one] : said) {
@@ -129,7 +129,7 @@ void checkAcquisition(const Headers& used, const Answers& answers, Findings& fin
       }
       some.push_back(tr("{} in {}", shownTerm(one.first), one.second));
     }
-    differing.push_back(name + (shown ? " (" + listed(some) + ")" : ""));
+    differing.push_back(tr(name) + (shown ? " (" + listed(some) + ")" : ""));
     unlikeMost(key);
   };
   const auto numbers = [&](const char* name, const char* unit, double tolerance,
@@ -141,8 +141,7 @@ void checkAcquisition(const Headers& used, const Answers& answers, Findings& fin
       most = std::max(most.value_or(*(header->*value)), *(header->*value));
     }
     if (!least || *most - *least <= tolerance * std::max(std::abs(*least), std::abs(*most))) return;
-    differing.push_back(name + (tr(" ({} to ", fixedText(*least, 2))) + fixedText(*most, 2) + " " +
-                        unit + ")");
+    differing.push_back(tr("{} ({} to {} {})", tr(name), fixedText(*least, 2), fixedText(*most, 2), unit));
     unlikeMost([&](const DicomHeader& h) { return fixedText((h.*value).value_or(0.0), 3); });
   };
   words(trLater("convolution kernel"), true, [](const DicomHeader& h) { return h.kernel; });

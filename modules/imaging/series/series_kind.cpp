@@ -106,7 +106,7 @@ Kind kindOf(const DicomHeader& header) {
   for (const Term& term : kTerms) {
     if (term.use <= kind.use) continue;
     if (said.find(" " + std::string(term.term) + " ") == said.npos) continue;
-    kind = {term.use, term.words};
+    kind = {term.use, tr(term.words)};
   }
   // A scan of the passing contrast holds HU, a map that was made of it does not.
   if (kind.use != Use::no_hu && said.find(" PERFUSION ") != said.npos) {

@@ -23,7 +23,6 @@ namespace trephine {
 namespace {
 
 constexpr int kMostPhases = 100;
-const ProgressPart kComparing{0.99, 0.99, trLater("Comparing slices")};  // of the scan's
 constexpr std::size_t kMostCompared = 64;  // repeats that are read while the folder is scanned
 
 // [first, last) of the slices at each place.
@@ -351,7 +350,7 @@ std::optional<Interleaved> interleaved(const std::vector<const DicomHeader*>& sl
     Numbers numbers = numbersBy(key.of);
     all.emplace_back(key.name, of_heart ? alike(std::move(numbers)) : std::move(numbers));
   }
-  all.emplace_back(tr("instance number"), numbersBy(instance));
+  all.emplace_back(trLater("instance number"), numbersBy(instance));
   for (const auto& [name, numbers] : all) {
     for (std::vector<int> phases : {bySweep(numbers, places_mm), byPause(numbers, places_mm)}) {
       if (anyInterleaved(phases, places_mm)) return Interleaved{std::move(phases), name};
@@ -500,7 +499,8 @@ void dropEqualRepeats(Series& series, const Progress& progress) {
     if (place.count() < 2) continue;
     std::vector<std::optional<Pixels>> pixels(place.count());
     // On workers, for the reader's sake.
-    const Status read = forEachFile(place.count(), progress, kComparing, [&](std::size_t n) {
+    const ProgressPart comparing{0.99, 0.99, tr("Comparing slices")};  // of the scan's
+    const Status read = forEachFile(place.count(), progress, comparing, [&](std::size_t n) {
       pixels[n] = pixelsOf(reader, series.slices[placed[place.first + n].slice]);
     });
     if (!read) return;

@@ -330,7 +330,7 @@ Result<DeviceTrial> trialOf(const TrialOptions& options, const fs::path& out,
       progress);
   if (!run) return run.error();
   Result<Json> json = readJsonFile(answer);
-  const Error ended{"", "it ended with code " + std::to_string(run->exit_code), "", ""};
+  const Error ended{Code(), "it ended with code " + std::to_string(run->exit_code), "", ""};
   const Error why = errorSaid(said_file).value_or(json ? ended : json.error());
   fs::remove(said_file, ec);
   if (run->exit_code != 0 || !json || !json->contains("zero_ms")) {

@@ -60,12 +60,12 @@ std::vector<CommissionCheck> judgedArms(const std::vector<ArmAnswered>& arms) {
     const ArmAnswered& arm = arms[i];
     const std::string name = (i == 0 ? "" : "; ") + std::to_string(i + 1) + ", " + arm.model + ": ";
     const bool done = arm.phase == MotorEncoderCheck::Phase::done;
-    const char* why = arm.phase == MotorEncoderCheck::Phase::untouched ? tr("nobody held it")
+    const std::string why = arm.phase == MotorEncoderCheck::Phase::untouched ? tr("nobody held it")
                       : done ? tr("not pushed, as its samples scatter, or it states no mass")
                              : tr("it was let go of, moved too fast, or went away");
     all_heard = all_heard && done;
     all_pushed = all_pushed && done && arm.pushed;
-    scatter += name + (done ? formatted("%.3f mm", 1e3 * arm.noise_m) : std::string(why));
+    scatter += name + (done ? formatted("%.3f mm", 1e3 * arm.noise_m) : why);
     if (done)
       most_steps =
           std::max(most_steps, arm.noise_m / std::max(arm.step_m, MotorEncoderCheck::kLeastStep_m));
@@ -85,7 +85,7 @@ std::vector<CommissionCheck> judgedArms(const std::vector<ArmAnswered>& arms) {
   }
   std::vector<CommissionCheck> checks{judged("arm_encoders", most_steps, scatter)};
   CommissionCheck forces = judged("arm_forces", least, pushed);
-  const auto unknown = [](const char* name, const std::string& what, const char* next) {
+  const auto unknown = [](const char* name, const std::string& what, const std::string& next) {
     return notMeasured(name, Fitness::warn, {code::kNotHeld, what, "", next});
   };
   // One that was not tried says nothing of the others, but is not passed either.
@@ -154,7 +154,7 @@ std::vector<CommissionCheck> checkArms(double patience_s, const Progress& progre
     checks.insert(checks.begin(), notMeasured("arms", Fitness::fail, why));
     return checks;
   };
-  const auto failed = [&](const char* what) {
+  const auto failed = [&](const std::string& what) {
     return failedFor(
         {code::kNotAnswered, what, "",
          tr("Unplug one device after the other, commission again each time, and have the "

@@ -42,14 +42,17 @@ Error stopped() {
 std::string machineName() {
   utsname system{};
   ::uname(&system);
-  return tr("{} processors, {} {}{}", std::thread::hardware_concurrency(), system.sysname,
-            std::string(system.release).substr(0, std::string(system.release).find('-')),
-            (::geteuid() == 0 ? tr(", as an administrator") : ""));
+  const std::string release = system.release;
+  return std::to_string(std::thread::hardware_concurrency()) + " processors, " + system.sysname + " " +
+         release.substr(0, release.find('-')) + (::geteuid() == 0 ? ", as an administrator" : "");
 }
 
 // No limit holds root: what it has says nothing of those who practise.
-const char* const kRootsOwn =
-    ::geteuid() == 0 ? tr("an administrator always has it: commission as one who practises") : "";
+std::string rootsOwn() {
+  return ::geteuid() == 0
+             ? tr("an administrator always has it: commission as one who practises")
+             : "";
+}
 
 class Run {
  public:
@@ -91,7 +94,7 @@ Status Run::lateness() {
       measureJitter(options, {}, Progress(progress_, 0.0, 0.35, tr("How late ticks come")));
   if (!measured) return measured.error();
   granted_ = measured->advice.empty();
-  add("priority", granted_ ? 1.0 : 0.0, kRootsOwn);
+  add("priority", granted_ ? 1.0 : 0.0, rootsOwn());
   for (const JitterRow& row : measured->rows) {
     CommissionCheck check = judged(latenessName(row.rate_hz, row.real_time), row.p999_us,
                                    tr("{} missed of {}", row.missed, row.ticks));
@@ -117,7 +120,7 @@ void Run::memory() {
   constexpr double kEnough_MB = 1e6;  // stands for no limit; none holds root
   const bool unlimited = limit.rlim_cur == RLIM_INFINITY || ::geteuid() == 0;
   add("locked_memory", unlimited ? kEnough_MB : std::min(kEnough_MB, double(limit.rlim_cur) / kMB),
-      kRootsOwn);
+      rootsOwn());
   const double pages = double(::sysconf(_SC_PHYS_PAGES)) * double(::sysconf(_SC_PAGESIZE));
   add("memory", availableMemoryMb() * kMB / kGB, tr("of {} GB", std::lround(pages / kGB)));
 }

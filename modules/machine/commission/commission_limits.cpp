@@ -39,7 +39,7 @@ constexpr CommissionLimit kLimits[] = {
      false, 125.0, std::nullopt, trLater("how the machine does where priority is not granted"),
      kNormalNext},
     {"touch_cost", trLater("Touch with the recommended settings, one arm"),
-     trLater("% of a processor"), false, 25.0, 45.0,
+     "% of a processor", false, 25.0, 45.0,
      trLater("two arms are served one after the other, in one tick"),
      trLater("Use exercises of a lower rate, and end what else works on this machine")},
     {"priority", trLater("Real-time priority"), "granted", true, 1.0, std::nullopt,
@@ -47,7 +47,7 @@ constexpr CommissionLimit kLimits[] = {
     {"locked_memory", trLater("Memory that may be held in place"), "MB", true, 3000.0, std::nullopt,
      trLater("a case of 512 x 512 x 600 needs 2.5 GB, and what is swapped out makes a tick late"),
      kPriorityNext},
-    {"opengl", trLater("Graphics card"), trLater("drawn by"), true, 1.0, std::nullopt,
+    {"opengl", trLater("Graphics card"), "drawn by", true, 1.0, std::nullopt,
      trLater("processors draw coarse pictures while things move"), kDriverNext},
     {"volume_edge", trLater("Longest edge of a case that is drawn"), "voxels", true, 512.0, 512.0,
      trLater(
@@ -114,7 +114,7 @@ CommissionCheck judged(const std::string& name, double value, std::string remark
                        std::optional<double> needed) {
   const CommissionLimit* by = commissionLimit(name);
   if (!by) std::abort();  // a name that the table lacks is a mistake of ours
-  CommissionCheck check{name,     tr(by->words), value, tr(by->unit),
+  CommissionCheck check{name,     tr(by->words), value, by->unit,
                         by->warn, Fitness::pass, "",    std::move(remark)};
   const auto beyond = [&](double limit) {
     return !std::isfinite(value) || (by->at_least ? value < limit : value > limit);
@@ -148,7 +148,7 @@ CommissionCheck notMeasured(const std::string& name, Fitness verdict, const Erro
   return {name,
           tr(by->words),
           {},
-          tr(by->unit),
+          by->unit,
           by->warn,
           verdict,
           why.next.empty() ? tr(by->next) : why.next,

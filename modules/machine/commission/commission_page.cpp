@@ -21,7 +21,7 @@ std::string shownValue(const std::optional<double>& value, const std::string& un
                                : "%.2f %s",
                 *value, unit.c_str());
   if (unit == "us") std::snprintf(text, sizeof text, "%.0f \u00b5s", *value);
-  if (unit == "granted" || unit == "installed") return *value > 0.0 ? "yes" : "no";
+  if (unit == "granted" || unit == "installed") return *value > 0.0 ? tr("yes") : tr("no");
   if (unit == "drawn by") return *value > 0.0 ? tr("a graphics card") : tr("the processors");
   if (unit == "MB" && *value >= 1e6) return tr("without limit");
   if (unit == "arms") std::snprintf(text, sizeof text, "%.0f", *value);
@@ -35,7 +35,7 @@ namespace {
 constexpr const char* kFormat = "trephine.commission";
 constexpr int kVersion = 1;
 
-const char* inWords(Fitness verdict) {
+std::string inWords(Fitness verdict) {
   return verdict == Fitness::pass ? tr("This workstation is fit for exercises.")
          : verdict == Fitness::warn
              ? tr("This workstation can be used; some of it could be better.")
@@ -52,7 +52,7 @@ std::optional<Fitness> fitnessNamed(const std::string& name) {
 std::string limitWords(const CommissionCheck& check) {
   const CommissionLimit* by = commissionLimit(check.name);
   if (!check.limit || !by) return "";
-  for (const char* yes_or_no : {"granted", "installed", tr("drawn by")}) {
+  for (const char* yes_or_no : {"granted", "installed", "drawn by"}) {
     if (check.unit == yes_or_no) return shownValue(check.limit, check.unit);
   }
   if (check.unit == "years") return tr("not before it");

@@ -1,5 +1,6 @@
 // How figures of a measurement spread, and how that is said. Of figures that were not measured:
-// nothing, said as null.
+// nothing, said as null. Quantiles are figures of the list, by the nearest rank: of fewer than 100,
+// p99 is the largest. Figures are numbers, in the unit that the JSON's key names.
 #pragma once
 
 #include <algorithm>

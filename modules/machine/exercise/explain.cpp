@@ -233,7 +233,7 @@ Result<Json> explainExercise(Exercise exercise, const std::vector<RecommendedSet
     const Pose at_surface{Vec3(0.0, 0.0, 10.0), Quat(1, 0, 0, 0)};
     for (LawKind kind : exercise.laws) {
       Law law = makeLaw(kind, points.size(), tool, grid.geometry());
-      add(tr("law {}", nameOf(kLawNames, kind)), [&] {
+      add("law " + std::string(nameOf(kLawNames, kind)), [&] {
         input.tip_m.x += 1e-6;
         law_tissues.ask(law, tissue, at_surface, input);
         ContactForce force;
@@ -260,7 +260,7 @@ Result<Json> explainExercise(Exercise exercise, const std::vector<RecommendedSet
     std::vector<RemovedVoxel> removed;
     removed.reserve(Removal::kMostVoxels);
     Pose moving;
-    add(tr("removal sweep"), [&] {
+    add("removal sweep", [&] {
       moving.position.x = moving.position.x > 5.0 ? -5.0 : moving.position.x + 0.01;
       removal.sweep(tissue, moving, removed);
     });
@@ -270,7 +270,7 @@ Result<Json> explainExercise(Exercise exercise, const std::vector<RecommendedSet
     to_controller.touching = true;
     to_controller.period_s = parameters.period_s;
     to_controller.velocity_m_s = Vec3(-0.01, 0.0, 0.0);
-    add(tr("controller {}", controllerName(exercise.controller)), [&] {
+    add("controller " + std::string(controllerName(exercise.controller)), [&] {
       const Impedance limited = limitImpedance(controller, {12.0, 900.0});
       to_controller.rendered =
           springAndDamper(Vec3(1.0, 0.5, 0.2), limited.stiffness, limited.damping);
@@ -280,7 +280,7 @@ Result<Json> explainExercise(Exercise exercise, const std::vector<RecommendedSet
       keep(to_controller.last_sent_N);
     });
     OutputLimiter limiter;
-    add(tr("clamp and gate"), [&] {
+    add("clamp and gate", [&] {
       keep(limiter.limit(clampForce(Vec3(4.0, 0.0, 1.0), arm.max_force_N), true, true, 0,
                          parameters.period_s));
     });
@@ -288,11 +288,11 @@ Result<Json> explainExercise(Exercise exercise, const std::vector<RecommendedSet
 
   const double removal_ns = progress.cancelled() ? 0.0 : removalNs();
   cost.push_back(
-      {{"part", tr("removal of one voxel")}, {"arm", nullptr}, {"ns_per_tick", removal_ns}});
+      {{"part", "removal of one voxel"}, {"arm", nullptr}, {"ns_per_tick", removal_ns}});
   HapticCore core(parameters, *grid.takeWriter());
   TickInput input;
   TickRecord record;
-  const double tick_ns = time(tr("whole tick"), [&] {
+  const double tick_ns = time("whole tick", [&] {
     ++input.tick;
     input.journal = core.journalState();
     input.arms[0].position_m.x = 1e-6 * double(input.tick % 1000);
@@ -325,8 +325,8 @@ Result<Json> explainExercise(Exercise exercise, const std::vector<RecommendedSet
       {"laws", laws},
       {"force_at", nameOf(kForceAtNames, exercise.force_at)},
       {"removal", nameOf(kRemovalNames, exercise.removal)},
-      {"barrier", stopAtSolid(exercise.laws) ? tr("solid tissue stops a tool until it is cut")
-                                             : tr("no barrier: a tool is where its arm is")},
+      {"barrier", stopAtSolid(exercise.laws) ? "solid tissue stops a tool until it is cut"
+                                             : "no barrier: a tool is where its arm is"},
       {"tissues", tissues},
       {"arms", arms},
       {"warnings", *warnings},

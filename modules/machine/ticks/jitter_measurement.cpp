@@ -45,7 +45,7 @@ bool canHaveRealTime() {
 }
 
 Error noRealTime() {
-  const std::string limit = tr(" - rtprio {}", kPriority);
+  const std::string limit = " - rtprio " + std::to_string(kPriority);
   return {code::kNoRealTime,
           tr("Real-time priority was not granted: as root, write the line 'NAME{}' with your "
              "user's name, or '@GROUP{}' with a group of yours, to "

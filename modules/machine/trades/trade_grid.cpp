@@ -115,10 +115,10 @@ TradeRows tradeGrid(const TradesOptions& options, const Progress& progress) {
     row.knob = "grid";
     row.setting = name;
     row.error = full_mm3 > 0.0 ? 100.0 * std::abs(removed_mm3 / full_mm3 - 1.0) : 100.0;
-    row.error_unit = tr("% of removed volume");
+    row.error_unit = "% of removed volume";
     row.cost = double(g.voxelCount()) * sizeof(std::int16_t) / (1024.0 * 1024.0);
     row.cost_unit = "MB";
-    row.reference = tr("the same channel milled in the full grid: its volume, and its floor");
+    row.reference = "the same channel milled in the full grid: its volume, and its floor";
     row.extra = {{"surface_distance_mm", full_mm.empty() ? 1e3 : off_mm / double(full_mm.size())},
                  {"tick_ns", run->tick_ns},
                  {"removed_mm3", removed_mm3}};

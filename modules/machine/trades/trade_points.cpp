@@ -92,9 +92,9 @@ TradeRows tradePoints(ToolKind kind, const std::vector<int>& counts, const Trade
     row.knob = kind == ToolKind::burr ? "points_burr" : "points_blade";
     row.setting = std::to_string(points);
     row.error = rmsError_percent(one->whole.demanded_N, reference->whole.demanded_N);
-    row.error_unit = tr("% of force");
+    row.error_unit = "% of force";
     row.cost = one->whole.tick_ns;
-    row.cost_unit = tr("ns per tick without removal");
+    row.cost_unit = "ns per tick without removal";
     row.reference =
         tr("RMS force over an oblique stroke through the surface of bone, and the volume it "
            "removes by the hand's work, with {} points",
@@ -140,12 +140,12 @@ TradeRows tradeForceAt(const TradesOptions& options, const Progress& progress) {
     row.knob = "force_at";
     row.setting = std::string(name);
     row.error = rmsError_percent(run->demanded_N, exact_N);
-    row.error_unit = tr("% of force");
+    row.error_unit = "% of force";
     row.cost = run->tick_ns;
-    row.cost_unit = tr("ns per tick without removal");
+    row.cost_unit = "ns per tick without removal";
     row.reference =
-        tr("RMS force of the line integral of eq. 1 along a blade of 16 mm, half in "
-           "tissue, that turns at 2 rad/s");
+        "RMS force of the line integral of eq. 1 along a blade of 16 mm, half in "
+           "tissue, that turns at 2 rad/s";
     rows.push_back(row);
   }
   return rows;

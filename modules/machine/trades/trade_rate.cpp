@@ -126,12 +126,12 @@ TradeRows tradeRate(const TradesOptions& options, const Progress& progress) {
     row.knob = "rate_hz";
     row.setting = plain(rate_hz);
     row.error = rmsError_percent(run->sent_N, reference->sent_N);
-    row.error_unit = tr("% of force");
+    row.error_unit = "% of force";
     row.cost = 100.0 * run->tick_ns * 1e-9 * rate_hz;
-    row.cost_unit = tr("% of a CPU, one arm");
+    row.cost_unit = "% of a CPU, one arm";
     row.reference =
-        tr("RMS sent force at 80 kHz with a perfect encoder: a simulated arm of 45 g in a "
-           "light hand presses into bone and slides, 5 strokes (the arms measured: 0.055 mm)");
+        "RMS sent force at 80 kHz with a perfect encoder: a simulated arm of 45 g in a "
+           "light hand presses into bone and slides, 5 strokes (the arms measured: 0.055 mm)";
     row.extra = {
         {"b_max_Ns_per_m", most.b_max},
         {"k_max_N_per_m", most.k_max},

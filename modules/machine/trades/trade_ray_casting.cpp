@@ -38,10 +38,11 @@ TradeRows tradeRayCasting(const TradesOptions& options, const Progress& progress
     row.knob = "ray_casting";
     row.setting = rayCastingSetting(f.setting.distance_voxels, f.setting.plain);
     row.error = f.wrong_class_percent;
-    row.error_unit = tr("% of pixels of a wrong tissue");
+    row.error_unit = "% of pixels of a wrong tissue";
     row.cost = f.ms;
-    row.cost_unit = tr("ms a picture, {}x{}", options.ray_picture[0], options.ray_picture[1]);
-    row.reference = tr("the phantom's truth, from six directions");
+    row.cost_unit = "ms a picture, " + std::to_string(options.ray_picture[0]) + "x" +
+                    std::to_string(options.ray_picture[1]);
+    row.reference = "the phantom's truth, from six directions";
     row.extra = {{"luminance_error_percent", f.luminance_error_percent},
                  {"picture_rms_percent", f.picture_rms_percent}};
     rows.push_back(row);

@@ -20,7 +20,7 @@ namespace {
 constexpr double kRateUnit_hz = 160000.0;  // rates divide it: a whole number of steps in a period
 
 Status check(const TradesOptions& options) {
-  const auto bad = [](const char* what, const char* where) {
+  const auto bad = [](const std::string& what, const char* where) {
     return Error{code::kBadArgument, what, where, ""};
   };
   for (const auto& [counts, where] : {std::pair(&options.blade_points, "blade_points"),
@@ -225,7 +225,7 @@ std::string toText(const TradesMeasurement& measurement) {
     }
     text += '\n';
   }
-  return tr("{}* recommended: the cheapest that is good enough\n", text);
+  return text + tr("* recommended: the cheapest that is good enough\n");
 }
 
 }  // namespace trephine

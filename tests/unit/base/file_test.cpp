@@ -151,7 +151,7 @@ TEST(ReplaceFile, KeepsTheOldFileAndTheWritersReasonWhenWritingFails) {
   ASSERT_TRUE(writeTextFile(file, "old"));
   const Status status = replaceFile(file, [](const fs::path& temporary) -> Status {
     std::ofstream(temporary) << "half";
-    return Error{"BROKEN", "The writer broke", "", ""};
+    return Error{Code("BROKEN"), "The writer broke", "", ""};
   });
   ASSERT_FALSE(status);
   EXPECT_EQ(status.error().code.str(), "BROKEN");

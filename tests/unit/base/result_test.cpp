@@ -16,13 +16,13 @@ TEST(Error, SaysWhatWhereAndWhatToDoInOneSentence) {
 }
 
 TEST(Error, LeavesOutThePartsThatItDoesNotHave) {
-  EXPECT_EQ((Error{"X", "It failed", "", ""}).sentence(), "It failed.");
-  EXPECT_EQ((Error{"X", "It failed", "here", ""}).sentence(), "It failed (here).");
-  EXPECT_EQ((Error{"X", "It failed", "", "Try again"}).sentence(), "It failed. Try again.");
+  EXPECT_EQ((Error{Code("X"), "It failed", "", ""}).sentence(), "It failed.");
+  EXPECT_EQ((Error{Code("X"), "It failed", "here", ""}).sentence(), "It failed (here).");
+  EXPECT_EQ((Error{Code("X"), "It failed", "", "Try again"}).sentence(), "It failed. Try again.");
 }
 
 TEST(Error, IsOneLineWhateverNamesItHolds) {
-  const Error error{"X", "It failed", "a\nOK: whole\u2028b\x1b[2J.h5", "Try\ragain"};
+  const Error error{Code("X"), "It failed", "a\nOK: whole\u2028b\x1b[2J.h5", "Try\ragain"};
   EXPECT_EQ(error.sentence(), "It failed (a OK: whole b [2J.h5). Try again.");
 }
 
@@ -34,7 +34,7 @@ TEST(Result, HoldsAValue) {
 }
 
 TEST(Result, HoldsAnErrorInsteadOfAValue) {
-  const Result<int> result = Error{"CODE", "what", "where", "next"};
+  const Result<int> result = Error{Code("CODE"), "what", "where", "next"};
   ASSERT_FALSE(result.ok());
   EXPECT_EQ(result.error().code.str(), "CODE");
   EXPECT_EQ(result.error().where, "where");
@@ -56,7 +56,7 @@ TEST(Result, KeepsAValueApartFromAnErrorEvenWhereTheValueIsText) {
 TEST(Status, IsSuccessUntilItIsGivenAnError) {
   Status status;
   EXPECT_TRUE(status.ok());
-  status = Error{"CODE", "what", "", ""};
+  status = Error{Code("CODE"), "what", "", ""};
   ASSERT_FALSE(status);
   EXPECT_EQ(status.error().code.str(), "CODE");
 }

@@ -13,7 +13,7 @@ Error configRefusal(const std::string& config, std::vector<std::uint32_t> arms =
   auto plugin = test::simulatedPlugin();
   if (!plugin) return {};
   auto device = Device::open(plugin, arms, config);
-  if (device) return {"OPENED", "", "", ""};
+  if (device) return {Code("OPENED"), "", "", ""};
   return device.error();
 }
 

@@ -15,7 +15,7 @@ using test::TemporaryFolder;
 
 Error refusal(const std::string& name, const std::filesystem::path& folder) {
   auto plugin = DevicePlugin::load(name, folder);
-  if (plugin) return {"LOADED", "", "", ""};
+  if (plugin) return {Code("LOADED"), "", "", ""};
   return plugin.error();
 }
 

@@ -143,7 +143,7 @@ const SeriesReport& SeriesFixture::chosen() const {
 }
 
 const Finding* SeriesFixture::find(const SeriesReport& series, const std::string& code) {
-  const auto it = std::ranges::find(series.findings, code, &Finding::code);
+  const auto it = std::ranges::find(series.findings, Code::named(code), &Finding::code);
   return it == series.findings.end() ? nullptr : &*it;
 }
 

@@ -10,6 +10,7 @@
 #include "series_fixture.h"
 #include "volume/reduce.h"
 #include "volume/volume_files.h"
+#include "volume/codes.h"
 
 namespace trephine::test {
 
@@ -216,7 +217,7 @@ Result<Volume> readAs(CtFolder& ct, const Answers& answers,
 
 const Finding* findingOf(const CtFolder& ct, const std::string& code) {
   const std::vector<Finding>& findings = ct.report().series.front().findings;
-  const auto it = std::ranges::find(findings, code, &Finding::code);
+  const auto it = std::ranges::find(findings, Code::named(code), &Finding::code);
   return it == findings.end() ? nullptr : &*it;
 }
 
@@ -260,7 +261,7 @@ TEST_F(FaceSteps, WhereTheFaceRemainsNothingIsReadAsDefaced) {
   EXPECT_EQ(findingOf(ct, "FACE_REMAINS")->severity, Severity::refusal);
 
   Answers keep = deface;
-  keep["FACE_REMAINS"] = "keep";
+  keep[code::kFaceRemains] = "keep";
   const auto kept = readAs(ct, keep);
   ASSERT_TRUE(kept.ok()) << kept.error().sentence();
   EXPECT_EQ(kept->hu, head.hu);
@@ -300,7 +301,7 @@ TEST_F(FaceSteps, ThroatAndArmsThatWouldGoAreNamedAndAskedFor) {
   EXPECT_NE(refused.error().what.find("mL of the throat"), std::string::npos);
   EXPECT_NE(refused.error().what.find("arms"), std::string::npos);
   EXPECT_NE(refused.error().what.find("bone included"), std::string::npos);
-  EXPECT_EQ(asked(ct), (Codes{code::kFace, "FACE_TAKES_MORE"}));
+  EXPECT_EQ(asked(ct), (Codes{"FACE", "FACE_TAKES_MORE"}));
 
   const auto cut = readAs(ct, {{code::kFace, "deface"}, {code::kFaceTakesMore, "accept"}});
   ASSERT_TRUE(cut.ok()) << cut.error().sentence();

@@ -487,7 +487,7 @@ TEST_F(NiftiForms, ALabelMapOfAnotherOrderOfVoxelsTakesTheFormOnTheCtAsWell) {
   writeBytes(temporary_ / "labels.nii", niftiBytes(of));
   const auto fit = importStructures(temporary_ / "labels.nii", *ct);
   ASSERT_TRUE(fit.ok()) << fit.error().sentence();
-  const auto said = std::ranges::find(fit->findings, "FORMS_DIFFER", &Finding::code);
+  const auto said = std::ranges::find(fit->findings, code::kFormsDiffer, &Finding::code);
   ASSERT_NE(said, fit->findings.end());
   EXPECT_NE(said->action.find("sform"), std::string::npos);
 }
@@ -509,7 +509,7 @@ TEST_F(NiftiForms, ALabelMapTakesTheFormThatPutsItOnTheCt) {
     const auto fit = importStructures(temporary_ / "labels.nii", *ct, request);
     ASSERT_TRUE(fit.ok()) << fit.error().sentence();
     EXPECT_FALSE(fit->resampled);
-    const auto said = std::ranges::find(fit->findings, "FORMS_DIFFER", &Finding::code);
+    const auto said = std::ranges::find(fit->findings, code::kFormsDiffer, &Finding::code);
     ASSERT_NE(said, fit->findings.end());
     EXPECT_NE(said->action.find("qform"), std::string::npos);
   }

@@ -3,6 +3,7 @@
 #include "imaging/report/provenance.h"
 #include "series_fixture.h"
 #include "volume/volume_files.h"
+#include "volume/codes.h"
 
 namespace trephine::test {
 
@@ -61,8 +62,8 @@ TEST(Provenance, IsReadBackAsItWasWritten) {
   of.lossy = true;
   of.slices_used = 120;
   of.answers = {{code::kCouch, "remove"}, {code::kFace, "deface"}};
-  of.unanswered = {"FACE"};
-  of.unused_answers = {"PHASES"};
+  of.unanswered = {code::kFace};
+  of.unused_answers = {code::kPhases};
   of.changes = {
       {code::kGantryTilt, Severity::repair, "The stack leans", {"3", "4"}, "Straightened"}};
   of.crop = VoxelBox{{1, 2, 3}, {10, 20, 30}};

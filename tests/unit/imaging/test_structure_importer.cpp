@@ -5,6 +5,7 @@
 #include "imaging/importer.h"
 #include "imaging/structure_importer.h"
 #include "support.h"
+#include "volume/codes.h"
 
 namespace trephine {
 namespace {
@@ -150,7 +151,7 @@ TEST(StructureImporter, WhereItIsNotKnownWhichCtTheCaseIsOfThatIsSaidAndThePlace
   unknown.unreadable = true;
   const auto fit = importStructures(own.seg, own.volume, of(unknown));
   ASSERT_TRUE(fit) << fit.error().sentence();
-  EXPECT_EQ(std::ranges::count(fit->findings, "SOURCE_UNCHECKED", &Finding::code), 1);
+  EXPECT_EQ(std::ranges::count(fit->findings, code::kSourceUnchecked, &Finding::code), 1);
   const Written other = write(belly(Vec3(13.0, 2.0, 31.0), 7), folder / "b");
   EXPECT_EQ(importStructures(other.seg, own.volume, of(unknown)).error().code.str(), "OTHER_FRAME");
 }
@@ -167,7 +168,7 @@ TEST(StructureImporter, NamesThatAreHiddenAreNeitherSaidNorInTheMap) {
   ASSERT_TRUE(fit) << fit.error().sentence();
   EXPECT_EQ(fit->map.structures[0].name, "label 4");
   EXPECT_EQ(toJson(*fit).dump().find("liver"), std::string::npos);
-  EXPECT_EQ(std::ranges::count(fit->findings, "RENAMED_STRUCTURE", &Finding::code), 1);
+  EXPECT_EQ(std::ranges::count(fit->findings, code::kRenamedStructure, &Finding::code), 1);
 }
 
 }  // namespace

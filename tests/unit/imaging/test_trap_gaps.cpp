@@ -99,7 +99,7 @@ TEST_F(TrapGaps, OneMissingSliceIsNamedFilledAndMarked) {
   EXPECT_TRUE(report_.provenance->unanswered.empty());
   EXPECT_TRUE(report_.provenance->unused_answers.empty());
   import({{code::kMissingSlices, "fill"}, { code::kPhases, "2" }});
-  EXPECT_EQ(report_.provenance->unused_answers, std::vector<std::string>{"PHASES"});
+  EXPECT_EQ(report_.provenance->unused_answers, std::vector<Code>{code::kPhases});
 }
 
 TEST_F(TrapGaps, AGapOfMoreSlicesThanWereScannedIsNotFilled) {
@@ -242,8 +242,8 @@ TEST_F(TrapGaps, WithoutTheFirstAndLastSliceTheRestIsSaidToBeAll) {
 TEST_F(TrapGaps, AnAnswerThatCannotBeIsRefusedAndOneThatIsNotAskedForIsNot) {
   addPatterns({100, 101.25, 102.5, 105, 106.25});
   EXPECT_EQ(refusal({{code::kMissingSlices, "guess"}}).code.str(), "BAD_CHOICE");
-  EXPECT_EQ(refusal({{"MISING_SLICES", "fill"}}).code.str(), "BAD_CHOICE");
-  EXPECT_EQ(refusal({{"missing_slices", "fill"}}).code.str(), "BAD_CHOICE");
+  EXPECT_EQ(refusal({{Code("MISING_SLICES"), "fill"}}).code.str(), "BAD_CHOICE");
+  EXPECT_EQ(refusal({{Code("missing_slices"), "fill"}}).code.str(), "BAD_CHOICE");
   EXPECT_EQ(refusal({{code::kMissingSlices, "refuse"}}).code.str(), "MISSING_SLICES");
   import({{code::kMissingSlices, "fill"}, {code::kPhases, "7"}, { code::kLossySource, "accept" }});
   EXPECT_EQ(report_.provenance->answers, (Answers{{code::kMissingSlices, "fill"}}));

@@ -105,7 +105,7 @@ TEST_F(VolumeSteps, AnUnknownChoiceAndAnUnknownOptionAreNamed) {
   ASSERT_FALSE(bad_option.ok());
   EXPECT_EQ(bad_option.error().code.str(), "BAD_CHOICE");
   EXPECT_NE(bad_option.error().next.find("fill"), std::string::npos);
-  request.answers = {{"MISSING", "fill"}};
+  request.answers = {{Code("MISSING"), "fill"}};
   EXPECT_EQ(ct.read(uid, request, Progress()).error().code.str(), "BAD_CHOICE");
 }
 

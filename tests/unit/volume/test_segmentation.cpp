@@ -249,7 +249,7 @@ TEST(Segmentation, ABadSidecarIsNamedWithItsField) {
   const auto error = [&](const std::string& text) {
     writeBytes(folder / "seg.structures.json", text);
     const auto of = readSegmentation(folder / "seg.mha");
-    return of ? Error{"none", "", "", ""} : of.error();
+    return of ? Error{Code("NONE"), "", "", ""} : of.error();
   };
   const std::string start = R"({"format": "trephine.structures", "version": 1, "structures": [)";
   EXPECT_EQ(error(start + R"({"label": 1, "name": "liver"}]})").code.str(), "none");
