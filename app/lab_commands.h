@@ -99,8 +99,8 @@ int replayCommand(const std::string& file, const std::string& case_source,
 // A row for each file as soon as it is read. 1 where one cannot be replayed.
 int recordingsCommand(const std::vector<std::string>& files, bool json, const Progress&);
 int explainCommand(const std::string& exercise, const Policy& policy, bool json, const Progress&);
-// `measure ...` is a program of its own, which this one becomes; `words` are argv from "measure" on.
-// Returns where it is not installed, and says so.
+// `measure ...` is a program of its own, which this one becomes; `words` are argv from "measure"
+// on. Returns where it is not installed, and says so.
 int startMeasurements(char** words, bool json);
 int tradesCommand(const std::string& out, bool json, const Progress&);
 

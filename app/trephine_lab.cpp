@@ -218,8 +218,9 @@ int run(int argc, char** argv) {
       "trades", "Speed against accuracy for every knob of touch, and what is recommended here"));
   trades_command->add_option("--out", out, "Folder for the tables")->required();
   // For the help: main() has started that program instead.
-  app.add_subcommand("measure", "Measurements for researchers: the program trephine-measure, of the "
-                                "package trephine-researcher");
+  app.add_subcommand("measure",
+                     "Measurements for researchers: the program trephine-measure, of the "
+                     "package trephine-researcher");
 
   if (const auto code = parsed(app, argc, argv)) return *code;
   setUpLog(json);

@@ -223,9 +223,8 @@ std::string optionOf(const FieldRow& row) {
 }
 
 std::string schemaHead() {
-  return
-      "| of | key | type | range | unit | without it | meaning "
-      "|\n|---|---|---|---|---|---|---|\n";
+  return "| of | key | type | range | unit | without it | meaning "
+         "|\n|---|---|---|---|---|---|---|\n";
 }
 
 std::string schemaLine(std::string_view of, const FieldRow& row, std::string_view type,

@@ -63,19 +63,13 @@ class StateVisitor {
   }
   template <class T>
   requires std::is_same_v<std::remove_const_t<T>, Vec3>
-  void one(T& v) {
-    (*this)(v.x, v.y, v.z);
-  }
+  void one(T& v) { (*this)(v.x, v.y, v.z); }
   template <class T>
   requires std::is_same_v<std::remove_const_t<T>, Quat>
-  void one(T& q) {
-    (*this)(q.w, q.x, q.y, q.z);
-  }
+  void one(T& q) { (*this)(q.w, q.x, q.y, q.z); }
   template <class T>
   requires std::is_same_v<std::remove_const_t<T>, Pose>
-  void one(T& pose) {
-    (*this)(pose.position, pose.orientation);
-  }
+  void one(T& pose) { (*this)(pose.position, pose.orientation); }
   template <class T, std::size_t N>
   void one(std::array<T, N>& values) {
     for (T& value : values) one(value);

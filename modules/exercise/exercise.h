@@ -110,8 +110,8 @@ Json toJson(const RecordedExercise& recorded);
 Result<RecordedExercise> parseRecordedExercise(const Json& json, const std::string& where);
 
 // As a file that readExercise() reads: everything, tissues inline and those for elsewhere beside
-// them, files named as the exercise has them: from the root, where it was read so. Neither the labels of a case nor the devices of its arms are an
-// exercise's.
+// them, files named as the exercise has them: from the root, where it was read so. Neither the
+// labels of a case nor the devices of its arms are an exercise's.
 Json exerciseFile(const Exercise& exercise);
 
 // What would be wrong with that file: an edited exercise is held to the rules of one that is read.
@@ -156,8 +156,8 @@ struct BoundedTissue {
 // Empty under another controller than `bounded`. Of arms whose dynamics are known.
 std::vector<BoundedTissue> boundedTissues(const Exercise& exercise, const Rig& rig);
 
-// What the core needs of an exercise whose maps are fixed (withFixedMaps) and whose tissues have the
-// labels of their structures (exercise_structures.h); case/placement.h does all of it. A tissue
+// What the core needs of an exercise whose maps are fixed (withFixedMaps) and whose tissues have
+// the labels of their structures (exercise_structures.h); case/placement.h does all of it. A tissue
 // without its label lies nowhere. Arms whose dynamics are not known are as the usual one.
 HapticParameters hapticParameters(const Exercise& exercise, const Rig& rig = {});
 

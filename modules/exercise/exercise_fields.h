@@ -155,8 +155,8 @@ inline constexpr FieldOf<LandmarkFrame> kOutlineFrameFields[] = {
 inline bool isRay(const Landmark& of) { return !of.is_place && !(of.bulk_radius_mm > 0.0); }
 inline bool isBulk(const Landmark& of) { return !of.is_place && of.bulk_radius_mm > 0.0; }
 inline constexpr FieldOf<Landmark> kLandmarkFields[] = {
-    {{"id", kIdLetters, Given::always, trLater("by it arms and view name the landmark"), trLater("Called"),
-      trLater("By this name arms and view have it.")},
+    {{"id", kIdLetters, Given::always, trLater("by it arms and view name the landmark"),
+      trLater("Called"), trLater("By this name arms and view have it.")},
      &Landmark::id},
     {{"tissue",
       {},
@@ -197,8 +197,8 @@ inline constexpr FieldOf<ArmDevice> kDeviceFields[] = {
 };
 inline constexpr FieldOf<ExerciseArm> kArmFields[] = {
     {{"name", kIdLetters, Given::always,
-      trLater("`left` and `right` are those that the workstation has devices for"), trLater("Called"),
-      trLater("Left and right are the hands that people have.")},
+      trLater("`left` and `right` are those that the workstation has devices for"),
+      trLater("Called"), trLater("Left and right are the hands that people have.")},
      &ExerciseArm::name},
     {{"tool",
       {},

@@ -51,7 +51,8 @@ class StiffnessByLabel {
   std::array<StiffnessOfHu, LabelRows::kMost> of_row_;
 };
 
-// For blunt tools, and for sharp ones, whose normal matters less; `trephine-measure haptics` has the errors.
+// For blunt tools, and for sharp ones, whose normal matters less; `trephine-measure haptics` has
+// the errors.
 constexpr int kBluntDirections = 48, kSharpDirections = 24;
 inline int sphereDirections(bool blunt) {
   return blunt ? kBluntDirections : kSharpDirections;

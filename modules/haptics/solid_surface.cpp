@@ -409,7 +409,8 @@ void SolidSurface::find(const Index3& voxel, const Stretch& stretch) {
     return;
   }
   Found& nearest = found_[std::size_t(cell_[cell])];
-  if (distance2 < nearest.distance2_mm2) nearest = {voxel, stretch.part, away, distance2, std::int32_t(cell)};
+  if (distance2 < nearest.distance2_mm2)
+    nearest = {voxel, stretch.part, away, distance2, std::int32_t(cell)};
 }
 
 void SolidSurface::addPiece(const TissueField& tissue, const Found& found) {

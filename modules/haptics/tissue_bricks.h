@@ -51,9 +51,9 @@ class TissueBricks {
     archive(self.count_);
     archive.within(self.next_, 0, std::int64_t(self.count_.size()));
     if constexpr (Archive::kReads) {
-      self.unknown_ = std::size_t(
-          std::count_if(self.count_.begin(), self.count_.end(),
-                        [](const Brick& brick) { return brick.tissue == kUnknown; }));
+      self.unknown_ =
+          std::size_t(std::count_if(self.count_.begin(), self.count_.end(),
+                                    [](const Brick& brick) { return brick.tissue == kUnknown; }));
     }
   }
 

@@ -24,7 +24,8 @@ struct CasePicture {
 // The volume has a voxel at least on each axis. std::bad_alloc where there is no memory.
 CasePicture casePicture(const Volume& volume, BodyRegion region);
 
-// The bytes of a PNG; none of a picture without pixels. Says in its text that it is for training, not for diagnosis or treatment planning.
+// The bytes of a PNG; none of a picture without pixels. Says in its text that it is for training,
+// not for diagnosis or treatment planning.
 std::string pngOf(const CasePicture& picture);
 
 }  // namespace trephine

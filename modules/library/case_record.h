@@ -46,7 +46,8 @@ std::vector<CaseStructure> structuresOf(const LabelMap& map);
 
 // Checks nothing: a record that is refused, or has no hash, is written and cannot be read again.
 Json toJson(const CaseRecord& record);
-// Id, folder and bytes are the library's to fill. `file` is named in errors. Errors: BAD_FIELD, a newer version among them.
+// Id, folder and bytes are the library's to fill. `file` is named in errors. Errors: BAD_FIELD, a
+// newer version among them.
 Result<CaseRecord> caseRecordFrom(const Json& json, const std::string& file);
 
 }  // namespace trephine

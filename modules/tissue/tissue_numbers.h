@@ -75,14 +75,16 @@ inline constexpr TissueNumber kTissueNumbers[] = {
     {"damping_Ns_per_m", "N\u00b7s/m", trLater("viscous law"), &SetNumbers::damping_Ns_per_m,
      &TickNumbers::damping_Ns_per_m, trLater("Damping"), 1e5, 0.1},
     {"stiffness_N_per_m", "N/m", trLater("elastic, coulomb and rupture laws"),
-     &SetNumbers::stiffness_N_per_m, &TickNumbers::stiffness_N_per_m, trLater("Stiffness"), 1e7, 10.0},
+     &SetNumbers::stiffness_N_per_m, &TickNumbers::stiffness_N_per_m, trLater("Stiffness"), 1e7,
+     10.0},
     {"friction_N", "N", trLater("coulomb law: what a tool that slides in it feels"),
      &SetNumbers::friction_N, &TickNumbers::friction_N, trLater("Friction"), 100.0, 0.05},
     {"rupture_N", "N", trLater("rupture law: the force at which a capsule gives way; at 0, none"),
      &SetNumbers::rupture_N, &TickNumbers::rupture_N, trLater("Rupture"), 100.0, 0.05},
     {"cutting_J_per_mm3", "J/mm\u00b3",
      trLater("work that removes it: its specific cutting energy"), &SetNumbers::cutting_J_per_mm3,
-     &TickNumbers::cutting_J_per_mm3, trLater("Cutting"), 10'000.0, 0.001, 4, "mJ/mm\u00b3", 1000.0},
+     &TickNumbers::cutting_J_per_mm3, trLater("Cutting"), 10'000.0, 0.001, 4, "mJ/mm\u00b3",
+     1000.0},
 };
 static_assert(sizeof(TickNumbers) == sizeof(double) * std::size(kTissueNumbers),
               "each number has one row");

@@ -50,7 +50,7 @@ Status record(const fs::path& exercise_file, const fs::path& file) {
   const Result<ReplayResult> result = replay(**recording, smallHead());
   if (!result) return result.error();
   if (result->identical) return {};
-  return Error{"DIFFERS", "A recording does not replay", exercise_file.string(), ""};
+  return Error{Code("DIFFERS"), "A recording does not replay", exercise_file.string(), ""};
 }
 
 // A recording whose ticks are a link to a pipe, and one whose events lie in another file: refused,
@@ -64,7 +64,7 @@ Status writeForeign(const fs::path& folder, const fs::path& recording, const std
     put(file);
     H5Fclose(file);
     if (SessionReader::open(foreign))
-      return Error{"TAKEN", "A foreign recording is taken", kind, ""};
+      return Error{Code("TAKEN"), "A foreign recording is taken", kind, ""};
     const Status written = writeSeed(folder, kRecording, kind + "-" + name, foreign);
     fs::remove(foreign);
     return written ? Error{} : written.error();

@@ -53,7 +53,7 @@ Result<Picture> drawnVolume(const GoldenLine& line, const GoldenCase& shown, Vol
   TissueLooks looks = shown.exercise.view.looks;
   if (line.preset) {
     const auto preset = presetLooks(shown.exercise.tissues, *line.preset);
-    if (!preset) return Error{"NO_PRESET", "The scene has no such preset", line.name, ""};
+    if (!preset) return Error{Code("NO_PRESET"), "The scene has no such preset", line.name, ""};
     looks = *preset;
   }
   renderer.setTissues(shown.exercise.tissues, looks);

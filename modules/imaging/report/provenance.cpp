@@ -1,8 +1,8 @@
 #include "imaging/report/provenance.h"
 
+#include "base/codes.h"
 #include "base/file.h"
 #include "base/tr.h"
-#include "base/codes.h"
 
 namespace trephine {
 

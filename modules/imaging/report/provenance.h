@@ -1,7 +1,7 @@
 // What became of a source on its way to a volume, as JSON: in the import's answer, and in a file
 // beside a volume that is written. It names no patient, path or UID, and nothing that stands for
-// one: source_ids are not in it (the library keeps them by a key). Nothing is filtered here: whoever
-// fills a Provenance keeps names, paths and UIDs out of its texts.
+// one: source_ids are not in it (the library keeps them by a key). Nothing is filtered here:
+// whoever fills a Provenance keeps names, paths and UIDs out of its texts.
 #pragma once
 
 #include <filesystem>
@@ -14,8 +14,8 @@ namespace trephine {
 
 Json toJson(const Provenance& provenance);
 
-// The same back, without source_ids; `file` is named in errors. Errors: BAD_FIELD, OLDER_VERSION (source_ids are in
-// it).
+// The same back, without source_ids; `file` is named in errors. Errors: BAD_FIELD, OLDER_VERSION
+// (source_ids are in it).
 Result<Provenance> provenanceFrom(const Json& json, const std::string& file);
 
 // "head.nii.gz.provenance.json" for "head.nii.gz".

@@ -35,7 +35,8 @@ const std::vector<NamedKind>& kinds() {
       {{"tumour", "tumor", "lesion", "metastasis"}, {trLater("a tumour"), -50, 300}},
       {{"muscle", "autochthon", "iliopsoas", "gluteus", "heart", "myocardium"},
        {trLater("muscle"), -50, 300}},
-      {{"vessel", "vessels", "aorta", "vein", "artery", "cava", "portal"}, {trLater("a vessel"), -10, 700}},
+      {{"vessel", "vessels", "aorta", "vein", "artery", "cava", "portal"},
+       {trLater("a vessel"), -10, 700}},
       {{"brain", "cerebellum", "ventricle", "ventricles"}, {trLater("brain"), -10, 120}},
       {{"bladder", "gallbladder"}, {trLater("a bladder"), -50, 700}},
       {{"skin", "scalp", "capsule"}, {trLater("skin or a capsule"), -300, 300}}};

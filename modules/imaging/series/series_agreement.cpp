@@ -141,7 +141,8 @@ void checkAcquisition(const Headers& used, const Answers& answers, Findings& fin
       most = std::max(most.value_or(*(header->*value)), *(header->*value));
     }
     if (!least || *most - *least <= tolerance * std::max(std::abs(*least), std::abs(*most))) return;
-    differing.push_back(tr("{} ({} to {} {})", tr(name), fixedText(*least, 2), fixedText(*most, 2), unit));
+    differing.push_back(
+        tr("{} ({} to {} {})", tr(name), fixedText(*least, 2), fixedText(*most, 2), unit));
     unlikeMost([&](const DicomHeader& h) { return fixedText((h.*value).value_or(0.0), 3); });
   };
   words(trLater("convolution kernel"), true, [](const DicomHeader& h) { return h.kernel; });

@@ -320,14 +320,14 @@ Result<DeviceTrial> trialOf(const TrialOptions& options, const fs::path& out,
   constexpr double kLongest_s = 60.0;
   const fs::path answer = out / kTrialAnswer, said_file = out / "trial.txt";
   fs::remove(answer, ec);
-  const Result<ChildRun> run = runChild(
-      {{measureProgram().string(), "devices", "--json", "--bench", options.bench.string(),
-        "--out", out.string(), "--one", options.unplug ? "unplugged" : "blocked", "--wait",
-        plainNumber(options.wait_s), "--recording", recording.string()},
-       said_file,
-       out,
-       kLongest_s},
-      progress);
+  const Result<ChildRun> run =
+      runChild({{measureProgram().string(), "devices", "--json", "--bench", options.bench.string(),
+                 "--out", out.string(), "--one", options.unplug ? "unplugged" : "blocked", "--wait",
+                 plainNumber(options.wait_s), "--recording", recording.string()},
+                said_file,
+                out,
+                kLongest_s},
+               progress);
   if (!run) return run.error();
   Result<Json> json = readJsonFile(answer);
   const Error ended{Code(), "it ended with code " + std::to_string(run->exit_code), "", ""};

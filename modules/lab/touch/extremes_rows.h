@@ -1,5 +1,5 @@
-// The rows of `trephine-measure extremes` that run in extremes_rig.h: what they share, and their groups,
-// each a file with its functions beside its table.
+// The rows of `trephine-measure extremes` that run in extremes_rig.h: what they share, and their
+// groups, each a file with its functions beside its table.
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,6 @@
-// Rows of `trephine-measure extremes` on touch that holds: a tool that cannot cut stays out of bone, rests,
-// keeps its stiffness and gets its force back. Real tools of the shipped exercises on TouchRig.
+// Rows of `trephine-measure extremes` on touch that holds: a tool that cannot cut stays out of
+// bone, rests, keeps its stiffness and gets its force back. Real tools of the shipped exercises on
+// TouchRig.
 #pragma once
 
 #include <functional>

@@ -61,8 +61,8 @@ std::vector<CommissionCheck> judgedArms(const std::vector<ArmAnswered>& arms) {
     const std::string name = (i == 0 ? "" : "; ") + std::to_string(i + 1) + ", " + arm.model + ": ";
     const bool done = arm.phase == MotorEncoderCheck::Phase::done;
     const std::string why = arm.phase == MotorEncoderCheck::Phase::untouched ? tr("nobody held it")
-                      : done ? tr("not pushed, as its samples scatter, or it states no mass")
-                             : tr("it was let go of, moved too fast, or went away");
+                            : done ? tr("not pushed, as its samples scatter, or it states no mass")
+                                   : tr("it was let go of, moved too fast, or went away");
     all_heard = all_heard && done;
     all_pushed = all_pushed && done && arm.pushed;
     scatter += name + (done ? formatted("%.3f mm", 1e3 * arm.noise_m) : why);

@@ -43,15 +43,15 @@ std::string machineName() {
   utsname system{};
   ::uname(&system);
   const std::string release = system.release;
-  return std::to_string(std::thread::hardware_concurrency()) + " processors, " + system.sysname + " " +
-         release.substr(0, release.find('-')) + (::geteuid() == 0 ? ", as an administrator" : "");
+  return std::to_string(std::thread::hardware_concurrency()) + " processors, " + system.sysname +
+         " " + release.substr(0, release.find('-')) +
+         (::geteuid() == 0 ? ", as an administrator" : "");
 }
 
 // No limit holds root: what it has says nothing of those who practise.
 std::string rootsOwn() {
-  return ::geteuid() == 0
-             ? tr("an administrator always has it: commission as one who practises")
-             : "";
+  return ::geteuid() == 0 ? tr("an administrator always has it: commission as one who practises")
+                          : "";
 }
 
 class Run {

@@ -1,5 +1,5 @@
-// What a setting of the ray caster costs, and what it gets wrong: a plain one against a plain picture
-// of 0.25 voxels, so that the pictures do not show what the truths bring.
+// What a setting of the ray caster costs, and what it gets wrong: a plain one against a plain
+// picture of 0.25 voxels, so that the pictures do not show what the truths bring.
 #pragma once
 
 #include <array>

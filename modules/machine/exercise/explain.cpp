@@ -287,8 +287,7 @@ Result<Json> explainExercise(Exercise exercise, const std::vector<RecommendedSet
   }
 
   const double removal_ns = progress.cancelled() ? 0.0 : removalNs();
-  cost.push_back(
-      {{"part", "removal of one voxel"}, {"arm", nullptr}, {"ns_per_tick", removal_ns}});
+  cost.push_back({{"part", "removal of one voxel"}, {"arm", nullptr}, {"ns_per_tick", removal_ns}});
   HapticCore core(parameters, *grid.takeWriter());
   TickInput input;
   TickRecord record;
@@ -316,24 +315,23 @@ Result<Json> explainExercise(Exercise exercise, const std::vector<RecommendedSet
   }
   const double journal_mb = double(core.journal().ramBytes()) / (1024.0 * 1024.0);
   const bool named_case = phantomNamed(exercise.case_source).has_value();
-  Json answer{
-      {"scene", exercise.name},
-      {"goal", exercise.card ? Json(exercise.card->en.goal) : Json(nullptr)},
-      {"case", named_case ? Json(exercise.case_source) : Json(nullptr)},
-      {"rate_hz", exercise.rate_hz},
-      {"controller", controllerName(exercise.controller)},
-      {"laws", laws},
-      {"force_at", nameOf(kForceAtNames, exercise.force_at)},
-      {"removal", nameOf(kRemovalNames, exercise.removal)},
-      {"barrier", stopAtSolid(exercise.laws) ? "solid tissue stops a tool until it is cut"
-                                             : "no barrier: a tool is where its arm is"},
-      {"tissues", tissues},
-      {"arms", arms},
-      {"warnings", *warnings},
-      {"bounded", bounded},
-      {"journal_mb", journal_mb},
-      {"cost", cost},
-      {"tick_ns", tick_ns}};
+  Json answer{{"scene", exercise.name},
+              {"goal", exercise.card ? Json(exercise.card->en.goal) : Json(nullptr)},
+              {"case", named_case ? Json(exercise.case_source) : Json(nullptr)},
+              {"rate_hz", exercise.rate_hz},
+              {"controller", controllerName(exercise.controller)},
+              {"laws", laws},
+              {"force_at", nameOf(kForceAtNames, exercise.force_at)},
+              {"removal", nameOf(kRemovalNames, exercise.removal)},
+              {"barrier", stopAtSolid(exercise.laws) ? "solid tissue stops a tool until it is cut"
+                                                     : "no barrier: a tool is where its arm is"},
+              {"tissues", tissues},
+              {"arms", arms},
+              {"warnings", *warnings},
+              {"bounded", bounded},
+              {"journal_mb", journal_mb},
+              {"cost", cost},
+              {"tick_ns", tick_ns}};
   const Json settings = settingsOf(exercise, recommended);
   if (!settings.is_null()) answer["settings"] = settings;
   return answer;

@@ -145,7 +145,7 @@ TradeRows tradeForceAt(const TradesOptions& options, const Progress& progress) {
     row.cost_unit = "ns per tick without removal";
     row.reference =
         "RMS force of the line integral of eq. 1 along a blade of 16 mm, half in "
-           "tissue, that turns at 2 rad/s";
+        "tissue, that turns at 2 rad/s";
     rows.push_back(row);
   }
   return rows;

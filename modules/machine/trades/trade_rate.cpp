@@ -131,7 +131,7 @@ TradeRows tradeRate(const TradesOptions& options, const Progress& progress) {
     row.cost_unit = "% of a CPU, one arm";
     row.reference =
         "RMS sent force at 80 kHz with a perfect encoder: a simulated arm of 45 g in a "
-           "light hand presses into bone and slides, 5 strokes (the arms measured: 0.055 mm)";
+        "light hand presses into bone and slides, 5 strokes (the arms measured: 0.055 mm)";
     row.extra = {
         {"b_max_Ns_per_m", most.b_max},
         {"k_max_N_per_m", most.k_max},

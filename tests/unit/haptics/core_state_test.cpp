@@ -57,10 +57,17 @@ struct Tick {
 };
 
 std::vector<std::uint64_t> afterOf(HapticCore& core) {
-  return {core.journal().seconds(), core.journalState(),       core.nonFinite(),
-          core.paused(),            std::uint64_t(core.controller()), core.acceptsCommands(),
-          core.unknownBricks(),     core.toolInHand(0),        core.toolInHand(1),
-          core.toolWanted(0),       core.toolWanted(1)};
+  return {core.journal().seconds(),
+          core.journalState(),
+          core.nonFinite(),
+          core.paused(),
+          std::uint64_t(core.controller()),
+          core.acceptsCommands(),
+          core.unknownBricks(),
+          core.toolInHand(0),
+          core.toolInHand(1),
+          core.toolWanted(0),
+          core.toolWanted(1)};
 }
 
 // A core in the middle of its run: all that another needs to go on as it does.
@@ -178,11 +185,10 @@ struct Script {
     p.laws.clear();
     for (const auto& [name, law] : kLawNames) p.laws.push_back(law);
     if (random.below(4) == 0) std::erase(p.laws, LawKind::elastic);
-    const std::vector<Tool> all{tool(ToolKind::needle, 40.0, 0.9, 0.0),
-                                tool(ToolKind::blade, 16.0, 0.6, 6.0),
-                                tool(ToolKind::blade, 16.0, 0.6, 0.0),
-                                tool(ToolKind::burr, 30.0, 3.0, 4.0),
-                                tool(ToolKind::burr, 20.0, 2.0, 4.0, BurrShape::cylinder)};
+    const std::vector<Tool> all{
+        tool(ToolKind::needle, 40.0, 0.9, 0.0), tool(ToolKind::blade, 16.0, 0.6, 6.0),
+        tool(ToolKind::blade, 16.0, 0.6, 0.0), tool(ToolKind::burr, 30.0, 3.0, 4.0),
+        tool(ToolKind::burr, 20.0, 2.0, 4.0, BurrShape::cylinder)};
     p.arms.clear();
     for (int i = 0; i < 2; ++i) {
       ArmParameters arm{all[std::size_t(random.below(5))], WorkspaceMap{}, 3.3, ArmDynamics{}};
@@ -264,22 +270,40 @@ struct Script {
       c.arm = random.below(2);
     }
     switch (random.below(20)) {
-      case 0: case 1: case 2: return add(CommandKind::undo);
-      case 3: case 4: return add(CommandKind::redo);
-      case 5: return add(CommandKind::rewind, random.below(int(core.journal().seconds()) + 1));
-      case 6: return random.below(3) ? void() : add(CommandKind::reset);
-      case 7: return add(CommandKind::pause);
-      case 8: return add(CommandKind::controller, random.below(3));
-      case 9: return add(CommandKind::controller, int(ControllerKind::bounded));
+      case 0:
+      case 1:
+      case 2:
+        return add(CommandKind::undo);
+      case 3:
+      case 4:
+        return add(CommandKind::redo);
+      case 5:
+        return add(CommandKind::rewind, random.below(int(core.journal().seconds()) + 1));
+      case 6:
+        return random.below(3) ? void() : add(CommandKind::reset);
+      case 7:
+        return add(CommandKind::pause);
+      case 8:
+        return add(CommandKind::controller, random.below(3));
+      case 9:
+        return add(CommandKind::controller, int(ControllerKind::bounded));
       case 10:
-        c.tissues = std::array{&softer, &other, &uncut, &parameters.tissues}[
-            std::size_t(random.below(4))];
+        c.tissues =
+            std::array{&softer, &other, &uncut, &parameters.tissues}[std::size_t(random.below(4))];
         return add(CommandKind::tissues);
-      case 11: return add(CommandKind::clear_faults);
-      case 12: case 13: case 14: return add(CommandKind::clutch_on);
-      case 15: case 16: return add(CommandKind::clutch_off, random.below(2));
-      case 17: return add(CommandKind::recentre, random.below(2));
-      default: return add(CommandKind::tool, random.below(3));
+      case 11:
+        return add(CommandKind::clear_faults);
+      case 12:
+      case 13:
+      case 14:
+        return add(CommandKind::clutch_on);
+      case 15:
+      case 16:
+        return add(CommandKind::clutch_off, random.below(2));
+      case 17:
+        return add(CommandKind::recentre, random.below(2));
+      default:
+        return add(CommandKind::tool, random.below(3));
     }
   }
 
@@ -302,8 +326,8 @@ std::string differsFrom(const Script& run, Core& at, std::size_t first, std::siz
   for (std::size_t n = first; n < end; ++n) {
     const Tick& then = run.ticks[n];
     at.core.tick(then.input, then.commands.data(), then.commands.size(), record);
-    const std::string where = " in tick " + std::to_string(n) + ", loaded before " +
-                              std::to_string(first);
+    const std::string where =
+        " in tick " + std::to_string(n) + ", loaded before " + std::to_string(first);
     for (std::size_t i = 0; i < 2; ++i) {
       if (!sameBits(record.arms[i], then.record.arms[i])) return "arm " + std::to_string(i) + where;
     }

@@ -4,8 +4,8 @@
 #include <cstdlib>
 #include <cstring>
 
-#include "imaging/files/detail/archive.h"
 #include "imaging/codes.h"
+#include "imaging/files/detail/archive.h"
 #include "series_fixture.h"
 #include "volume/volume_files.h"
 

@@ -8,9 +8,9 @@
 #include "imaging/steps/face_check.h"
 #include "posed.h"
 #include "series_fixture.h"
+#include "volume/codes.h"
 #include "volume/reduce.h"
 #include "volume/volume_files.h"
-#include "volume/codes.h"
 
 namespace trephine::test {
 

@@ -6,9 +6,9 @@
 #include <glm/gtc/quaternion.hpp>
 #include <random>
 
+#include "imaging/codes.h"
 #include "imaging/common/detail/hu_sanity_check.h"
 #include "imaging/series/detail/series_geometry.h"
-#include "imaging/codes.h"
 #include "imaging/structure_importer.h"
 #include "series_fixture.h"
 #include "volume/codes.h"

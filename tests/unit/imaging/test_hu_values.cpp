@@ -2,8 +2,8 @@
 #include <limits>
 #include <type_traits>
 
-#include "imaging/common/detail/hu_sanity_check.h"
 #include "imaging/codes.h"
+#include "imaging/common/detail/hu_sanity_check.h"
 #include "painted.h"
 #include "series_fixture.h"
 

@@ -42,7 +42,7 @@ class ImageKinds : public SeriesFixture {
   // Refused unasked; the finding that is left where it is agreed to.
   Finding expectAsked(const char* code) {
     expectRefused(code);
-    import({{Code::named(code), "accept"}});
+    import({{ Code::named(code), "accept" }});
     EXPECT_EQ(chosen().verdict, Verdict::repaired) << codes(chosen());
     const Finding* finding = find(chosen(), code);
     EXPECT_NE(finding, nullptr);

@@ -36,7 +36,7 @@ class OneScan : public SeriesFixture {
   }
   void expectAsked(const char* code, const char* answer) {
     expectRefused(code);
-    import({{Code::named(code), answer}});
+    import({{ Code::named(code), answer }});
     EXPECT_EQ(chosen().verdict, Verdict::repaired);
     EXPECT_NE(find(chosen(), code), nullptr);
   }

@@ -2,8 +2,8 @@
 #include "imaging/common/source_identity.h"
 #include "imaging/report/provenance.h"
 #include "series_fixture.h"
-#include "volume/volume_files.h"
 #include "volume/codes.h"
+#include "volume/volume_files.h"
 
 namespace trephine::test {
 

@@ -10,7 +10,7 @@
 namespace trephine::test {
 
 inline TradeRow row(const char* knob, const char* setting, double error, double cost,
-             std::vector<std::pair<std::string, double>> extra = {}) {
+                    std::vector<std::pair<std::string, double>> extra = {}) {
   TradeRow r;
   r.knob = knob;
   r.setting = setting;

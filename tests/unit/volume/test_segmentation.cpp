@@ -252,7 +252,7 @@ TEST(Segmentation, ABadSidecarIsNamedWithItsField) {
     return of ? Error{Code("NONE"), "", "", ""} : of.error();
   };
   const std::string start = R"({"format": "trephine.structures", "version": 1, "structures": [)";
-  EXPECT_EQ(error(start + R"({"label": 1, "name": "liver"}]})").code.str(), "none");
+  EXPECT_EQ(error(start + R"({"label": 1, "name": "liver"}]})").code.str(), "NONE");
   EXPECT_EQ(error(start + R"({"label": 0, "name": "liver"}]})").code.str(), "BAD_FIELD");
   EXPECT_NE(error(start + R"({"label": 1, "name": "  "}]})").what.find("blank"), std::string::npos);
   EXPECT_EQ(error(start + R"({"label": 1, "name": "a"}, {"label": 1, "name": "b"}]})").code.str(),

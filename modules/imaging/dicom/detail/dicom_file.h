@@ -12,8 +12,8 @@
 #include "base/math.h"
 #include "base/progress.h"
 #include "base/result.h"
-#include "imaging/common/source_identity.h"
 #include "imaging/common/detail/stored_values.h"
+#include "imaging/common/source_identity.h"
 
 namespace trephine {
 
@@ -65,8 +65,8 @@ struct DicomHeader {
   std::string rescale_type;
   std::vector<std::string> image_type;
   std::string instance_number;
-  // Name, ID, birth date and sex of whom it is of, each equal where they are equal, empty where they
-  // are; nothing else can be told from them. Compared, never written anywhere.
+  // Name, ID, birth date and sex of whom it is of, each equal where they are equal, empty where
+  // they are; nothing else can be told from them. Compared, never written anywhere.
   std::array<std::string, 4> patient;
   std::string acquired;  // the day, as DICOM writes one; empty where absent
   // Of an enhanced image in several files: what all of them share, its number from 1 on, and how
@@ -77,8 +77,8 @@ struct DicomHeader {
   std::string patient_name, study_text;
   // Its texts, without folders and files; shared by the frames of a file.
   std::shared_ptr<const SourceIdentity> identity;
-  // Set by grouping: of a series whose slices differ in what may be its writer's doing, the part that
-  // it belongs to; 0 is the largest.
+  // Set by grouping: of a series whose slices differ in what may be its writer's doing, the part
+  // that it belongs to; 0 is the largest.
   int part = 0;
   // What was made of what was scanned, as the standard's terms say; empty where absent.
   std::string volumetric, technique, presentation;
@@ -88,7 +88,7 @@ struct DicomHeader {
     std::optional<double> slope, intercept;
   };
   std::vector<ValueMap> value_maps;  // real-world values, beside slope and intercept
-  std::string kernel;  // of the reconstruction, one line; empty where absent
+  std::string kernel;                // of the reconstruction, one line; empty where absent
   // Manufacturer, model and serial number; "HFS" and the like; the contrast agent.
   std::string scanner, patient_position, contrast;
   // What the header says beside positions; none where absent or zero.

@@ -12,9 +12,10 @@
 namespace trephine {
 
 struct Series {
-  SeriesReport report;              // of the last assessment; grouping's own findings come first
-  std::size_t findings_kept = 0;    // how many those are
-  std::vector<std::string> parted_by;  // what its parts (DicomHeader::part) differ in; empty: it is one
+  SeriesReport report;            // of the last assessment; grouping's own findings come first
+  std::size_t findings_kept = 0;  // how many those are
+  std::vector<std::string>
+      parted_by;  // what its parts (DicomHeader::part) differ in; empty: it is one
   std::vector<DicomHeader> slices;  // in increasing place along the stack's k axis
 };
 

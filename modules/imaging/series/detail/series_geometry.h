@@ -42,8 +42,8 @@ struct Stack {
   std::vector<std::array<double, 2>> shifts;
   std::vector<SliceMixture> slices;  // of the volume
   double tilt_deg = 0.0;             // between the line of positions and k
-  // NOT_ORTHONORMAL, ONE_LOCATION, MISSING_SLICES, UNEVEN_SPACING, RESAMPLED_SPACING, ROUNDED_POSITIONS,
-  // GANTRY_TILT, SHIFTED_SLICES
+  // NOT_ORTHONORMAL, ONE_LOCATION, MISSING_SLICES, UNEVEN_SPACING, RESAMPLED_SPACING,
+  // ROUNDED_POSITIONS, GANTRY_TILT, SHIFTED_SLICES
   std::vector<Finding> findings;
   std::vector<Choice> choices;
 
