@@ -42,8 +42,12 @@ Error stillChanging() {
 }  // namespace
 
 CasesWorkspace::CasesWorkspace(AppContext& bench)
-    : Workspace(&bench), app_(bench), workstation_(bench.workstation()) {
-  QWidget& window = *bench.window();
+    : Workspace(&bench),
+      app_(bench),
+      workstation_(bench.workstation()),
+      messages_(bench.messages()),
+      guards_(bench.guards()) {
+  QWidget& window = *messages_.window();
   open_ = makeAction(window, Symbol::open, "open", tr("Open folder\u2026"), QKeySequence::Open,
                      tr("Open a folder of CT"));
   open_file_ = makeAction(window, Symbol::open, "openFile", tr("Open file\u2026"), {},
@@ -103,15 +107,15 @@ void CasesWorkspace::connectParts() {
   connect(import_, &ImportPage::pathDropped, this,
           [this](const QString& path) { open(toPath(path)); });
   connect(import_, &ImportPage::reportWanted, this, [this] {
-    QFileDialog* dialog = app_.saveDialog(tr("Save report"), "import-report.pdf",
-                                          tr("PDF (*.pdf);;Web page (*.html *.htm)"));
+    QFileDialog* dialog = messages_.saveDialog(tr("Save report"), "import-report.pdf",
+                                               tr("PDF (*.pdf);;Web page (*.html *.htm)"));
     connect(dialog, &QFileDialog::fileSelected, this, &CasesWorkspace::saveReport);
     dialog->open();
   });
   connect(import_, &ImportPage::caseRead, this, &CasesWorkspace::caseRead);
   connect(&workstation_.import(), &ImportTask::scanned, this,
           [this] { page_->setSeriesAtHand(true); });
-  connect(&app_, &AppContext::said, import_, &ImportPage::say);
+  connect(&messages_, &Messages::said, import_, &ImportPage::say);
 
   connect(&workstation_, &Workstation::caseOpened, this, [this] {
     open_deleted_ = false;
@@ -126,7 +130,7 @@ void CasesWorkspace::connectParts() {
     write(settings::kRecentCases, recent.mid(0, kMostRecent));
   });
   // Another program, or a person at the folders, has changed what is there.
-  connect(&app_, &AppContext::failed, this, [this](const Error& error) {
+  connect(&messages_, &Messages::failed, this, [this](const Error& error) {
     if (error.code == code::kNoSuchCase) list();
   });
   connect(&workstation_, &Workstation::structuresChanged, this, &CasesWorkspace::showCase);
@@ -134,7 +138,7 @@ void CasesWorkspace::connectParts() {
 }
 
 void CasesWorkspace::askForFolder() {
-  QFileDialog* dialog = app_.fileDialog("folderDialog", tr("Open a folder of CT"));
+  QFileDialog* dialog = messages_.fileDialog("folderDialog", tr("Open a folder of CT"));
   dialog->setFileMode(QFileDialog::Directory);
   dialog->setOption(QFileDialog::ShowDirsOnly);
   connect(dialog, &QFileDialog::fileSelected, this,
@@ -143,9 +147,9 @@ void CasesWorkspace::askForFolder() {
 }
 
 void CasesWorkspace::askForFile() {
-  QFileDialog* dialog =
-      app_.fileDialog("fileDialog", tr("Open a file of CT"),
-                      tr("Any file (*);;Volumes (*.nii *.nii.gz *.nrrd *.nhdr *.mha *.mhd *.raw)"));
+  QFileDialog* dialog = messages_.fileDialog(
+      "fileDialog", tr("Open a file of CT"),
+      tr("Any file (*);;Volumes (*.nii *.nii.gz *.nrrd *.nhdr *.mha *.mhd *.raw)"));
   connect(dialog, &QFileDialog::fileSelected, this,
           [this](const QString& file) { open(toPath(file)); });
   dialog->open();
@@ -153,7 +157,7 @@ void CasesWorkspace::askForFile() {
 
 void CasesWorkspace::askForExercise() {
   QFileDialog* dialog =
-      app_.fileDialog("sceneDialog", tr("Open an exercise"), tr("Exercise (*.json)"));
+      messages_.fileDialog("sceneDialog", tr("Open an exercise"), tr("Exercise (*.json)"));
   connect(dialog, &QFileDialog::fileSelected, this,
           [this](const QString& file) { open(toPath(file)); });
   dialog->open();
@@ -165,9 +169,7 @@ void CasesWorkspace::open(const std::filesystem::path& path) {
     workstation_.openPath(path);
   };
   if (!Workstation::isExercise(path)) return go_on();
-  app_.unlessLost({AppContext::UnsavedWork::structures, AppContext::UnsavedWork::cuts,
-                   AppContext::UnsavedWork::tissues},
-                  go_on);
+  guards_.unlessLost({UnsavedWork::structures, UnsavedWork::cuts, UnsavedWork::tissues}, go_on);
 }
 
 // --- The library ---
@@ -215,20 +217,19 @@ void CasesWorkspace::openEntry(const CaseEntry& entry, Place then) {
       go_on();
     };
   };
-  std::vector<AppContext::UnsavedWork> losses{AppContext::UnsavedWork::structures,
-                                              AppContext::UnsavedWork::cuts};
+  std::vector<UnsavedWork> losses{UnsavedWork::structures, UnsavedWork::cuts};
   const std::string anatomy = entry.built_in ? entry.id : exerciseAnatomy(entry.record.region);
   if (anatomy.empty() || !workstation_.exerciseFits(anatomy))
-    losses.push_back(AppContext::UnsavedWork::tissues);
+    losses.push_back(UnsavedWork::tissues);
   if (entry.built_in) {
-    return app_.unlessLost(losses, begin([this, name = entry.id] {
-                             app_.setCaseSource({});
-                             workstation_.openPhantom(name);
-                           }));
+    return guards_.unlessLost(losses, begin([this, name = entry.id] {
+                                guards_.setCaseSource({});
+                                workstation_.openPhantom(name);
+                              }));
   }
-  app_.unlessLost(
+  guards_.unlessLost(
       losses, begin([this, id = entry.id, folder = entry.record.folder] {
-        app_.setCaseSource(folder);
+        guards_.setCaseSource(folder);
         workstation_.openStored([library = app_.library(), id](const Progress& progress) {
           return storedCase(*library, id, progress);
         });
@@ -274,7 +275,7 @@ void CasesWorkspace::saved(const SavedCase& saved) {
           .arg(name);
   page_->sayInStrip(words);
   page_->selectOnceThere(saved.record.id);
-  app_.say(words);
+  messages_.say(words);
   emit caseSaved(name);
 }
 
@@ -284,7 +285,7 @@ void CasesWorkspace::rename(const CaseEntry& entry, const QString& name) {
                      to = name.toStdString()](const Progress&) { return library->rename(id, to); },
                     [this, entry, name](Result<CaseRecord> renamed) {
                       if (!renamed) {
-                        QMessageBox* why = showError(app_.window(), renamed.error());
+                        QMessageBox* why = showError(messages_.window(), renamed.error());
                         connect(why, &QMessageBox::finished, page_,
                                 [this, entry, name] { page_->askForName(entry, name); });
                         return;
@@ -296,9 +297,9 @@ void CasesWorkspace::rename(const CaseEntry& entry, const QString& name) {
                         showCase();
                       }
                       list();
-                      app_.say(tr("It is called \"%1\" now.").arg(toQt(renamed->name)));
+                      messages_.say(tr("It is called \"%1\" now.").arg(toQt(renamed->name)));
                     });
-  if (!begun) app_.report(stillChanging());
+  if (!begun) messages_.report(stillChanging());
 }
 
 void CasesWorkspace::askToDelete(const CaseEntry& entry) {
@@ -313,7 +314,7 @@ void CasesWorkspace::askToDelete(const CaseEntry& entry) {
                                        : ' ' + tr("Exercises that were made on it: %1; they have "
                                                   "no case then.")
                                                    .arg(made_on_it);
-  ask(app_.window(), "deleteQuestion",
+  ask(messages_.window(), "deleteQuestion",
       tr("Delete \"%1\"?").arg(toQt(entry.record.name.empty() ? entry.id : entry.record.name)),
       (!page_->allRecordingsRead()
            ? tr("Its volume, structures and report are removed from this workstation for good. "
@@ -330,7 +331,7 @@ void CasesWorkspace::askToDelete(const CaseEntry& entry) {
             changing_.run([library = app_.library(),
                            id = entry.id](const Progress&) { return library->remove(id); },
                           [this, entry](Status removed) {
-                            if (!removed) app_.report(removed.error());
+                            if (!removed) messages_.report(removed.error());
                             const Case* open = workstation_.currentCase();
                             if (removed && open && open->stored == entry.id) {
                               workstation_.setStored({});
@@ -342,7 +343,7 @@ void CasesWorkspace::askToDelete(const CaseEntry& entry) {
                             list();
                             showCase();
                           });
-        if (!begun) app_.report(stillChanging());
+        if (!begun) messages_.report(stillChanging());
       });
 }
 
@@ -351,11 +352,11 @@ void CasesWorkspace::showReport(const CaseEntry& entry) {
   const Result<std::string> page =
       readWholeFile(entry.record.folder / case_folders::kReportPage, kMostBytes);
   if (!page) {
-    return app_.report({page.error().code, "The case's report cannot be read",
-                        (entry.record.folder / case_folders::kReportPage).string(),
-                        "The case can be used without it"});
+    return messages_.report({page.error().code, "The case's report cannot be read",
+                             (entry.record.folder / case_folders::kReportPage).string(),
+                             "The case can be used without it"});
   }
-  auto* dialog = new QDialog(app_.window());
+  auto* dialog = new QDialog(messages_.window());
   dialog->setObjectName("reportDialog");
   dialog->setAttribute(Qt::WA_DeleteOnClose);
   dialog->setWindowTitle(tr("Import report of \"%1\"").arg(toQt(entry.record.name)));
@@ -377,13 +378,12 @@ void CasesWorkspace::caseRead(Case read, const std::filesystem::path& labels) {
   to_save.report = workstation_.import().report();
   to_save.source = workstation_.import().identity();
   read.identity = std::make_shared<const SourceIdentity>(to_save.source);
-  app_.unlessLost({AppContext::UnsavedWork::structures, AppContext::UnsavedWork::cuts},
-                  [this, read, labels, to_save] {
-                    app_.setCaseSource(workstation_.import().source());
-                    app_.goOnceOpen(Place::prepare);
-                    import_to_save_ = to_save;
-                    workstation_.openImported(read, labels);
-                  });
+  guards_.unlessLost({UnsavedWork::structures, UnsavedWork::cuts}, [this, read, labels, to_save] {
+    guards_.setCaseSource(workstation_.import().source());
+    app_.goOnceOpen(Place::prepare);
+    import_to_save_ = to_save;
+    workstation_.openImported(read, labels);
+  });
 }
 
 void CasesWorkspace::saveReport(const QString& file) {

@@ -56,6 +56,8 @@ class CasesWorkspace : public Workspace {
 
   AppContext& app_;
   Workstation& workstation_;
+  Messages& messages_;
+  WorkGuards& guards_;
   QAction *open_, *open_file_, *open_exercise_;
   QStackedWidget* pages_;
   CasesPage* page_;

@@ -16,11 +16,13 @@ CommissionFolders commissionFolders(const Policy& policy) {
   return {stateFolder().value_or(std::filesystem::path()), policy.folder};
 }
 
-FitnessLine::FitnessLine(AppContext& bench) : app_(bench) {
+FitnessLine::FitnessLine(Workstation& workstation, ViewWidget& view,
+                         const std::filesystem::path& storage)
+    : workstation_(workstation), view_(view), storage_(storage) {
   setObjectName("fitness");
   setContentsMargins(6, 0, 0, 0);
   setTextFormat(Qt::PlainText);
-  connect(&bench.workstation(), &Workstation::phaseChanged, this, [this] {
+  connect(&workstation_, &Workstation::phaseChanged, this, [this] {
     if (!mayLook()) {
       again_ = again_ || looking_.busy();
       looking_.cancel();
@@ -32,7 +34,7 @@ FitnessLine::FitnessLine(AppContext& bench) : app_(bench) {
 
 bool FitnessLine::mayLook() const {
   using Phase = Workstation::Phase;
-  const Phase phase = app_.workstation().phase();
+  const Phase phase = workstation_.phase();
   return phase == Phase::empty || phase == Phase::ready;
 }
 
@@ -45,17 +47,17 @@ void FitnessLine::look() {
   again_ = !mayLook();
   if (again_) return;
   StartSurroundings here;
-  here.storage = app_.storage();
-  here.storage_is_set = app_.storage() == app_.workstation().policy().storage;
-  here.driver = app_.view().openGlDescription();
+  here.storage = storage_;
+  here.storage_is_set = storage_ == workstation_.policy().storage;
+  here.driver = view_.openGlDescription();
   // All screens together, as a program without a window sees them.
   const QScreen* screen = QGuiApplication::primaryScreen();
   const QSizeF pixels = QSizeF(screen->virtualSize()) * screen->devicePixelRatio();
   // Qt counts whole points, which are fewer pixels where one has a fraction of them.
   here.screen = {qCeil(pixels.width()), qCeil(pixels.height())};
   looking_.run(
-      [here, folders = commissionFolders(app_.workstation().policy()),
-       arms = app_.workstation().opensArms()](const Progress& progress) -> Result<StartWords> {
+      [here, folders = commissionFolders(workstation_.policy()),
+       arms = workstation_.opensArms()](const Progress& progress) -> Result<StartWords> {
         if (const auto away = storageWords(here)) return *away;
         const auto last = lastCommissioning(folders.own, folders.hospital);
         if (!last) return startWords({}, {});

@@ -5,14 +5,16 @@
 #include "machine/commission/start_check.h"
 #include "ui/common/background_task.h"
 #include "ui/common/placing.h"
-#include "ui/work/app_context.h"
+#include "ui/views/view_widget.h"
+#include "ui/work/workstation.h"
 
 namespace trephine {
 
 class FitnessLine : public ElidedLabel {
   Q_OBJECT
  public:
-  explicit FitnessLine(AppContext& bench);
+  // `storage`: the folder of cases and recordings.
+  FitnessLine(Workstation& workstation, ViewWidget& view, const std::filesystem::path& storage);
 
   // Some seconds, in the background. An exercise that begins meanwhile ends it, and it looks after
   // that. Asked again meanwhile, it looks anew: there may be another commissioning.
@@ -25,7 +27,9 @@ class FitnessLine : public ElidedLabel {
  private:
   bool mayLook() const;  // no exercise runs
 
-  AppContext& app_;
+  Workstation& workstation_;
+  ViewWidget& view_;
+  std::filesystem::path storage_;
   BackgroundTask looking_;
   bool again_ = false;  // once it can
 };

@@ -229,11 +229,11 @@ void MainWindow::closeEvent(QCloseEvent* event) {
   if (workstation().isWriting()) {
     event->ignore();
     close_when_saved_ = true;
-    return app_.say(tr("A file is being saved; the window closes when it is written."));
+    return app_.messages().say(tr("A file is being saved; the window closes when it is written."));
   }
-  app_.takeTyped();
+  app_.guards().takeTyped();
   const bool running = phase != Phase::empty && phase != Phase::ready;
-  const bool unsaved = app_.cutsUnsaved() || workstation().tissuesEdited() ||
+  const bool unsaved = app_.caseViews().cutsUnsaved() || workstation().tissuesEdited() ||
                        workstation().exerciseEdited() || prepare_->structuresEdited();
   if (may_close_ || !(running || unsaved)) {
     keep();
@@ -241,13 +241,13 @@ void MainWindow::closeEvent(QCloseEvent* event) {
   }
   event->ignore();
   const auto for_good = [this] {
-    app_.unlessLost({AppContext::UnsavedWork::structures, AppContext::UnsavedWork::tissues},
+    app_.guards().unlessLost({UnsavedWork::structures, UnsavedWork::tissues},
                     [this] {
                       may_close_ = true;
                       close();
                     });
   };
-  if (!running) return app_.unlessLost({AppContext::UnsavedWork::cuts}, for_good);
+  if (!running) return app_.guards().unlessLost({UnsavedWork::cuts}, for_good);
   ask(this, "closeQuestion", tr("An exercise is running."),
       tr("Closing ends it. Its recording is kept; what was cut is not saved as a volume."),
       tr("&End it and close"), for_good);
@@ -323,7 +323,7 @@ void MainWindow::showSettings() {
 void MainWindow::showDevices() {
   if (workstation().phase() != Workstation::Phase::ready &&
       workstation().phase() != Workstation::Phase::empty) {
-    return app_.say(tr("An exercise has the arms: stop it first."));
+    return app_.messages().say(tr("An exercise has the arms: stop it first."));
   }
   workstation().lendArms(true);
   auto* dialog = new DevicesDialog(workstation().opensArms(), this);
@@ -360,10 +360,10 @@ void MainWindow::showHeadset() {
   connect(dialog, &HeadsetDialog::headsetChanged, headset_, &HeadsetView::settingsChanged);
   connect(dialog, &HeadsetDialog::screenChanged, stereo_, &StereoView::settingsChanged);
   connect(dialog, &HeadsetDialog::lensWanted, dialog, [this, dialog] {
-    app_.askForFile("lensDialog", tr("A lens's file"), tr("Lenses (*.json)"),
+    app_.messages().askForFile("lensDialog", tr("A lens's file"), tr("Lenses (*.json)"),
                     [this, of = QPointer(dialog)](const std::filesystem::path& file) {
                       const Result<LensProfile> lens = readLensProfile(file);
-                      if (!lens) return app_.report(lens.error());
+                      if (!lens) return app_.messages().report(lens.error());
                       if (of) of->setLens(toQt(file.string()));
                     });
   });
@@ -385,11 +385,11 @@ void MainWindow::showCommission() {
   connect(page, &CommissionPage::ended, this, [this] { workstation().lendArms(false); });
   connect(page, &CommissionPage::commissioned, fitness_, &FitnessLine::look);
   connect(page, &CommissionPage::saveWanted, page, [this, page] {
-    QFileDialog* dialog = app_.saveDialog(tr("Save the commissioning"), "commissioning.pdf",
+    QFileDialog* dialog = app_.messages().saveDialog(tr("Save the commissioning"), "commissioning.pdf",
                                           tr("PDF (*.pdf);;A page for a browser (*.html)"));
     connect(dialog, &QFileDialog::fileSelected, page, [this, page](const QString& file) {
       const Status saved = page->save(toPath(file));
-      saved ? app_.say(tr("The commissioning is saved.")) : app_.report(saved.error());
+      saved ? app_.messages().say(tr("The commissioning is saved.")) : app_.messages().report(saved.error());
     });
     dialog->open();
   });
@@ -416,17 +416,17 @@ void MainWindow::askForPin() {
   if (workstation().isUnlocked()) {
     const auto lock = [this] {
       workstation().setUnlocked(false);
-      app_.say(tr("Locked again."));
+      app_.messages().say(tr("Locked again."));
     };
     return workstation().tissuesWouldGo()
-               ? app_.unlessLost({AppContext::UnsavedWork::tissues}, lock)
+               ? app_.guards().unlessLost({UnsavedWork::tissues}, lock)
                : lock();
   }
   if (!workstation().policy().pin) return;
   auto* dialog = new UnlockDialog(*workstation().policy().pin, this);
   connect(dialog, &UnlockDialog::unlocked, this, [this] {
     workstation().setUnlocked(true);
-    app_.say(tr("Unlocked for teaching, until you lock it again (menu File)."));
+    app_.messages().say(tr("Unlocked for teaching, until you lock it again (menu File)."));
   });
   dialog->open();
 }

@@ -37,8 +37,8 @@ class MainWindow : public QMainWindow {
   ~MainWindow() override;
 
   Workstation& workstation() { return app_.workstation(); }
-  FourUp& views() { return app_.views(); }
-  ViewWidget& view() { return app_.view(); }  // 3-D
+  FourUp& views() { return app_.caseViews().views(); }
+  ViewWidget& view() { return app_.caseViews().view(); }  // 3-D
 
   void show(Place place);
   Place place() const { return place_; }
@@ -58,8 +58,8 @@ class MainWindow : public QMainWindow {
   // Shows the exercise that runs as it is now, all of it, without waiting for the next frame:
   // whoever moves the session's time (Workstation::setStepped) shows it so.
   void showExercise() { train_->showAll(); }
-  void savePicture(const QString& file) { app_.savePicture(file); }
-  void saveVolume(const QString& file) { app_.saveVolume(file); }
+  void savePicture(const QString& file) { app_.caseViews().savePicture(file); }
+  void saveVolume(const QString& file) { app_.caseViews().saveVolume(file); }
   void saveReport(const QString& file) { cases_->saveReport(file); }
   using QMainWindow::show;
 

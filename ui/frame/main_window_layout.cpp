@@ -39,8 +39,8 @@ void MainWindow::buildWorkspaces() {
   prepare_ = new PrepareWorkspace(app_);
   train_ = new TrainWorkspace(app_);
   review_ = new ReviewWorkspace(app_);
-  headset_ = new HeadsetView(app_, *this);
-  stereo_ = new StereoView(app_, *this);
+  headset_ = new HeadsetView(workstation(), app_.messages(), app_.caseViews());
+  stereo_ = new StereoView(app_.messages(), view());
   rooms_ = {Room{Place::cases, "cases", cases_, {}, {}},
             Room{Place::prepare, "prepare", prepare_, {ViewLayout::Kind::four, 0}, {}},
             Room{Place::train, "train", train_, {ViewLayout::Kind::one_large, 0}, {}},
@@ -177,7 +177,7 @@ void MainWindow::buildBars() {
   auto* purpose = new QLabel(purposeText());
   purpose->setObjectName("purpose");
   purpose->setContentsMargins(12, 0, 6, 0);
-  fitness_ = new FitnessLine(app_);
+  fitness_ = new FitnessLine(workstation(), view(), app_.storage());
   statusBar()->addWidget(hint_, 1);
   statusBar()->addWidget(fitness_, 1);
   statusBar()->addPermanentWidget(opening_box_);
@@ -244,12 +244,12 @@ void MainWindow::connectParts() {
   connect(train_, &TrainWorkspace::recentreWanted, headset_, &HeadsetView::recentre);
   connect(rail_, &Rail::chosen, this, qOverload<Place>(&MainWindow::show));
   connect(&app_, &AppContext::placeWanted, this, qOverload<Place>(&MainWindow::show));
-  connect(&app_, &AppContext::failed, this, &MainWindow::failed);
-  connect(&app_, &AppContext::said, this, [this](const QString& text) {
+  connect(&app_.messages(), &Messages::failed, this, &MainWindow::failed);
+  connect(&app_.messages(), &Messages::said, this, [this](const QString& text) {
     constexpr int kMessage_ms = 15000;
     text.isEmpty() ? statusBar()->clearMessage() : statusBar()->showMessage(text, kMessage_ms);
   });
-  connect(&app_, &AppContext::hinted, this, [this](const QString& words) {
+  connect(&app_.messages(), &Messages::hinted, this, [this](const QString& words) {
     hint_words_ = words;
     showHint();
   });
@@ -263,9 +263,9 @@ void MainWindow::connectParts() {
     show(Place::review);
     review_->replayNewest();
   });
-  connect(look_, &QAction::triggered, &app_, &AppContext::lookAtCase);
-  connect(picture_, &QAction::triggered, &app_, &AppContext::askToSavePicture);
-  connect(volume_, &QAction::triggered, this, [this] { app_.askToSaveVolume({}); });
+  connect(look_, &QAction::triggered, &app_.caseViews(), &CaseViews::lookAtCase);
+  connect(picture_, &QAction::triggered, &app_.caseViews(), &CaseViews::askToSavePicture);
+  connect(volume_, &QAction::triggered, this, [this] { app_.caseViews().askToSaveVolume({}); });
   for (QAction* panel : {left_panel_, right_panel_}) {
     connect(panel, &QAction::toggled, this, &MainWindow::showPanels);
   }
@@ -308,7 +308,7 @@ void MainWindow::connectParts() {
   connect(&workstation, &Workstation::openingEnded, opening_box_, &QWidget::hide);
   connect(&workstation, &Workstation::savingProgressed, this,
           [this](double fraction, const QString& step) {
-            app_.say(tr("%1\u2026 %2 %").arg(step).arg(int(100.0 * fraction)));
+            app_.messages().say(tr("%1\u2026 %2 %").arg(step).arg(int(100.0 * fraction)));
             opening_box_->show();
             opening_words_->clear();  // in the line beside it
             opening_->setValue(int(fraction * kProgressSteps));

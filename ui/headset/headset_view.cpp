@@ -31,7 +31,12 @@ bool isOne(double scale) {
 
 }  // namespace
 
-HeadsetView::HeadsetView(AppContext& bench, QWidget& window) : QObject(&window), app_(bench) {
+HeadsetView::HeadsetView(Workstation& workstation, Messages& messages, CaseViews& case_views)
+    : QObject(messages.window()),
+      workstation_(workstation),
+      messages_(messages),
+      case_views_(case_views) {
+  QWidget& window = *messages.window();
   on_ = makeAction(window, Symbol::view, "headset", tr("&Headset"), QKeySequence(Qt::Key_F9),
                    tr("The 3-D view through a head-mounted display; the exercise goes on"));
   on_->setCheckable(true);
@@ -43,17 +48,17 @@ HeadsetView::HeadsetView(AppContext& bench, QWidget& window) : QObject(&window),
   connect(on_, &QAction::toggled, this, &HeadsetView::toggle);
   connect(recentre_, &QAction::triggered, this, &HeadsetView::recentre);
   // Another exercise has its arms elsewhere.
-  connect(&app_.workstation(), &Workstation::sessionStarted, this, &HeadsetView::placeByArms);
-  connect(&app_, &AppContext::caseShown, this, [this] {
+  connect(&workstation_, &Workstation::sessionStarted, this, &HeadsetView::placeByArms);
+  connect(&case_views_, &CaseViews::caseShown, this, [this] {
     if (headset_ && placed_) place();
   });
   words_timer_.setInterval(kWordsEvery_ms);
   connect(&words_timer_, &QTimer::timeout, this, [this] {
     const bool stuck = headset_->stuck_s() > kStuck_s;
     if (stuck && !std::exchange(stuck_, stuck)) {
-      app_.say(app_.workstation().session()
-                   ? tr("The headset's software does not answer: the exercise goes on here.")
-                   : tr("The headset's software does not answer."));
+      messages_.say(workstation_.session()
+                        ? tr("The headset's software does not answer: the exercise goes on here.")
+                        : tr("The headset's software does not answer."));
     }
     stuck_ = stuck;
     emit changed();
@@ -73,12 +78,13 @@ void HeadsetView::toggle(bool on) {
   if (!headset_) return start();
   again_ = true;
   if (headset_->stuck_s() > kStuck_s) {
-    app_.say(tr("The headset's software has not come back yet: the headset follows once it has."));
+    messages_.say(
+        tr("The headset's software has not come back yet: the headset follows once it has."));
   }
 }
 
 void HeadsetView::start() {
-  ViewWidget& view = app_.view();
+  ViewWidget& view = case_views_.view();
   placed_ = seen_ = flat_ = stuck_ = by_arms_ = false;
   room_changes_ = 0;
   const auto wake = [this, woken = std::weak_ptr(woken_)] {
@@ -95,7 +101,7 @@ void HeadsetView::start() {
   if (!started) {
     const QSignalBlocker quiet(on_);
     on_->setChecked(false);
-    return app_.report(started.error());
+    return messages_.report(started.error());
   }
   headset_ = *std::move(started);
   recentre_->setEnabled(true);
@@ -106,7 +112,7 @@ void HeadsetView::start() {
 // Before the head; where registered arms are, if the exercise has some.
 void HeadsetView::place() {
   const HeadsetState state = headset_->state();
-  const ViewCamera& camera = app_.view().camera();
+  const ViewCamera& camera = case_views_.view().camera();
   const Preferences wanted = preferences();
   head_m_ = headOf(state.eyes_m).position;
   place_ = before(state.eyes_m, {camera.focus(), camera.forward(), camera.up()},
@@ -121,7 +127,7 @@ void HeadsetView::place() {
 // Of the running exercise's arms, those that are registered in the room.
 std::vector<HeadsetView::Standing> HeadsetView::standing() const {
   std::vector<Standing> arms;
-  Session* session = app_.workstation().session();
+  Session* session = workstation_.session();
   if (!session) return arms;
   const ChosenArms here = armSettings().chosen;
   for (std::size_t i = 0; i < session->exercise().arms.size(); ++i) {
@@ -148,9 +154,9 @@ void HeadsetView::placeByArms() {
   }
   place_ = where(arms.front().room_from_device_m, arms.front().in_patient);
   by_arms_ = true;
-  app_.say(tr("The patient lies where the arms are: the tools are seen within %1 mm of where "
-              "they are felt.")
-               .arg(toolsApart_mm(), 0, 'f', 1));
+  messages_.say(tr("The patient lies where the arms are: the tools are seen within %1 mm of where "
+                   "they are felt.")
+                    .arg(toolsApart_mm(), 0, 'f', 1));
   showCards();
 }
 
@@ -186,16 +192,17 @@ void HeadsetView::serve() {
   if (!placed_ && state.located) place();
   if (!placed_) return;
   bool warmed = false;
-  app_.view().withGraphics([&](SceneRenderer& renderer, unsigned int shown, int wide, int high) {
-    // What is drawn for the first time takes as long as several pictures: one thing an event.
-    warmed = renderer.warmUp();
-    if (warmed) return;
-    painter_.serve(headset_->pictures(),
-                   [&](const EyeView& eye_m, unsigned int framebuffer, int width, int height) {
-                     renderer.paintEye(place_.toPatient_mm(eye_m), framebuffer, width, height);
-                   },
-                   {shown, wide, high});
-  });
+  case_views_.view().withGraphics(
+      [&](SceneRenderer& renderer, unsigned int shown, int wide, int high) {
+        // What is drawn for the first time takes as long as several pictures: one thing an event.
+        warmed = renderer.warmUp();
+        if (warmed) return;
+        painter_.serve(headset_->pictures(),
+                       [&](const EyeView& eye_m, unsigned int framebuffer, int width, int height) {
+                         renderer.paintEye(place_.toPatient_mm(eye_m), framebuffer, width, height);
+                       },
+                       {shown, wide, high});
+      });
   if (warmed && !woken_->is.exchange(true)) {
     QMetaObject::invokeMethod(this, &HeadsetView::serve, Qt::QueuedConnection);
   }
@@ -207,7 +214,7 @@ void HeadsetView::serve() {
 void HeadsetView::showMirror() {
   const PicturePainter::Left& left = painter_.left();
   const bool mirrors = mirrors_ && seen_ && !flat_ && left.texture != 0;
-  app_.view().showInstead(mirrors ? left.texture : 0, left.width, left.height);
+  case_views_.view().showInstead(mirrors ? left.texture : 0, left.width, left.height);
 }
 
 void HeadsetView::sayState(const HeadsetState& state) {
@@ -215,36 +222,37 @@ void HeadsetView::sayState(const HeadsetState& state) {
   keeps_room_ = state.keeps_room;
   if (std::exchange(room_changes_, state.room_changes) != state.room_changes) {
     if (forgetArmsInRoom(true)) {
-      app_.say(tr("The headset has set its room up anew: register the arms again (Devices)."));
+      messages_.say(tr("The headset has set its room up anew: register the arms again (Devices)."));
     }
     placed_ = false;
   }
   if (state.seen == seen_ && state.flat == flat_) return;
   if (seen_ && !state.seen) {
-    app_.say(app_.workstation().session()
-                 ? tr("The headset was taken off: the exercise goes on here.")
-                 : tr("The headset was taken off."));
+    messages_.say(workstation_.session()
+                      ? tr("The headset was taken off: the exercise goes on here.")
+                      : tr("The headset was taken off."));
   }
   if (!flat_ && state.flat) {
-    app_.say(tr("A flat screen in the headset: %1 pairs of pictures a second, and 45 are needed.")
-                 .arg(std::floor(state.pairs_hz)));
+    messages_.say(
+        tr("A flat screen in the headset: %1 pairs of pictures a second, and 45 are needed.")
+            .arg(std::floor(state.pairs_hz)));
   }
-  if (flat_ && !state.flat) app_.say(tr("Pictures come fast enough: look around."));
+  if (flat_ && !state.flat) messages_.say(tr("Pictures come fast enough: look around."));
   seen_ = state.seen;
   flat_ = state.flat;
   emit changed();
 }
 
 void HeadsetView::ended(const HeadsetEnd& how) {
-  app_.view().showInstead(0, 0, 0);
-  app_.view().withGraphics([&](SceneRenderer& renderer, unsigned int, int, int) {
+  case_views_.view().showInstead(0, 0, 0);
+  case_views_.view().withGraphics([&](SceneRenderer& renderer, unsigned int, int, int) {
     painter_.release(headset_->pictures());
     renderer.releaseEyes();
   });
   headset_.reset();
   words_timer_.stop();
   marks_m_.clear();
-  app_.view().setCards({});
+  case_views_.view().setCards({});
   forgetArmsInRoom(false);
   seen_ = flat_ = stuck_ = placed_ = by_arms_ = false;
   recentre_->setEnabled(false);
@@ -258,8 +266,8 @@ void HeadsetView::ended(const HeadsetEnd& how) {
   if (wanted && !how.why.ok()) {
     // What went away in an exercise is said beside it, and no dialog holds up the hands.
     const Error& why = how.why.error();
-    app_.workstation().session() ? app_.say(toQt(why.what + ". " + why.next + "."))
-                                 : app_.report(why);
+    workstation_.session() ? messages_.say(toQt(why.what + ". " + why.next + "."))
+                           : messages_.report(why);
   }
   emit changed();
 }
@@ -267,8 +275,8 @@ void HeadsetView::ended(const HeadsetEnd& how) {
 void HeadsetView::stop() {
   if (!headset_) return;
   headset_->stop();
-  app_.view().showInstead(0, 0, 0);
-  if (std::exchange(flat_, false)) app_.say({});  // that it shows a flat screen
+  case_views_.view().showInstead(0, 0, 0);
+  if (std::exchange(flat_, false)) messages_.say({});  // that it shows a flat screen
   seen_ = false;
   emit changed();
 }
@@ -286,7 +294,7 @@ void HeadsetView::setCards(std::vector<EyeCard> cards) {
 void HeadsetView::showCards() {
   std::vector<EyeCard> all = cards_;
   const double scale = place_.scale;
-  if (!isOne(scale) && app_.workstation().currentCase()) {
+  if (!isOne(scale) && workstation_.currentCase()) {
     all.push_back(noteCard(
         scale > 1.0 ? tr("The patient is shown %1 times as large as in life.").arg(scale, 0, 'f', 2)
                     : tr("The patient is shown at %1 % of the size in life.")
@@ -320,7 +328,7 @@ void HeadsetView::showCards() {
     stand(markCard(int(i) + 1), marks_m_[i]);
     shown.back().before_all = true;  // they may lie in the patient
   }
-  app_.view().setCards(std::move(shown));
+  case_views_.view().setCards(std::move(shown));
 }
 
 std::vector<Vec3> HeadsetView::showMarks() {
@@ -356,7 +364,7 @@ QString HeadsetView::words() const {
           : tr("Headset")};
   words << tr("both eyes %1 ms").arg(painter_.pair_ms(), 0, 'f', 1);
   if (by_arms_) words << tr("tools within %1 mm of the arms").arg(toolsApart_mm(), 0, 'f', 1);
-  if (!isOne(place_.scale) && !state.flat && app_.workstation().currentCase())
+  if (!isOne(place_.scale) && !state.flat && workstation_.currentCase())
     words << tr("patient at %1 %").arg(100.0 * place_.scale, 0, 'f', 0);
   return words.join(QStringLiteral(" \u00b7 "));
 }

@@ -1,5 +1,5 @@
 // The 3-D view through a headset: on and off, where the patient stands before the trainee, and that
-// the exercise goes on whatever becomes of it. Between the shared context's view and the room
+// the exercise goes on whatever becomes of it. Between the case's view and the room
 // `headset`; the window's thread.
 #pragma once
 
@@ -15,14 +15,14 @@
 #include "headset/room_place.h"
 #include "ui/common/preferences.h"
 #include "ui/headset/eye_cards.h"
-#include "ui/work/app_context.h"
+#include "ui/work/case_views.h"
 
 namespace trephine {
 
 class HeadsetView : public QObject {
   Q_OBJECT
  public:
-  HeadsetView(AppContext& bench, QWidget& window);
+  HeadsetView(Workstation& workstation, Messages& messages, CaseViews& case_views);
   ~HeadsetView() override;
 
   QAction* onAction() const { return on_; }
@@ -69,7 +69,9 @@ class HeadsetView : public QObject {
   void showMirror();
   void sayState(const HeadsetState& state);
 
-  AppContext& app_;
+  Workstation& workstation_;
+  Messages& messages_;
+  CaseViews& case_views_;
   QAction *on_, *recentre_;
   std::unique_ptr<Headset> headset_;
   PicturePainter painter_;

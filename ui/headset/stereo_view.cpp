@@ -42,16 +42,16 @@ QScreen* chosenScreen(const QWidget& window) {
 
 }  // namespace
 
-StereoView::StereoView(AppContext& bench, QWidget& window)
-    : QObject(&window), app_(bench), window_(window) {
-  on_ = makeAction(window, Symbol::view, "stereo", tr("&Two pictures on another screen"),
+StereoView::StereoView(Messages& messages, ViewWidget& view)
+    : QObject(messages.window()), messages_(messages), view_(view), window_(*messages.window()) {
+  on_ = makeAction(window_, Symbol::view, "stereo", tr("&Two pictures on another screen"),
                    QKeySequence(Qt::SHIFT | Qt::Key_F9),
                    tr("Side by side or above each other, for a 3-D monitor or a projector; a "
                       "double click there leaves it"));
   on_->setCheckable(true);
   connect(on_, &QAction::toggled, this, &StereoView::toggle);
   // What the window has drawn anew is drawn there, once an event's turn.
-  connect(&app_.view(), &ViewWidget::framePainted, this, [this] {
+  connect(&view_, &ViewWidget::framePainted, this, [this] {
     if (!screen_window_ || std::exchange(due_, true)) return;
     QTimer::singleShot(0, this, &StereoView::draw);
   });
@@ -71,12 +71,12 @@ void StereoView::toggle(bool on) {
   if (const Status started = start(); !started) {
     const QSignalBlocker quiet(on_);
     on_->setChecked(false);
-    app_.report(started.error());
+    messages_.report(started.error());
   }
 }
 
 Status StereoView::start() {
-  if (!app_.view().context() || !app_.view().canDraw()) {
+  if (!view_.context() || !view_.canDraw()) {
     return Error{code::kNoOpengl, "The 3-D view has not drawn anything yet", "",
                  "Open a case, and wait until it is shown"};
   }
@@ -135,7 +135,7 @@ void StereoView::settingsChanged() {
     on_->setChecked(true);
   } else if (const Status read = readSettings(); !read) {
     stop();
-    app_.report(read.error());
+    messages_.report(read.error());
   } else {
     draw();
   }
@@ -152,7 +152,7 @@ void StereoView::stop() {
 void StereoView::release() {
   words_timer_.stop();
   screen_window_.reset();
-  app_.view().withGraphics([this](SceneRenderer& renderer, unsigned int, int, int) {
+  view_.withGraphics([this](SceneRenderer& renderer, unsigned int, int, int) {
     pictures_.release();
     renderer.releaseEyes();
   });
@@ -162,14 +162,14 @@ void StereoView::draw() {
   due_ = false;
   if (!screen_window_) return;
   const int wide = screen_window_->pixelWidth(), high = screen_window_->pixelHeight();
-  const ViewCamera& camera = app_.view().camera();
+  const ViewCamera& camera = view_.camera();
   const StereoScreen screen = screenThrough(camera.distance_mm(), camera.halfHeight_mm(),
                                             aspectOf(packing_, wide, high), eyes_mm_, away_mm_);
   const Eyes eyes_mm = eyesBefore(screen, camera.pose_mm());
   bool warmed = false;
   QElapsedTimer timer;
   timer.start();
-  app_.view().withGraphics([&](SceneRenderer& renderer, unsigned int, int, int) {
+  view_.withGraphics([&](SceneRenderer& renderer, unsigned int, int, int) {
     // What is drawn for the first time takes as long as several pictures: one thing an event.
     warmed = renderer.warmUp();
     if (warmed) return;
@@ -191,7 +191,7 @@ void StereoView::draw() {
 void StereoView::screenGone(QScreen* screen) {
   if (!screen_window_ || screen != screen_) return;
   stop();
-  app_.say(tr("The screen for both eyes is gone: the exercise goes on here."));
+  messages_.say(tr("The screen for both eyes is gone: the exercise goes on here."));
 }
 
 QString StereoView::words() const {

@@ -1,5 +1,5 @@
 // The 3-D view as two pictures on another screen: a 3-D monitor, a projector, a headset that is a
-// second screen. What is looked at lies in the screen's plane. Between the shared context's view
+// second screen. What is looked at lies in the screen's plane. Between the 3-D view
 // and the room `headset`; the window's thread.
 #pragma once
 
@@ -14,7 +14,8 @@
 #include "headset/lens_profile.h"
 #include "headset/packed_drawing.h"
 #include "headset/stereo_screen.h"
-#include "ui/work/app_context.h"
+#include "ui/views/view_widget.h"
+#include "ui/work/messages.h"
 
 namespace trephine {
 
@@ -23,7 +24,7 @@ class StereoWindow;
 class StereoView : public QObject {
   Q_OBJECT
  public:
-  StereoView(AppContext& bench, QWidget& window);
+  StereoView(Messages& messages, ViewWidget& view);
   ~StereoView() override;
 
   QAction* onAction() const { return on_; }
@@ -45,7 +46,8 @@ class StereoView : public QObject {
   void screenGone(QScreen* screen);
   void release();
 
-  AppContext& app_;
+  Messages& messages_;
+  ViewWidget& view_;
   QWidget& window_;
   QAction* on_;
   std::unique_ptr<StereoWindow> screen_window_;

@@ -21,11 +21,12 @@
 
 namespace trephine {
 
-ArmsTab::ArmsTab(AppContext& bench, ToolsPanel& tools)
-    : QObject(&bench),
-      app_(bench),
-      workstation_(bench.workstation()),
-      views_(&bench.views()),
+ArmsTab::ArmsTab(Workstation& workstation, FourUp& views, Messages& messages, ToolsPanel& tools,
+                 QObject* parent)
+    : QObject(parent),
+      workstation_(workstation),
+      messages_(messages),
+      views_(&views),
       tools_(&tools) {
   tools_->wanted = [this](const std::string& what, const auto& change) {
     return workstation_.edit(what, change);
@@ -36,14 +37,15 @@ ArmsTab::ArmsTab(AppContext& bench, ToolsPanel& tools)
   };
   connect(tools_, &ToolsPanel::armChosen, this, &ArmsTab::showBoxes);
   connect(tools_, &ToolsPanel::toolFileWanted, this, [this] {
-    app_.askForFile("toolFileDialog", tr("A tool file"), tr("Tools (*.json)"),
-                    [this](const auto& file) { tools_->addTool(file); });
+    messages_.askForFile("toolFileDialog", tr("A tool file"), tr("Tools (*.json)"),
+                         [this](const auto& file) { tools_->addTool(file); });
   });
   connect(tools_, &ToolsPanel::meshWanted, this, [this] {
-    app_.askForFile("meshDialog", tr("A mesh"), tr("Surface (*.stl)"), [this](const auto& file) {
-      const Status mesh = checkToolMesh(file);
-      mesh ? tools_->setMesh(file) : app_.report(mesh.error());
-    });
+    messages_.askForFile("meshDialog", tr("A mesh"), tr("Surface (*.stl)"),
+                         [this](const auto& file) {
+                           const Status mesh = checkToolMesh(file);
+                           mesh ? tools_->setMesh(file) : messages_.report(mesh.error());
+                         });
   });
   connect(tools_, &ToolsPanel::tradesWanted, this, &ArmsTab::measureTrades);
   showTrades();
@@ -64,7 +66,8 @@ void ArmsTab::measureCosts() {
   if (costing_.busy()) return costing_.cancel();
   if (!workstation_.exercise()) return;
   if (workstation_.session()) {
-    return app_.say(tr("An exercise is running: it would be measured with it. Stop it first."));
+    return messages_.say(
+        tr("An exercise is running: it would be measured with it. Stop it first."));
   }
   tools_->showMeasuring(0.0);
   costing_.run(
@@ -74,7 +77,7 @@ void ArmsTab::measureCosts() {
       [this](Result<LawCosts> costs) {
         tools_->showMeasuring({});
         if (!costs) {
-          if (costs.error().code != code::kCancelled) app_.report(costs.error());
+          if (costs.error().code != code::kCancelled) messages_.report(costs.error());
           return;
         }
         ToolsPanel::Costs words;
@@ -236,7 +239,7 @@ void ArmsTab::workspaceMoved(const Vec3& centre_mm, bool done) {
   }
   const Status moved = workstation_.edit(exercise, "workspace:" + exercise.arms[index].name);
   if (done) workstation_.closeEdit();
-  if (!moved && done) app_.report(moved.error());
+  if (!moved && done) messages_.report(moved.error());
   showBoxes();
 }
 

@@ -9,14 +9,17 @@
 
 #include "ui/common/background_task.h"
 #include "ui/prepare/tools_panel.h"
-#include "ui/work/app_context.h"
+#include "ui/views/four_up.h"
+#include "ui/work/messages.h"
+#include "ui/work/workstation.h"
 
 namespace trephine {
 
 class ArmsTab : public QObject {
   Q_OBJECT
  public:
-  ArmsTab(AppContext& bench, ToolsPanel& tools);
+  ArmsTab(Workstation& workstation, FourUp& views, Messages& messages, ToolsPanel& tools,
+          QObject* parent);
 
   // Whether it is seen; the panel is filled, and boxes and tools are drawn, while it is.
   void show(bool in_front);
@@ -29,8 +32,8 @@ class ArmsTab : public QObject {
   void measureTrades();
   void workspaceMoved(const Vec3& centre_mm, bool done);
 
-  AppContext& app_;
   Workstation& workstation_;
+  Messages& messages_;
   FourUp* views_;
   ToolsPanel* tools_;
   BackgroundTask costing_;

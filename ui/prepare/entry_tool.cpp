@@ -6,10 +6,12 @@
 
 #include "exercise/entry_point.h"
 #include "ui/common/colours.h"
+#include "ui/views/slice_view.h"
 
 namespace trephine {
 
-EntryTool::EntryTool(AppContext& app)
+EntryTool::EntryTool(Workstation& workstation, Toolbox& toolbox, Messages& messages,
+                     WorkGuards& guards)
     : ViewTool({"sliceEntryTool",
                 Qt::Key_I,
                 {},
@@ -23,9 +25,10 @@ EntryTool::EntryTool(AppContext& app)
                   painter.drawPolyline(QPolygonF({{6.0, 6.0}, {9.0, 9.5}, {12.0, 6.0}}));
                 }},
                nullptr),
-      app_(app),
-      workstation_(app.workstation()),
-      toolbox_(app.views().toolbox()) {
+      workstation_(workstation),
+      messages_(messages),
+      guards_(guards),
+      toolbox_(toolbox) {
   toolbox_.add(*this);
   connect(&toolbox_, &Toolbox::taken, this, [this] { once_ = false; });
 }
@@ -61,11 +64,12 @@ bool EntryTool::key(int key, const Vec3* point_mm) {
 void EntryTool::place(const Vec3& at_mm, const Vec3& from_mm) {
   const Case* of = workstation_.currentCase();
   if (workstation_.phase() != Workstation::Phase::ready || !of) {
-    return app_.say(tr("The entry point cannot be changed while an exercise runs: stop it first."));
+    return messages_.say(
+        tr("The entry point cannot be changed while an exercise runs: stop it first."));
   }
   const Exercise& exercise = *workstation_.exercise();
   const Landmark* landmark = entryLandmark(exercise);
-  if (!landmark) return app_.say(tr("This exercise is fixed in its own patient."));
+  if (!landmark) return messages_.say(tr("This exercise is fixed in its own patient."));
   Vec3 outward = from_mm - at_mm;
   if (!(glm::length(outward) > 0.0)) {
     const auto out = outwardAt(*of->volume, workstation_.placedTissues(),
@@ -74,20 +78,20 @@ void EntryTool::place(const Vec3& at_mm, const Vec3& from_mm) {
     outward = out ? *out : before ? before->rotation * Vec3(0.0, 0.0, 1.0) : Vec3(0.0, -1.0, 0.0);
   }
   const Landmark entry = placedAt(*landmark, at_mm, glm::normalize(outward));
-  app_.unlessLost({AppContext::UnsavedWork::cuts}, [this, entry] {
+  guards_.unlessLost({UnsavedWork::cuts}, [this, entry] {
     asked_ = workstation_.placeEntry(entry);
     if (asked_ && once_) toolbox_.putDown();
-    app_.say(asked_ ? tr("The exercise enters here now. Del: back to its own place.")
-                    : tr("Busy: try again in a moment."));
+    messages_.say(asked_ ? tr("The exercise enters here now. Del: back to its own place.")
+                         : tr("Busy: try again in a moment."));
   });
 }
 
 void EntryTool::leave() {
-  if (!workstation_.entry()) return app_.say(tr("The exercise enters at its own place."));
-  app_.unlessLost({AppContext::UnsavedWork::cuts}, [this] {
+  if (!workstation_.entry()) return messages_.say(tr("The exercise enters at its own place."));
+  guards_.unlessLost({UnsavedWork::cuts}, [this] {
     asked_ = workstation_.placeEntry({});
-    app_.say(asked_ ? tr("The exercise enters at its own place again.")
-                    : tr("Busy: try again in a moment."));
+    messages_.say(asked_ ? tr("The exercise enters at its own place again.")
+                         : tr("Busy: try again in a moment."));
   });
 }
 

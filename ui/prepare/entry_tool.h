@@ -5,14 +5,14 @@
 #include <optional>
 #include <utility>
 
-#include "ui/views/view_tool.h"
-#include "ui/work/app_context.h"
+#include "ui/views/toolbox.h"
+#include "ui/work/work_guards.h"
 
 namespace trephine {
 
 class EntryTool : public ViewTool {
  public:
-  explicit EntryTool(AppContext& app);
+  EntryTool(Workstation& workstation, Toolbox& toolbox, Messages& messages, WorkGuards& guards);
 
   // Takes it in hand until it was used.
   void useOnce();
@@ -31,8 +31,9 @@ class EntryTool : public ViewTool {
   void place(const Vec3& at_mm, const Vec3& from_mm);
   void leave();
 
-  AppContext& app_;
   Workstation& workstation_;
+  Messages& messages_;
+  WorkGuards& guards_;
   Toolbox& toolbox_;
   std::optional<ToolEvent> pressed_;
   bool asked_ = false, once_ = false;

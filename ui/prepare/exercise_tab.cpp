@@ -39,8 +39,10 @@ ExerciseTab::ExerciseTab(AppContext& bench, ExerciseForm& form)
     : QObject(&bench),
       app_(bench),
       workstation_(bench.workstation()),
-      toolbox_(bench.views().toolbox()),
-      outline_(bench),
+      messages_(bench.messages()),
+      guards_(bench.guards()),
+      toolbox_(bench.caseViews().views().toolbox()),
+      outline_(workstation_, toolbox_, messages_),
       form_(&form) {
   form_->wanted = [this](const std::string& what, const auto& change) {
     return workstation_.edit(what, change);
@@ -55,22 +57,23 @@ ExerciseTab::ExerciseTab(AppContext& bench, ExerciseForm& form)
         if (exercise.tissues.find(id)) exercise.view.looks[id] = look;
       }
     });
-    done ? app_.say(tr("The exercise begins with these looks.")) : app_.report(done.error());
+    done ? messages_.say(tr("The exercise begins with these looks."))
+         : messages_.report(done.error());
   });
   connect(form_, &ExerciseForm::operatorWanted, this, [this] {
-    app_.askForFile("operatorDialog", tr("An operator script"), tr("Scripts (*.json)"),
-                    [this](const auto& file) {
-                      if (!workstation_.exercise()) return;
-                      const auto script = readOperatorScript(file, *workstation_.exercise());
-                      if (!script) return app_.report(script.error());
-                      form_->setOperator(file.string());
-                    });
+    messages_.askForFile("operatorDialog", tr("An operator script"), tr("Scripts (*.json)"),
+                         [this](const auto& file) {
+                           if (!workstation_.exercise()) return;
+                           const auto script = readOperatorScript(file, *workstation_.exercise());
+                           if (!script) return messages_.report(script.error());
+                           form_->setOperator(file.string());
+                         });
   });
   connect(form_, &ExerciseForm::labelsWanted, this, &ExerciseTab::labelsWanted);
   connect(form_, &ExerciseForm::elsewhereChosen, this, &ExerciseTab::takeElsewhere);
   connect(form_, &ExerciseForm::elsewhereWanted, this, [this] {
-    app_.askForFile("elsewhereDialog", tr("Tissues for other cases"), tr("Tissues (*.json)"),
-                    [this](const auto& file) { takeElsewhere(file); });
+    messages_.askForFile("elsewhereDialog", tr("Tissues for other cases"), tr("Tissues (*.json)"),
+                         [this](const auto& file) { takeElsewhere(file); });
   });
   connect(form_, &ExerciseForm::saveWanted, this, [this] { save(false, {}); });
   connect(form_, &ExerciseForm::saveCopyWanted, this, [this] { save(true, {}); });
@@ -90,7 +93,7 @@ ExerciseTab::ExerciseTab(AppContext& bench, ExerciseForm& form)
 
 void ExerciseTab::takeElsewhere(const std::filesystem::path& file) {
   const Result<TissueSet> set = readTissueSet(file);
-  set ? form_->setElsewhere(*set) : app_.report(set.error());
+  set ? form_->setElsewhere(*set) : messages_.report(set.error());
 }
 
 void ExerciseTab::show(bool in_front) {
@@ -153,8 +156,8 @@ std::optional<Exercise> ExerciseTab::exerciseToSave() {
   exercise.tissues_elsewhere = made.tissues_elsewhere;
   if (of.built_in) return exercise;
   if (of.stored.empty()) {
-    app_.report({code::kCaseNotSaved, "The case of the exercise is not in the library", "",
-                 "Save the case first (Cases), or import it again where it was deleted"});
+    messages_.report({code::kCaseNotSaved, "The case of the exercise is not in the library", "",
+                      "Save the case first (Cases), or import it again where it was deleted"});
     return {};
   }
   const std::filesystem::path folder = app_.storage() / "cases" / of.stored;
@@ -173,14 +176,14 @@ ExerciseTab::OnDisk ExerciseTab::onDisk(const std::filesystem::path& file) {
 
 // Something of a person's would go: it is replaced, or stays and this one is saved beside it.
 void ExerciseTab::askToReplace(const char* name, const QString& why, const QString& what,
-                               const AppContext::Next& replace, const AppContext::Next& then) {
-  QMessageBox* question = ask(app_.window(), name, why, what, tr("&Replace it"), replace);
+                               const WorkGuards::Next& replace, const WorkGuards::Next& then) {
+  QMessageBox* question = ask(messages_.window(), name, why, what, tr("&Replace it"), replace);
   orElse(*question, "saveBeside", tr("Save a &copy"), [this, then] { save(true, then); });
 }
 
-void ExerciseTab::save(bool copy, AppContext::Next then, bool on_another_case) {
-  if (!then && workstation_.isWriting()) return app_.say(tr("It is being saved."));
-  app_.takeTyped();
+void ExerciseTab::save(bool copy, WorkGuards::Next then, bool on_another_case) {
+  if (!then && workstation_.isWriting()) return messages_.say(tr("It is being saved."));
+  guards_.takeTyped();
   std::optional<Exercise> exercise = exerciseToSave();
   if (!exercise) return;
   const bool in_place = isOwn() && !copy;
@@ -240,8 +243,8 @@ std::string ExerciseTab::freeName(const std::string& wanted) const {
 }
 
 void ExerciseTab::tryIt() {
-  if (!workstation_.currentCase()) return app_.say(tr("Open a case first."));
-  app_.takeTyped();
+  if (!workstation_.currentCase()) return messages_.say(tr("Open a case first."));
+  guards_.takeTyped();
   draw(false);
   app_.go(Place::train);
   app_.setTrying(true);
@@ -250,11 +253,11 @@ void ExerciseTab::tryIt() {
 // --- To and from other workstations ---
 
 void ExerciseTab::exportIt() {
-  if (!workstation_.currentCase()) return app_.say(tr("Open a case first."));
-  app_.takeTyped();
+  if (!workstation_.currentCase()) return messages_.say(tr("Open a case first."));
+  guards_.takeTyped();
   if (!structuresInCase()) {
     QMessageBox* question =
-        ask(app_.window(), "exportQuestion",
+        ask(messages_.window(), "exportQuestion",
             tr("The structures have been changed and are not saved in the case."),
             tr("The exercise goes with those of the case as it was saved."),
             tr("Export &without the changes"), [this] { exportSaved(); });
@@ -270,7 +273,7 @@ void ExerciseTab::exportIt() {
 void ExerciseTab::exportSaved() {
   const bool saved = isOwn() && !workstation_.exerciseEdited() && !workstation_.tissuesEdited();
   if (!saved) return save(false, [this] { exportSaved(); });
-  app_.askForNewFolder(
+  messages_.askForNewFolder(
       "exportExerciseDialog", tr("Export the exercise as a new folder"),
       toQt(workstation_.exerciseFile().parent_path().filename()),
       [this, exercise = workstation_.exerciseFile()](const std::filesystem::path& folder) {
@@ -285,7 +288,7 @@ void ExerciseTab::exportSaved() {
 
 void ExerciseTab::importIt() {
   QFileDialog* dialog =
-      app_.fileDialog("importExerciseDialog", tr("Import an exercise: its folder"));
+      messages_.fileDialog("importExerciseDialog", tr("Import an exercise: its folder"));
   dialog->setFileMode(QFileDialog::Directory);
   dialog->setOption(QFileDialog::ShowDirsOnly);
   connect(dialog, &QFileDialog::fileSelected, this, [this](const QString& folder) {
@@ -302,9 +305,8 @@ void ExerciseTab::importIt() {
         },
         [this, exercise] {
           app_.tellExercises();
-          app_.unlessLost({AppContext::UnsavedWork::structures, AppContext::UnsavedWork::cuts,
-                           AppContext::UnsavedWork::tissues},
-                          [this, exercise] { app_.openExercise(*exercise, Place::prepare); });
+          guards_.unlessLost({UnsavedWork::structures, UnsavedWork::cuts, UnsavedWork::tissues},
+                             [this, exercise] { app_.openExercise(*exercise, Place::prepare); });
         });
   });
   dialog->open();

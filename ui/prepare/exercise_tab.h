@@ -23,11 +23,11 @@ class ExerciseTab : public QObject {
   void show(bool in_front);
   // In the storage folder, in its own place or as another one. `then` follows once it is written.
   // `on_another_case`: in the place of one that was made on another case, which is asked otherwise.
-  void save(bool copy, AppContext::Next then, bool on_another_case = false);
+  void save(bool copy, WorkGuards::Next then, bool on_another_case = false);
 
   // Whether the case has the structures as they are now, and what gives it them.
   std::function<bool()> structuresInCase;
-  std::function<void(AppContext::Next then)> saveInCase;
+  std::function<void(WorkGuards::Next then)> saveInCase;
 
  signals:
   void saved();
@@ -47,7 +47,7 @@ class ExerciseTab : public QObject {
     std::string text;
   };
   void askToReplace(const char* name, const QString& why, const QString& what,
-                    const AppContext::Next& replace, const AppContext::Next& then);
+                    const WorkGuards::Next& replace, const WorkGuards::Next& then);
   static OnDisk onDisk(const std::filesystem::path& file);
   void tryIt();
   void exportIt();
@@ -56,6 +56,8 @@ class ExerciseTab : public QObject {
 
   AppContext& app_;
   Workstation& workstation_;
+  Messages& messages_;
+  WorkGuards& guards_;
   Toolbox& toolbox_;
   OutlineTool outline_;
   ExerciseForm* form_;

@@ -2,17 +2,17 @@
 
 namespace trephine {
 
-OutlineTool::OutlineTool(AppContext& app)
+OutlineTool::OutlineTool(Workstation& workstation, Toolbox& toolbox, Messages& messages)
     : ViewTool({"outlineTool",
                 Qt::Key(0),
                 {},
                 {},
                 tr("Each click on the surface adds a point to the outline. Esc: done.")},
                nullptr),
-      app_(app),
-      workstation_(app.workstation()) {
-  app.views().toolbox().add(*this);
-  connect(&app.views().toolbox(), &Toolbox::taken, this, [this] { first_mm_.reset(); });
+      workstation_(workstation),
+      messages_(messages) {
+  toolbox.add(*this);
+  connect(&toolbox, &Toolbox::taken, this, [this] { first_mm_.reset(); });
 }
 
 void OutlineTool::press(const ToolEvent& event) {
@@ -38,7 +38,7 @@ void OutlineTool::add(const Vec3& at_mm) {
   }
   if (!exercise.outline && !first_mm_) {
     first_mm_ = at_mm;
-    return app_.say(tr("The first point is set: click the next."));
+    return messages_.say(tr("The first point is set: click the next."));
   }
   ExerciseOutline outline;
   if (exercise.outline) {
@@ -50,9 +50,9 @@ void OutlineTool::add(const Vec3& at_mm) {
   }
   outline.points_mm.push_back(at_mm);
   const Status done = workstation_.edit("outline", [&](Exercise& now) { now.outline = outline; });
-  if (!done) return app_.report(done.error());
+  if (!done) return messages_.report(done.error());
   first_mm_.reset();
-  app_.say(tr("The outline has %1 points. Esc: done.").arg(outline.points_mm.size()));
+  messages_.say(tr("The outline has %1 points. Esc: done.").arg(outline.points_mm.size()));
 }
 
 }  // namespace trephine

@@ -3,14 +3,15 @@
 
 #include <optional>
 
-#include "ui/views/view_tool.h"
-#include "ui/work/app_context.h"
+#include "ui/views/toolbox.h"
+#include "ui/work/messages.h"
+#include "ui/work/workstation.h"
 
 namespace trephine {
 
 class OutlineTool : public ViewTool {
  public:
-  explicit OutlineTool(AppContext& app);
+  OutlineTool(Workstation& workstation, Toolbox& toolbox, Messages& messages);
 
   bool worksIn3D() const override { return true; }
   void press(const ToolEvent& event) override;
@@ -19,8 +20,8 @@ class OutlineTool : public ViewTool {
  private:
   void add(const Vec3& at_mm);
 
-  AppContext& app_;
   Workstation& workstation_;
+  Messages& messages_;
   std::optional<Vec3> first_mm_;  // of a new outline
 };
 

@@ -10,15 +10,18 @@ namespace {
 constexpr int kPlotEvery_ms = 40;
 }
 
-PokeTab::PokeTab(AppContext& app, TissuePanel& tissues, PokePlot& plot)
-    : QObject(&app),
-      app_(app),
-      workstation_(app.workstation()),
-      views_(&app.views()),
-      view_(&app.view()),
+PokeTab::PokeTab(Workstation& workstation, Messages& messages, WorkGuards& guards,
+                 CaseViews& case_views, TissuePanel& tissues, PokePlot& plot, QObject* parent)
+    : QObject(parent),
+      workstation_(workstation),
+      messages_(messages),
+      guards_(guards),
+      case_views_(case_views),
+      views_(&case_views.views()),
+      view_(&case_views.view()),
       tissues_(tissues),
       plot_(plot) {
-  action_ = makeAction(*app_.window(), Symbol::train, "poke", tr("Poke"),
+  action_ = makeAction(*messages_.window(), Symbol::train, "poke", tr("Poke"),
                      QKeySequence(Qt::CTRL | Qt::Key_E),
                      tr("Feel the tissue with mouse or arm; nothing is cut"));
   action_->setCheckable(true);
@@ -67,13 +70,12 @@ void PokeTab::refresh() {
 void PokeTab::toggle() {
   refresh();  // as it is until it has begun or ended
   if (workstation_.isPoke()) return workstation_.stop();
-  app_.beforeStart([this] {
-    app_.unlessLost({AppContext::UnsavedWork::cuts}, [this] {
-      if (app_.carved()) app_.showWholeCase();
-      app_.go(Place::prepare);
+  guards_.beforeStart([this] {
+    guards_.unlessLost({UnsavedWork::cuts}, [this] {
+      if (case_views_.carved()) case_views_.showWholeCase();
       emit frontWanted();
       if (const Status& drawing = view_->canDraw(); !drawing) {
-        return app_.report(drawing.error());
+        return messages_.report(drawing.error());
       }
       workstation_.poke();
     });

@@ -8,29 +8,32 @@
 
 #include "ui/tissue/poke_plot.h"
 #include "ui/tissue/tissue_panel.h"
-#include "ui/work/app_context.h"
+#include "ui/work/case_views.h"
 
 namespace trephine {
 
 class PokeTab : public QObject {
   Q_OBJECT
  public:
-  PokeTab(AppContext& app, TissuePanel& tissues, PokePlot& plot);
+  PokeTab(Workstation& workstation, Messages& messages, WorkGuards& guards, CaseViews& case_views,
+          TissuePanel& tissues, PokePlot& plot, QObject* parent);
 
   QAction* action() const { return action_; }
   // `here`: its workspace is shown; `in_front`: so are the tissues.
   void show(bool here, bool in_front);
 
  signals:
-  void frontWanted();  // the tissues
+  void frontWanted();  // Prepare with the tissues
 
  private:
   void refresh();
   void toggle();
   void showPokes(Session& session);
 
-  AppContext& app_;
   Workstation& workstation_;
+  Messages& messages_;
+  WorkGuards& guards_;
+  CaseViews& case_views_;
   FourUp* views_;
   ViewWidget* view_;
   TissuePanel& tissues_;

@@ -12,24 +12,34 @@
 namespace trephine {
 
 PrepareWorkspace::PrepareWorkspace(AppContext& app)
-    : Workspace(&app), app_(app), workstation_(app.workstation()), views_(&app.views()) {
-  save_in_case_ = makeAction(*app.window(), Symbol::save, "saveInCase", tr("Save in the case"),
-                             QKeySequence(Qt::CTRL | Qt::SHIFT | Qt::Key_S),
+    : Workspace(&app),
+      app_(app),
+      workstation_(app.workstation()),
+      views_(&app.caseViews().views()) {
+  save_in_case_ = makeAction(*app.messages().window(), Symbol::save, "saveInCase",
+                             tr("Save in the case"), QKeySequence(Qt::CTRL | Qt::SHIFT | Qt::Key_S),
                              tr("Keep changed structures and tissues in the case"));
   makePanels();
-  picture_ = new TissuePicture(app_, *tissue_panel_, *structure_panel_, editor_);
+  Messages& messages = app_.messages();
+  WorkGuards& guards = app_.guards();
+  CaseViews& case_views = app_.caseViews();
+  picture_ =
+      new TissuePicture(workstation_, *views_, *tissue_panel_, *structure_panel_, editor_, &app_);
   tissues_ = new TissueTab(app_, *tissue_panel_, editor_, *picture_);
-  thresholds_ = new ThresholdTab(app_, *histogram_, *tissue_panel_, *picture_);
-  poke_ = new PokeTab(app_, *tissue_panel_, *poke_plot_);
-  arms_ = new ArmsTab(app_, *tools_panel_);
+  thresholds_ =
+      new ThresholdTab(workstation_, case_views, *histogram_, *tissue_panel_, *picture_, &app_);
+  poke_ =
+      new PokeTab(workstation_, messages, guards, case_views, *tissue_panel_, *poke_plot_, &app_);
+  arms_ = new ArmsTab(workstation_, *views_, messages, *tools_panel_, &app_);
   exercise_ = new ExerciseTab(app_, *form_);
   // Before the structures' own: what is open comes before what is made of it.
   const auto labels = [this] {
     tissue_panel_->setLabelsOpen(workstation_.placed()->labels != nullptr);
   };
-  connect(&app_, &AppContext::caseShown, this, labels);
+  connect(&app_.caseViews(), &CaseViews::caseShown, this, labels);
   connect(&workstation_, &Workstation::structuresChanged, this, labels);
-  structures_ = new StructureTab(app_, *structure_panel_, editor_, *picture_);
+  structures_ = new StructureTab(workstation_, messages, guards, case_views, app_.library(),
+                                 app_.storage(), *structure_panel_, editor_, *picture_, &app_);
   connectTabs();
   connectUndo();
   showTab();
@@ -72,27 +82,30 @@ void PrepareWorkspace::connectTabs() {
   });
   connect(thresholds_, &ThresholdTab::structuresNamed, form_, &ExerciseForm::setStructures);
   form_->sets = [this] { return tissues_->setsOfWorkstation(); };
-  connect(poke_, &PokeTab::frontWanted, tabs_, [this] { tabs_->setCurrentIndex(kTissueTab); });
+  connect(poke_, &PokeTab::frontWanted, tabs_, [this] {
+    app_.go(Place::prepare);
+    tabs_->setCurrentIndex(kTissueTab);
+  });
   connect(structures_, &StructureTab::frontWanted, tabs_,
           [this] { tabs_->setCurrentIndex(kStructureTab); });
   connect(exercise_, &ExerciseTab::entryWanted, &structures_->entry(), &EntryTool::useOnce);
   exercise_->structuresInCase = [this] { return structures_->inCase(); };
-  exercise_->saveInCase = [this](AppContext::Next then) {
+  exercise_->saveInCase = [this](WorkGuards::Next then) {
     structures_->saveInCase(std::move(then));
   };
   connect(exercise_, &ExerciseTab::saved, this, [this] { structures_->noteTissues(false); });
   connect(exercise_, &ExerciseTab::labelsWanted, structures_, &StructureTab::askForLabels);
   connect(save_in_case_, &QAction::triggered, this, [this] { structures_->saveInCase({}); });
   connect(tabs_, &QTabWidget::currentChanged, this, &PrepareWorkspace::showTab);
-  app_.setGuard(AppContext::UnsavedWork::tissues,
-                [this](AppContext::Next go_on) { unlessTissuesStay(std::move(go_on)); });
+  app_.guards().setGuard(UnsavedWork::tissues,
+                         [this](WorkGuards::Next go_on) { unlessTissuesStay(std::move(go_on)); });
 }
 
 void PrepareWorkspace::connectUndo() {
   connect(&workstation_, &Workstation::editsChanged, this,
           [this] { tissues_->showHistory(editsServe()); });
   connect(structures_, &StructureTab::undoChanged, this, &PrepareWorkspace::showUndo);
-  connect(&app_, &AppContext::cutsChanged, this, &PrepareWorkspace::showUndo);
+  connect(&app_.caseViews(), &CaseViews::cutsChanged, this, &PrepareWorkspace::showUndo);
   connect(app_.undoAction(), &QAction::triggered, this, [this] {
     if (editsServe()) return workstation_.undoEdit();
     if (!workstation_.session()) editor_.undo();
@@ -108,6 +121,11 @@ Workspace::Parts PrepareWorkspace::parts() {
   parts.left = tabs_;
   parts.below = below_;
   return parts;
+}
+
+void PrepareWorkspace::makeMissing() {
+  app_.go(Place::prepare);
+  structures_->makeMissing();
 }
 
 void PrepareWorkspace::enter() {
@@ -155,28 +173,28 @@ bool PrepareWorkspace::editsServe() const {
 void PrepareWorkspace::showUndo() {
   if (editsServe()) return tissues_->showHistory(true);
   if (workstation_.phase() == Workstation::Phase::running) return;
-  const bool serve = structures_->shown() && !app_.cutsUnsaved();
+  const bool serve = structures_->shown() && !app_.caseViews().cutsUnsaved();
   const auto undo = serve ? editor_.undoText() : std::nullopt;
   const auto redo = serve ? editor_.redoText() : std::nullopt;
   QAction *undo_action = app_.undoAction(), *redo_action = app_.redoAction();
   undo_action->setEnabled(undo.has_value());
   redo_action->setEnabled(redo.has_value());
   undo_action->setToolTip(undo ? tr("Undo: %1").arg(*undo)
-                          : app_.cutsUnsaved()
+                          : app_.caseViews().cutsUnsaved()
                               ? tr("The exercise has ended: its cuts stay until Reset")
                               : tr("Takes back the last change; there is none"));
   redo_action->setToolTip(redo ? tr("Redo: %1").arg(*redo)
                                : tr("Brings back what was taken back; there is nothing"));
 }
 
-void PrepareWorkspace::unlessTissuesStay(AppContext::Next go_on) {
+void PrepareWorkspace::unlessTissuesStay(WorkGuards::Next go_on) {
   const bool exercise = workstation_.exerciseEdited();
   if (!exercise && !workstation_.tissuesEdited()) return go_on();
   auto* box = new QMessageBox(QMessageBox::Question, tr("Trephine"),
                               exercise ? tr("The exercise has been changed and not saved.")
                                        : tr("The tissues have been changed and not saved."),
                               QMessageBox::Save | QMessageBox::Discard | QMessageBox::Cancel,
-                              app_.window());
+                              app_.messages().window());
   box->setObjectName("unsavedTissues");
   box->setAttribute(Qt::WA_DeleteOnClose);
   box->setInformativeText(exercise ? tr("Save it? Discarded changes cannot be had back.")
@@ -184,21 +202,20 @@ void PrepareWorkspace::unlessTissuesStay(AppContext::Next go_on) {
                               ? tr("Save them in the case? Discarded changes cannot be had back.")
                               : tr("Save them to a file? Discarded changes cannot be had back."));
   box->setDefaultButton(QMessageBox::Save);
-  connect(box, &QMessageBox::finished, this,
-          [this, exercise, go_on = std::move(go_on)](int answer) {
-            if (answer == QMessageBox::Discard) return go_on();
-            if (answer != QMessageBox::Save) return;
-            // And what is changed while that is written.
-            if (exercise)
-              return exercise_->save(false, [this, go_on] { unlessTissuesStay(go_on); });
-            if (structures_->isStored()) return structures_->saveInCase(go_on);
-            QFileDialog* dialog =
-                app_.saveDialog(tr("Save tissues"), "tissues.json", tr("Tissues (*.json)"));
-            connect(dialog, &QFileDialog::fileSelected, this, [this, go_on](const QString& file) {
-              workstation_.saveTissues(toPath(file), go_on);
-            });
-            dialog->open();
-          });
+  connect(
+      box, &QMessageBox::finished, this, [this, exercise, go_on = std::move(go_on)](int answer) {
+        if (answer == QMessageBox::Discard) return go_on();
+        if (answer != QMessageBox::Save) return;
+        // And what is changed while that is written.
+        if (exercise) return exercise_->save(false, [this, go_on] { unlessTissuesStay(go_on); });
+        if (structures_->isStored()) return structures_->saveInCase(go_on);
+        QFileDialog* dialog =
+            app_.messages().saveDialog(tr("Save tissues"), "tissues.json", tr("Tissues (*.json)"));
+        connect(dialog, &QFileDialog::fileSelected, this, [this, go_on](const QString& file) {
+          workstation_.saveTissues(toPath(file), go_on);
+        });
+        dialog->open();
+      });
   box->open();
 }
 

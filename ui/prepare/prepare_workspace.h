@@ -30,7 +30,7 @@ class PrepareWorkspace : public Workspace {
   void leave() override;
 
   // The structure that the exercise needs and the case lacks: with the tool that makes it.
-  void makeMissing() { structures_->makeMissing(); }
+  void makeMissing();
   bool structuresEdited() const { return editor_.edited(); }
   QAction* saveInCaseAction() const { return save_in_case_; }
   QAction* pokeAction() const { return poke_->action(); }
@@ -44,7 +44,7 @@ class PrepareWorkspace : public Workspace {
   void showUndo();
   bool editsServe() const;
   // Goes on with what takes the place of the tissues; where they have been edited it asks first.
-  void unlessTissuesStay(AppContext::Next go_on);
+  void unlessTissuesStay(WorkGuards::Next go_on);
 
   AppContext& app_;
   Workstation& workstation_;

@@ -23,16 +23,18 @@ QString surfaceFileName(const std::string& structure) {
 
 }  // namespace
 
-StructureExports::StructureExports(AppContext& app, StructurePanel& structures,
+StructureExports::StructureExports(Workstation& workstation, Messages& messages, WorkGuards& guards,
+                                   const std::filesystem::path& storage, StructurePanel& structures,
                                    StructureEditor& editor)
-    : QObject(&app),
-      app_(app),
-      workstation_(app.workstation()),
+    : workstation_(workstation),
+      messages_(messages),
+      guards_(guards),
+      storage_(storage),
       structures_(structures),
       editor_(editor) {
   connect(&structures_, &StructurePanel::saveDicomWanted, this, [this] { askToSaveDicom(false); });
   connect(&structures_, &StructurePanel::saveForSourceWanted, this, [this] {
-    ask(app_.window(), "sourceUidsQuestion",
+    ask(messages_.window(), "sourceUidsQuestion",
         tr("The file will name the UIDs of the patient's own CT, so that it finds the patient "
            "where "
            "the CT is kept."),
@@ -45,18 +47,18 @@ StructureExports::StructureExports(AppContext& app, StructurePanel& structures,
 
 bool StructureExports::sourceAtHand() const {
   const Case* of = workstation_.currentCase();
-  const std::filesystem::path& source = app_.caseSource();
+  const std::filesystem::path& source = guards_.caseSource();
   return of && of->provenance && !of->provenance->source_ids.series.empty() && !source.empty() &&
-         source.parent_path() != app_.storage() / "cases";
+         source.parent_path() != storage_ / "cases";
 }
 
 void StructureExports::askToSaveDicom(bool for_source) {
-  app_.askForNewFolder(
+  messages_.askForNewFolder(
       "dicomDialog", tr("Save the DICOM files as a new folder"), "structures-dicom",
       [this, for_source,
        volume = workstation_.currentCase()->volume](const std::filesystem::path& folder) {
         const Case* of = workstation_.currentCase();
-        if (!of || of->volume != volume || !app_.keepsTheCase(folder)) return;
+        if (!of || of->volume != volume || !guards_.keepsTheCase(folder)) return;
         saveDicom(folder, for_source);
       });
 }
@@ -69,7 +71,7 @@ void StructureExports::saveDicom(const std::filesystem::path& folder, bool for_s
   const std::uint64_t changes = editor_.changes();
   auto notes = std::make_shared<std::vector<std::string>>();
   const std::optional<std::filesystem::path> source =
-      for_source ? std::optional(app_.caseSource()) : std::nullopt;
+      for_source ? std::optional(guards_.caseSource()) : std::nullopt;
   workstation_.save(
       for_source ? tr("The structures are saved as DICOM that names the UIDs of the patient's CT.")
                  : tr("The structures are saved as DICOM, with the CT."),
@@ -102,10 +104,10 @@ void StructureExports::askToSaveSurface() {
   // As it is now: another case may come while the dialog stands.
   const std::shared_ptr<const LabelMap> copy = editor_.finished();
   if (!copy) return;
-  QFileDialog* dialog = app_.saveDialog(tr("Save the surface of \"%1\"").arg(toQt(of->name)),
-                                        surfaceFileName(of->name), tr("Surface (*.stl)"));
+  QFileDialog* dialog = messages_.saveDialog(tr("Save the surface of \"%1\"").arg(toQt(of->name)),
+                                             surfaceFileName(of->name), tr("Surface (*.stl)"));
   connect(dialog, &QFileDialog::fileSelected, this, [this, copy, label](const QString& file) {
-    if (!app_.keepsTheCase(toPath(file))) return;
+    if (!guards_.keepsTheCase(toPath(file))) return;
     workstation_.save(tr("The surface is saved."),
                       [copy, label, path = toPath(file)](const Progress& progress) -> Status {
                         const auto written = writeSurface(*copy, label, path, progress);

@@ -6,14 +6,17 @@
 #include <filesystem>
 
 #include "ui/structures/structure_panel.h"
-#include "ui/work/app_context.h"
+#include "ui/work/work_guards.h"
 
 namespace trephine {
 
 class StructureExports : public QObject {
   Q_OBJECT
  public:
-  StructureExports(AppContext& app, StructurePanel& structures, StructureEditor& editor);
+  // `storage`: the folder with the library's cases.
+  StructureExports(Workstation& workstation, Messages& messages, WorkGuards& guards,
+                   const std::filesystem::path& storage, StructurePanel& structures,
+                   StructureEditor& editor);
 
   // The case was read by this window from DICOM, in the folder that was opened last; one of the
   // library's lies in a folder without it.
@@ -24,8 +27,10 @@ class StructureExports : public QObject {
   void saveDicom(const std::filesystem::path& folder, bool for_source);
   void askToSaveSurface();
 
-  AppContext& app_;
   Workstation& workstation_;
+  Messages& messages_;
+  WorkGuards& guards_;
+  std::filesystem::path storage_;
   StructurePanel& structures_;
   StructureEditor& editor_;
 };

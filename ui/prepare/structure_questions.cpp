@@ -12,8 +12,8 @@
 
 namespace trephine {
 
-StructureQuestions::StructureQuestions(AppContext& app)
-    : QObject(&app), app_(app), workstation_(app.workstation()) {
+StructureQuestions::StructureQuestions(Workstation& workstation, QWidget& window)
+    : workstation_(workstation), window_(window) {
   connect(&workstation_, &Workstation::asked, this, &StructureQuestions::ask);
 }
 
@@ -42,7 +42,7 @@ void StructureQuestions::askForOption(const Choice& choice) {
   };
   const std::vector<std::string>& options = choice.options;
   QMessageBox* question =
-      trephine::ask(app_.window(), "structuresQuestion", toQt(choice.question) + '.',
+      trephine::ask(&window_, "structuresQuestion", toQt(choice.question) + '.',
                     tr("What is used as it is may be felt and cut in the wrong place."),
                     words(options.front()), use(options.front()));
   connect(question, &QMessageBox::buttonClicked, this, [this, question](QAbstractButton* button) {
@@ -54,7 +54,7 @@ void StructureQuestions::askForOption(const Choice& choice) {
 }
 
 void StructureQuestions::askForOrder(const std::vector<std::string>& names) {
-  auto* dialog = new OverlapDialog(names, app_.window());
+  auto* dialog = new OverlapDialog(names, &window_);
   connect(dialog, &QDialog::accepted, this,
           [this, dialog] { workstation_.answer(orderAnswer(dialog->order())); });
   connect(dialog, &QDialog::rejected, this, [this] { workstation_.dropQuestion(); });
@@ -62,7 +62,7 @@ void StructureQuestions::askForOrder(const std::vector<std::string>& names) {
 }
 
 void StructureQuestions::askForThreshold() {
-  auto* dialog = new QInputDialog(app_.window());
+  auto* dialog = new QInputDialog(&window_);
   dialog->setObjectName("thresholdQuestion");
   dialog->setAttribute(Qt::WA_DeleteOnClose);
   dialog->setWindowTitle(tr("A fractional segmentation"));

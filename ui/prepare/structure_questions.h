@@ -2,17 +2,19 @@
 #pragma once
 
 #include <QObject>
+#include <QWidget>
 #include <string>
 #include <vector>
 
-#include "ui/work/app_context.h"
+#include "ui/work/workstation.h"
 
 namespace trephine {
 
 class StructureQuestions : public QObject {
   Q_OBJECT
  public:
-  explicit StructureQuestions(AppContext& app);
+  // `window`: what they stand over.
+  StructureQuestions(Workstation& workstation, QWidget& window);
 
  private:
   void ask(const StructureQuestion& question);
@@ -20,8 +22,8 @@ class StructureQuestions : public QObject {
   void askForOrder(const std::vector<std::string>& names);
   void askForThreshold();
 
-  AppContext& app_;
   Workstation& workstation_;
+  QWidget& window_;
 };
 
 }  // namespace trephine

@@ -22,20 +22,25 @@ constexpr int kSettled_ms = 500;  // after the last change the exercise is place
 constexpr double kStructureOpacity = 0.4;
 }  // namespace
 
-StructureTab::StructureTab(AppContext& app, StructurePanel& structures, StructureEditor& editor,
-                           TissuePicture& picture)
-    : QObject(&app),
-      app_(app),
-      workstation_(app.workstation()),
-      views_(&app.views()),
-      toolbox_(app.views().toolbox()),
-      view_(&app.view()),
+StructureTab::StructureTab(Workstation& workstation, Messages& messages, WorkGuards& guards,
+                           CaseViews& case_views, std::shared_ptr<CaseLibrary> library,
+                           const std::filesystem::path& storage, StructurePanel& structures,
+                           StructureEditor& editor, TissuePicture& picture, QObject* parent)
+    : QObject(parent),
+      workstation_(workstation),
+      messages_(messages),
+      guards_(guards),
+      case_views_(case_views),
+      library_(std::move(library)),
+      views_(&case_views.views()),
+      toolbox_(case_views.views().toolbox()),
+      view_(&case_views.view()),
       structures_(structures),
       editor_(editor),
       picture_(picture),
-      exports_(app, structures, editor),
-      questions_(app),
-      entry_(app) {
+      exports_(workstation, messages, guards, storage, structures, editor),
+      questions_(workstation, *messages.window()),
+      entry_(workstation, toolbox_, messages, guards) {
   for (ViewTool* tool : structures_.tools()) toolbox_.add(*tool);
   toolbox_.other_keys = [this](int of) { return key(of); };
   connect(&structures_, &StructurePanel::toolChosen, this,
@@ -63,16 +68,16 @@ StructureTab::StructureTab(AppContext& app, StructurePanel& structures, Structur
     emit undoChanged();
     settled_.start();
   });
-  connect(&editor_, &StructureEditor::failed, &app_, &AppContext::report);
+  connect(&editor_, &StructureEditor::failed, &messages_, &Messages::report);
   settled_.setParent(this);
   settled_.setObjectName("structuresSettled");
   settled_.setSingleShot(true);
   settled_.setInterval(kSettled_ms);
   connect(&settled_, &QTimer::timeout, this, [this] { (void)take(); });
-  app_.setGuard(AppContext::UnsavedWork::structures,
-                [this](AppContext::Next go_on) { unlessLost(std::move(go_on)); });
-  app_.setBeforeStart([this](AppContext::Next go_on) { beforeStart(std::move(go_on)); });
-  connect(&app_, &AppContext::caseShown, this, &StructureTab::showOpened);
+  guards_.setGuard(UnsavedWork::structures,
+                [this](WorkGuards::Next go_on) { unlessLost(std::move(go_on)); });
+  guards_.setBeforeStart([this](WorkGuards::Next go_on) { beforeStart(std::move(go_on)); });
+  connect(&case_views_, &CaseViews::caseShown, this, &StructureTab::showOpened);
   connect(&workstation_, &Workstation::phaseChanged, this, [this] {
     const Workstation::Phase phase = workstation_.phase();
     editor_.setLocked(phase == Workstation::Phase::ready || phase == Workstation::Phase::empty
@@ -122,14 +127,14 @@ void StructureTab::showPlaced() {
     emit frontWanted();
     showReport();
   }
-  if (app_.carved() && !app_.cutsUnsaved()) app_.showWholeCase();
+  if (case_views_.carved() && !case_views_.cutsUnsaved()) case_views_.showWholeCase();
   showViews();
   emit entry_.changed();
-  if (entry_.takeAsked()) app_.lookAtCase();
+  if (entry_.takeAsked()) case_views_.lookAtCase();
   // Not by a dialog: it would come with every stroke.
   if (const auto& why = workstation_.placed()->error) structures_.say(toQt(why->sentence()));
   settled_.start();  // what was changed meanwhile
-  if (AppContext::Next start = std::exchange(start_when_placed_, {})) {
+  if (WorkGuards::Next start = std::exchange(start_when_placed_, {})) {
     QMetaObject::invokeMethod(
         this, [this, start] { beforeStart(start); }, Qt::QueuedConnection);
   }
@@ -147,10 +152,10 @@ void StructureTab::placingFailed() {
 // Of those that came from a file: beside the window, which goes on.
 void StructureTab::showReport() {
   const Case& of = *workstation_.currentCase();
-  if (auto* before = app_.window()->findChild<StructureReport*>())
+  if (auto* before = messages_.window()->findChild<StructureReport*>())
     before->close();  // of another file
   if (of.structure_cards.empty()) return;
-  (new StructureReport(of, app_.window()))->show();
+  (new StructureReport(of, messages_.window()))->show();
 }
 
 // Of a case that was opened.
@@ -192,7 +197,6 @@ bool StructureTab::offerMissing() {
 }
 
 void StructureTab::makeMissing() {
-  app_.go(Place::prepare);
   emit frontWanted();
   toolbox_.take(*structures_.tools()[0]);
   structures_.offerWanted();
@@ -230,11 +234,11 @@ void StructureTab::toolTaken(ViewTool* tool) {
   const bool ours = structures_.holds(*tool);
   if (ours && !here_) {
     toolbox_.putDown();
-    return app_.say(tr("Structures are made in Prepare (Ctrl+2)."));
+    return messages_.say(tr("Structures are made in Prepare (Ctrl+2)."));
   }
   if (ours) emit frontWanted();
   structures_.showTool(*tool);
-  if (!ours && !tool->facts().hint.isEmpty()) app_.say(tool->facts().hint);
+  if (!ours && !tool->facts().hint.isEmpty()) messages_.say(tool->facts().hint);
 }
 
 bool StructureTab::key(int key) {
@@ -243,7 +247,7 @@ bool StructureTab::key(int key) {
                              Qt::Key_BracketRight};
   if (std::ranges::count(kKeys, key) == 0) return false;
   if (!here_ && key != Qt::Key_V) {
-    app_.say(tr("Structures are made in Prepare (Ctrl+2)."));
+    messages_.say(tr("Structures are made in Prepare (Ctrl+2)."));
     return true;
   }
   switch (key) {
@@ -269,8 +273,8 @@ bool StructureTab::key(int key) {
 }
 
 // What was grown and reaches too far, perhaps, before an exercise runs on it.
-void StructureTab::askAboutPreview(AppContext::Next go_on) {
-  QMessageBox* question = ask(app_.window(), "previewQuestion",
+void StructureTab::askAboutPreview(WorkGuards::Next go_on) {
+  QMessageBox* question = ask(messages_.window(), "previewQuestion",
                               tr("What was grown does not count yet, and may be too large."),
                               tr("Look at it in the slices first, or start with it or without."),
                               tr("&Take it"), [this, go_on] {
@@ -284,14 +288,14 @@ void StructureTab::askAboutPreview(AppContext::Next go_on) {
 }
 
 // An exercise runs on what was made a moment ago.
-void StructureTab::beforeStart(AppContext::Next go_on) {
+void StructureTab::beforeStart(WorkGuards::Next go_on) {
   if (editor_.busy()) {
-    return app_.say(tr("A structure is being made: wait for it, or cancel it, and start then."));
+    return messages_.say(tr("A structure is being made: wait for it, or cancel it, and start then."));
   }
   if (editor_.preview() && editor_.preview()->leaked) return askAboutPreview(std::move(go_on));
   if (editor_.preview()) editor_.takePreview();
   if (!take()) {
-    return app_.say(tr("The structures are being put in place: try again in a moment."));
+    return messages_.say(tr("The structures are being put in place: try again in a moment."));
   }
   if (workstation_.isOpening()) {
     start_when_placed_ = std::move(go_on);
@@ -302,29 +306,29 @@ void StructureTab::beforeStart(AppContext::Next go_on) {
 
 void StructureTab::askForLabels() {
   if (workstation_.session()) {
-    return app_.say(tr("An exercise is running: stop it, then open structures."));
+    return messages_.say(tr("An exercise is running: stop it, then open structures."));
   }
-  QFileDialog* dialog = app_.fileDialog("labelsDialog", tr("Open structures of the case"));
+  QFileDialog* dialog = messages_.fileDialog("labelsDialog", tr("Open structures of the case"));
   connect(dialog, &QFileDialog::fileSelected, this, [this](const QString& file) {
-    app_.unlessLost({AppContext::UnsavedWork::structures, AppContext::UnsavedWork::cuts},
+    guards_.unlessLost({UnsavedWork::structures, UnsavedWork::cuts},
                     [this, file] { workstation_.useLabels(toPath(file)); });
   });
   dialog->open();
 }
 
-void StructureTab::saveThen(AppContext::Next then) {
+void StructureTab::saveThen(WorkGuards::Next then) {
   // As they are now: another case may come while the dialog stands.
   const std::shared_ptr<const LabelMap> copy = editor_.finished();
-  if (!copy) return app_.say(tr("There is no structure to save."));
+  if (!copy) return messages_.say(tr("There is no structure to save."));
   const std::uint64_t changes = editor_.changes();
-  QFileDialog* dialog = app_.saveDialog(
+  QFileDialog* dialog = messages_.saveDialog(
       tr("Save structures"), "structures.nii.gz",
       tr("NIfTI with names beside it (*.nii.gz *.nii);;3D Slicer (*.seg.nrrd *.nrrd);;MetaImage "
          "with names beside it (*.mha)"));
   connect(
       dialog, &QFileDialog::fileSelected, this,
       [this, copy, changes, then = std::move(then)](const QString& file) {
-        if (!app_.keepsTheCase(structuresFile(toPath(file))) || !app_.keepsTheCase(toPath(file)))
+        if (!guards_.keepsTheCase(structuresFile(toPath(file))) || !guards_.keepsTheCase(toPath(file)))
           return;
         workstation_.save(
             tr("The structures are saved as %1.").arg(QFileInfo(file).fileName()),
@@ -344,9 +348,9 @@ bool StructureTab::isStored() const {
   return of && !of->stored.empty();
 }
 
-void StructureTab::saveInCase(AppContext::Next then) {
+void StructureTab::saveInCase(WorkGuards::Next then) {
   if (!isStored()) {
-    return app_.say(tr("This case is not one of the library's: save to a file instead."));
+    return messages_.say(tr("This case is not one of the library's: save to a file instead."));
   }
   std::shared_ptr<const LabelMap> map;  // null: as it was
   if (in_case_ != editor_.changes()) {
@@ -361,13 +365,13 @@ void StructureTab::saveInCase(AppContext::Next then) {
   std::optional<TissueSet> tissues;
   if (tissues_touched_ || workstation_.tissuesEdited()) tissues = workstation_.tissues();
   if (!map && !tissues) {
-    app_.say(tr("Nothing of it has changed since it was saved."));
+    messages_.say(tr("Nothing of it has changed since it was saved."));
     if (then) then();
     return;
   }
   workstation_.save(
       tr("Structures and tissues are saved in the case."),
-      [library = app_.library(), id = workstation_.currentCase()->stored, map,
+      [library = library_, id = workstation_.currentCase()->stored, map,
        tissues](const Progress& progress) -> Status {
         if (map) {
           const auto saved = library->saveStructures(id, *map, progress);
@@ -386,9 +390,9 @@ void StructureTab::saveInCase(AppContext::Next then) {
       });
 }
 
-void StructureTab::unlessLost(AppContext::Next go_on) {
+void StructureTab::unlessLost(WorkGuards::Next go_on) {
   if (!editor_.edited()) return go_on();
-  QMessageBox* question = ask(app_.window(), "structuresUnsaved",
+  QMessageBox* question = ask(messages_.window(), "structuresUnsaved",
                               tr("The structures have been made or changed and not saved."),
                               tr("Going on takes them away."), tr("&Go on without them"), go_on);
   if (isStored()) {

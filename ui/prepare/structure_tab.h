@@ -7,20 +7,23 @@
 #include <memory>
 #include <optional>
 
+#include "library/case_library.h"
 #include "ui/prepare/entry_tool.h"
 #include "ui/prepare/structure_exports.h"
 #include "ui/prepare/structure_questions.h"
 #include "ui/prepare/tissue_picture.h"
 #include "ui/structures/structure_panel.h"
-#include "ui/work/app_context.h"
+#include "ui/work/case_views.h"
 
 namespace trephine {
 
 class StructureTab : public QObject {
   Q_OBJECT
  public:
-  StructureTab(AppContext& app, StructurePanel& structures, StructureEditor& editor,
-               TissuePicture& picture);
+  StructureTab(Workstation& workstation, Messages& messages, WorkGuards& guards,
+               CaseViews& case_views, std::shared_ptr<CaseLibrary> library,
+               const std::filesystem::path& storage, StructurePanel& structures,
+               StructureEditor& editor, TissuePicture& picture, QObject* parent);
 
   // `here`: its workspace is shown; `in_front`: so is its panel. The views show what the panel
   // lists while it is in front.
@@ -35,7 +38,7 @@ class StructureTab : public QObject {
   // Structures and tissues, where they have been changed, into the case of the library.
   bool isStored() const;
   bool inCase() const { return in_case_ == editor_.changes(); }
-  void saveInCase(AppContext::Next then);
+  void saveInCase(WorkGuards::Next then);
   void noteTissues(bool touched) { tissues_touched_ = touched; }
   void askForLabels();
 
@@ -45,7 +48,7 @@ class StructureTab : public QObject {
 
  private:
   bool take();
-  void beforeStart(AppContext::Next go_on);
+  void beforeStart(WorkGuards::Next go_on);
   void showOpened();
   void showPlaced();
   void placingFailed();
@@ -54,12 +57,15 @@ class StructureTab : public QObject {
   void showViews();
   void toolTaken(ViewTool* tool);
   bool key(int key);
-  void askAboutPreview(AppContext::Next go_on);
-  void saveThen(AppContext::Next then);
-  void unlessLost(AppContext::Next go_on);
+  void askAboutPreview(WorkGuards::Next go_on);
+  void saveThen(WorkGuards::Next then);
+  void unlessLost(WorkGuards::Next go_on);
 
-  AppContext& app_;
   Workstation& workstation_;
+  Messages& messages_;
+  WorkGuards& guards_;
+  CaseViews& case_views_;
+  std::shared_ptr<CaseLibrary> library_;
   FourUp* views_;
   Toolbox& toolbox_;
   ViewWidget* view_;
@@ -75,7 +81,7 @@ class StructureTab : public QObject {
   std::optional<std::uint64_t> in_case_ = 0;
   bool tissues_touched_ = false;
   QTimer settled_;
-  AppContext::Next start_when_placed_;  // an exercise waits for its structures
+  WorkGuards::Next start_when_placed_;  // an exercise waits for its structures
   bool here_ = false, in_front_ = false;
 };
 

@@ -4,11 +4,12 @@
 
 namespace trephine {
 
-ThresholdTab::ThresholdTab(AppContext& app, HistogramView& histogram, TissuePanel& tissues,
-                           TissuePicture& picture)
-    : QObject(&app),
-      workstation_(app.workstation()),
-      views_(&app.views()),
+ThresholdTab::ThresholdTab(Workstation& workstation, CaseViews& case_views,
+                           HistogramView& histogram, TissuePanel& tissues, TissuePicture& picture,
+                           QObject* parent)
+    : QObject(parent),
+      workstation_(workstation),
+      views_(&case_views.views()),
       histogram_(histogram),
       tissues_(tissues),
       picture_(picture) {
@@ -19,7 +20,7 @@ ThresholdTab::ThresholdTab(AppContext& app, HistogramView& histogram, TissuePane
           [this](std::size_t tissue) { tissues_.select(tissue); });
   connect(&tissues_, &TissuePanel::chosenChanged, this, &ThresholdTab::refresh);
   connect(&tissues_, &TissuePanel::overlapsShown, &histogram_, &HistogramView::showOverlaps);
-  connect(&app, &AppContext::caseShown, this, &ThresholdTab::countVoxels);
+  connect(&case_views, &CaseViews::caseShown, this, &ThresholdTab::countVoxels);
   connect(&workstation_, &Workstation::structuresChanged, this, &ThresholdTab::countVoxels);
   connect(&counting_, &BackgroundTask::ended, this, &ThresholdTab::countVoxels,
           Qt::QueuedConnection);

@@ -12,15 +12,15 @@
 #include "ui/prepare/tissue_picture.h"
 #include "ui/tissue/histogram_view.h"
 #include "ui/tissue/tissue_panel.h"
-#include "ui/work/app_context.h"
+#include "ui/work/case_views.h"
 
 namespace trephine {
 
 class ThresholdTab : public QObject {
   Q_OBJECT
  public:
-  ThresholdTab(AppContext& app, HistogramView& histogram, TissuePanel& tissues,
-               TissuePicture& picture);
+  ThresholdTab(Workstation& workstation, CaseViews& case_views, HistogramView& histogram,
+               TissuePanel& tissues, TissuePicture& picture, QObject* parent);
 
   // The histogram shows the tissues as they are.
   void refresh();

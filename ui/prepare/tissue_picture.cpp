@@ -6,12 +6,12 @@
 
 namespace trephine {
 
-TissuePicture::TissuePicture(AppContext& app, TissuePanel& tissues, StructurePanel& structures,
-                             StructureEditor& editor)
-    : QObject(&app),
-      workstation_(app.workstation()),
-      views_(&app.views()),
-      view_(&app.view()),
+TissuePicture::TissuePicture(Workstation& workstation, FourUp& views, TissuePanel& tissues,
+                             StructurePanel& structures, StructureEditor& editor, QObject* parent)
+    : QObject(parent),
+      workstation_(workstation),
+      views_(&views),
+      view_(&views.threeD()),
       tissues_(tissues),
       structures_(structures),
       editor_(editor) {

@@ -11,15 +11,16 @@
 #include "exercise/structure_view.h"
 #include "ui/structures/structure_panel.h"
 #include "ui/tissue/tissue_panel.h"
-#include "ui/work/app_context.h"
+#include "ui/views/four_up.h"
+#include "ui/work/workstation.h"
 
 namespace trephine {
 
 class TissuePicture : public QObject {
   Q_OBJECT
  public:
-  TissuePicture(AppContext& app, TissuePanel& tissues, StructurePanel& structures,
-                StructureEditor& editor);
+  TissuePicture(Workstation& workstation, FourUp& views, TissuePanel& tissues,
+                StructurePanel& structures, StructureEditor& editor, QObject* parent);
 
   void show();
   // Once the window has shown what is quicker: slices and histogram.

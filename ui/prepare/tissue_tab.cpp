@@ -82,7 +82,8 @@ TissueTab::TissueTab(AppContext& app, TissuePanel& tissues, StructureEditor& edi
     : QObject(&app),
       app_(app),
       workstation_(app.workstation()),
-      views_(&app.views()),
+      messages_(app.messages()),
+      views_(&app.caseViews().views()),
       tissues_(tissues),
       editor_(editor),
       picture_(picture) {
@@ -128,9 +129,9 @@ void TissueTab::edit(const TissueSet& set, const QString& what) {
   NewTissues wanted = workstation_.withTissues(set);
   if (Status done = workstation_.edit(wanted.exercise, what.toStdString()); !done) {
     tissues_.setTissues(workstation_.tissues(), workstation_.declaredTissues());
-    return app_.report(done.error());
+    return messages_.report(done.error());
   }
-  if (!wanted.notes.empty()) app_.say(toQt(wanted.notes.front()) + '.');
+  if (!wanted.notes.empty()) messages_.say(toQt(wanted.notes.front()) + '.');
   const TissueSet& placed = workstation_.placedTissues();
   editor_.setTissues(placed);
   views_->setTissues(placed, workstation_.looks());
@@ -196,13 +197,13 @@ void TissueTab::takeSet(const TissueSet& set, const char* what) {
   NewTissues wanted = workstation_.withTissues(own);
   workstation_.closeEdit();
   if (Status done = workstation_.edit(wanted.exercise, what); !done) {
-    return app_.report(done.error());
+    return messages_.report(done.error());
   }
   workstation_.closeEdit();
   emit setTaken();
   QStringList said{tr("The exercise has the tissues \"%1\" now.").arg(shownName(set.name))};
   for (const std::string& note : wanted.notes) said << toQt(note) + '.';
-  app_.say(said.join(' '));
+  messages_.say(said.join(' '));
 }
 
 void TissueTab::newSet() {
@@ -217,13 +218,13 @@ void TissueTab::duplicateSet() {
 }
 
 void TissueTab::askForSet() {
-  app_.askForFile("importSetDialog", tr("Import tissues"), tr("Tissues (*.json)"),
-                  [this](const auto& file) { useSet(file); });
+  messages_.askForFile("importSetDialog", tr("Import tissues"), tr("Tissues (*.json)"),
+                       [this](const auto& file) { useSet(file); });
 }
 
 void TissueTab::useSet(const std::filesystem::path& file) {
   const Result<TissueSet> set = readTissueSet(file);
-  if (!set) return app_.report(set.error());
+  if (!set) return messages_.report(set.error());
   takeSet(*set, "set");
 }
 
@@ -231,7 +232,7 @@ void TissueTab::useSet(const std::filesystem::path& file) {
 void TissueTab::askToExportSet() {
   if (!workstation_.exercise()) return;
   (void)makeFolder(ownSets());
-  QFileDialog* dialog = app_.saveDialog(
+  QFileDialog* dialog = messages_.saveDialog(
       tr("Export tissues"), setFileName(workstation_.tissues().name), tr("Tissues (*.json)"));
   dialog->setDirectory(toQt(ownSets()));
   connect(dialog, &QFileDialog::fileSelected, this,
@@ -241,7 +242,7 @@ void TissueTab::askToExportSet() {
 
 void TissueTab::revertSet() {
   if (!workstation_.exercise()) return;
-  if (!workstation_.tissuesEdited()) return app_.say(tr("The set is as its file has it."));
+  if (!workstation_.tissuesEdited()) return messages_.say(tr("The set is as its file has it."));
   takeSet(workstation_.declaredTissues(), "revert");
 }
 

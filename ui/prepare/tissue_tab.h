@@ -45,6 +45,7 @@ class TissueTab : public QObject {
 
   AppContext& app_;
   Workstation& workstation_;
+  Messages& messages_;
   FourUp* views_;
   TissuePanel& tissues_;
   StructureEditor& editor_;

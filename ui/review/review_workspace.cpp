@@ -141,7 +141,7 @@ void ReviewWorkspace::replay(const ListedRecording& of) {
       },
       [this](Result<ReplayResult> result) {
         if (!result) {
-          if (result.error().code != code::kCancelled) app_.report(result.error());
+          if (result.error().code != code::kCancelled) app_.messages().report(result.error());
           return page_->showOutcome(result.error().code == code::kCancelled ? tr("Cancelled.")
                                                                             : QString());
         }

@@ -52,10 +52,9 @@ void TrainWorkspace::chooseExercise(int index) {
   showInUse();  // until the other is on its way: it may be asked about, or not be had
   // A built-in case changes with the exercise, and its structures with it.
   const Case* of = workstation_.currentCase();
-  std::vector<AppContext::UnsavedWork> losses{AppContext::UnsavedWork::cuts,
-                                              AppContext::UnsavedWork::tissues};
-  if (of && of->built_in) losses.insert(losses.begin(), AppContext::UnsavedWork::structures);
-  app_.unlessLost(losses, [this, file] { useExercise(file); });
+  std::vector<UnsavedWork> losses{UnsavedWork::cuts, UnsavedWork::tissues};
+  if (of && of->built_in) losses.insert(losses.begin(), UnsavedWork::structures);
+  guards_.unlessLost(losses, [this, file] { useExercise(file); });
   view_->setFocus();
 }
 
@@ -98,7 +97,7 @@ void TrainWorkspace::showCard() {
   const Phase phase = workstation_.phase();
   const bool idle = phase == Phase::ready || phase == Phase::empty;
   const bool result = result_shown_ && phase == Phase::ready;
-  const bool card = !result_shown_ && phase == Phase::ready && !app_.carved();
+  const bool card = !result_shown_ && phase == Phase::ready && !case_views_.carved();
   exercise_->offerCard(!here_ || !aside_ ? QString()
                        : result          ? tr("Show the &result")
                        : card            ? tr("Show &what to do")
@@ -174,11 +173,11 @@ void TrainWorkspace::sayWhatIsOpen() {
     if (warning.code != code::kOtherAnatomy && warning.code != code::kNoVault) continue;
     words += (words.isEmpty() ? "" : " ") + toQt(warning.text) + '.';
   }
-  if (!words.isEmpty()) app_.say(words);
+  if (!words.isEmpty()) messages_.say(words);
 }
 
 // Before an exercise starts on a case that is not what it is for, once a case and exercise.
-void TrainWorkspace::unlessItDoesNotFit(AppContext::Next go_on) {
+void TrainWorkspace::unlessItDoesNotFit(WorkGuards::Next go_on) {
   const std::optional<Placement>& of = workstation_.placed();
   if (!of || of->warnings.empty() || warned_) return go_on();
   QStringList words;
@@ -194,7 +193,7 @@ void TrainWorkspace::unlessItDoesNotFit(AppContext::Next go_on) {
                        : lacks    ? tr("Make the structure in the slices first, or go on as it is.")
                        : no_place ? tr("Click where it is to enter (I) first, or go on as it is.")
                                   : tr("Choose an exercise that fits, or go on as it is.");
-  QMessageBox* question = ask(app_.window(), "misfitQuestion", words.join('\n'), next,
+  QMessageBox* question = ask(messages_.window(), "misfitQuestion", words.join('\n'), next,
                               tr("&Go on as it is"), [this, go_on] {
                                 warned_ = true;
                                 go_on();
@@ -204,8 +203,8 @@ void TrainWorkspace::unlessItDoesNotFit(AppContext::Next go_on) {
     const int index = exercises_->findData(toQt(file));
     orElse(*question, "changeExercise", tr("&Change to \"%1\"").arg(exercises_->itemText(index)),
            [this, file] {
-             app_.unlessLost({AppContext::UnsavedWork::cuts, AppContext::UnsavedWork::tissues},
-                             [this, file] { useExercise(file); });
+             guards_.unlessLost({UnsavedWork::cuts, UnsavedWork::tissues},
+                                [this, file] { useExercise(file); });
            });
   } else if (lacks) {
     orElse(*question, "makeStructure", tr("&Make it"), [this] { emit structureWanted(); });

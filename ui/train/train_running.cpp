@@ -206,7 +206,7 @@ void TrainWorkspace::showChangeTool() {
 
 void TrainWorkspace::giveTool(std::size_t arm, std::size_t tool) {
   Session* session = workstation_.session();
-  if (session && !session->changeTool(arm, tool)) app_.say(tr("Busy: try again in a moment."));
+  if (session && !session->changeTool(arm, tool)) messages_.say(tr("Busy: try again in a moment."));
   view_->setFocus();
 }
 
@@ -230,7 +230,7 @@ void TrainWorkspace::clutch() {
     const bool on = clutch_->isChecked();
     const bool sent = on || session->isSimulated(i) ? session->clutch(i, on)
                                                     : session->clutch(i, false, rotation);
-    if (!sent) app_.say(tr("Busy: try again in a moment."));
+    if (!sent) messages_.say(tr("Busy: try again in a moment."));
   }
 }
 
@@ -238,7 +238,7 @@ void TrainWorkspace::recentre() {
   Session* session = workstation_.session();
   if (!session) return;
   for (std::size_t i = 0; i < session->exercise().arms.size(); ++i) {
-    if (!session->recentre(i)) app_.say(tr("Busy: try again in a moment."));
+    if (!session->recentre(i)) messages_.say(tr("Busy: try again in a moment."));
   }
   hands_->goneBack();
 }
@@ -291,7 +291,7 @@ void TrainWorkspace::showRates() {
 void TrainWorkspace::command(CommandKind kind) {
   Session* session = workstation_.session();
   if (!session) return;
-  if (!session->send(kind)) return app_.say(tr("Busy: try again in a moment."));
+  if (!session->send(kind)) return messages_.say(tr("Busy: try again in a moment."));
 }
 
 // Or a redo.
@@ -305,14 +305,14 @@ void TrainWorkspace::undo(CommandKind which) {
 void TrainWorkspace::rewind(std::uint32_t second) {
   Session* session = workstation_.session();
   if (!session) return;
-  if (!session->rewind(second)) return app_.say(tr("Busy: try again in a moment."));
+  if (!session->rewind(second)) return messages_.say(tr("Busy: try again in a moment."));
   going_back_ = {second, session->state().ticks};
   showRewind(session->state());
 }
 
 void TrainWorkspace::showRewind(const LoopState& state) {
   if (going_back_ && !state.busy && state.ticks > going_back_->asked_tick + Session::kAnswerTicks) {
-    app_.say(backWords(going_back_->second, state, *workstation_.exercise()));
+    messages_.say(backWords(going_back_->second, state, *workstation_.exercise()));
     going_back_.reset();
   }
   const auto answered = [&](std::uint64_t asked_tick) {
@@ -321,7 +321,7 @@ void TrainWorkspace::showRewind(const LoopState& state) {
   if (undoing_ && answered(undoing_->ticks)) {
     Session* session = workstation_.session();
     const double voxel_mm3 = session ? session->grid().geometry().voxelVolume_mm3() : 0.0;
-    app_.say(undoneWords(*undoing_, state, *workstation_.exercise(), voxel_mm3));
+    messages_.say(undoneWords(*undoing_, state, *workstation_.exercise(), voxel_mm3));
     undoing_.reset();
   }
   if (const Session* session = workstation_.session()) {

@@ -24,8 +24,11 @@ TrainWorkspace::TrainWorkspace(AppContext& bench)
     : Workspace(&bench),
       app_(bench),
       workstation_(bench.workstation()),
-      views_(&bench.views()),
-      view_(&bench.view()) {
+      messages_(bench.messages()),
+      guards_(bench.guards()),
+      case_views_(bench.caseViews()),
+      views_(&case_views_.views()),
+      view_(&case_views_.view()) {
   buildActions();
   exercises_ = new QComboBox;
   exercises_->setObjectName("scenes");
@@ -81,7 +84,7 @@ bool TrainWorkspace::escape() {
 }
 
 void TrainWorkspace::buildActions() {
-  QWidget& window = *app_.window();
+  QWidget& window = *messages_.window();
   start_ = makeAction(window, Symbol::start, "start", tr("Start"), QKeySequence(Qt::Key_F5),
                       tr("Start the exercise"));
   stop_ =
@@ -145,8 +148,8 @@ void TrainWorkspace::connectParts() {
     if (workstation_.session()) {
       back_from_trial_ = true;
       workstation_.stop();
-    } else if (app_.carved()) {
-      app_.showWholeCase();
+    } else if (case_views_.carved()) {
+      case_views_.showWholeCase();
     }
     app_.setTrying(false);
     app_.go(Place::prepare);
@@ -161,14 +164,14 @@ void TrainWorkspace::connectParts() {
   connect(&workstation_, &Workstation::structuresChanged, this, &TrainWorkspace::showOutline);
   connect(view_, &ViewWidget::framePainted, this, [this] { ++frames_; });
 
-  connect(&app_, &AppContext::caseShown, this, [this] {
+  connect(&case_views_, &CaseViews::caseShown, this, [this] {
     warned_ = result_shown_ = aside_ = false;
     exercise_->showIdle();  // of the exercise before
     sayWhatIsOpen();
     showOutline();
     showCard();
   });
-  connect(&app_, &AppContext::cutsChanged, this, &TrainWorkspace::showReset);
+  connect(&case_views_, &CaseViews::cutsChanged, this, &TrainWorkspace::showReset);
   connect(&workstation_, &Workstation::openingEnded, this, &TrainWorkspace::showInUse);
   connect(&workstation_, &Workstation::exerciseOpening, this, &TrainWorkspace::showOpening);
   connect(&workstation_, &Workstation::exerciseChanged, this, &TrainWorkspace::showChosen);
@@ -187,12 +190,12 @@ void TrainWorkspace::connectParts() {
 void TrainWorkspace::startExercise(std::optional<OperatorScript> script, double seconds) {
   // What nobody sees moves no arm.
   app_.go(Place::train);
-  if (const Status& drawing = view_->canDraw(); !drawing) return app_.report(drawing.error());
+  if (const Status& drawing = view_->canDraw(); !drawing) return messages_.report(drawing.error());
   workstation_.start(app_.recordings(), std::move(script), seconds);
 }
 
 void TrainWorkspace::start() {
-  startUnlessLost({AppContext::UnsavedWork::cuts});
+  startUnlessLost({UnsavedWork::cuts});
 }
 
 // What was cut can be seen again by its recording, so nothing is asked.
@@ -200,16 +203,16 @@ void TrainWorkspace::tryAgain() {
   recorded_ ? startUnlessLost({}) : start();
 }
 
-void TrainWorkspace::startUnlessLost(const std::vector<AppContext::UnsavedWork>& losses) {
-  app_.beforeStart([this, losses] {
-    unlessItDoesNotFit([this, losses] { app_.unlessLost(losses, [this] { startExercise(); }); });
+void TrainWorkspace::startUnlessLost(const std::vector<UnsavedWork>& losses) {
+  guards_.beforeStart([this, losses] {
+    unlessItDoesNotFit([this, losses] { guards_.unlessLost(losses, [this] { startExercise(); }); });
   });
 }
 
 void TrainWorkspace::showReset() {
   const Workstation::Phase phase = workstation_.phase();
   const bool ready = phase == Workstation::Phase::ready && !workstation_.isOpening();
-  reset_->setEnabled(phase == Workstation::Phase::running || (ready && app_.carved()));
+  reset_->setEnabled(phase == Workstation::Phase::running || (ready && case_views_.carved()));
 }
 
 void TrainWorkspace::showPhase() {
@@ -234,22 +237,22 @@ void TrainWorkspace::showPhase() {
   views_->setTraining(running);
   switch (phase) {
     case Phase::starting:
-      return app_.hint(tr("Starting\u2026"));
+      return messages_.hint(tr("Starting\u2026"));
     case Phase::ending:
-      return app_.hint(tr("Ending the recording\u2026"));
+      return messages_.hint(tr("Ending the recording\u2026"));
     case Phase::running:
       if (workstation_.isPoke()) {
-        return app_.hint(tr("Poking: nothing is cut. Mouse: the tool. Wheel up: press. Tab: other "
+        return messages_.hint(tr("Poking: nothing is cut. Mouse: the tool. Wheel up: press. Tab: other "
                               "hand. Right drag: turn."));
       }
       if (!pointerHasAHand()) {
-        return app_.hint(
+        return messages_.hint(
             tr("Space: pause. The arms move the tools. Right drag: turn. Ctrl+wheel: zoom."));
       }
-      return app_.hint(
+      return messages_.hint(
           tr("Space: pause. Mouse: the tool. Wheel up: press. Tab: other hand. Right drag: turn."));
     default:
-      app_.hint(opening ? tr("Opening a case\u2026")
+      messages_.hint(opening ? tr("Opening a case\u2026")
                   : ready ? tr("Drag: turn. Middle drag: shift. Wheel: zoom. F5: start.")
                           : QString());
   }
@@ -268,7 +271,7 @@ void TrainWorkspace::reset() {
   if (Session* session = workstation_.session()) {
     const LoopState& state = session->state();
     if (!state.can_undo && !state.can_redo) return;  // nothing was cut
-    ask(app_.window(), "resetQuestion", tr("Put all tissue back?"),
+    ask(messages_.window(), "resetQuestion", tr("Put all tissue back?"),
         tr("Undo cannot bring the cuts again; the bar of seconds still leads back to them. Hands "
            "that mouse and keys move go back to where they began."),
         tr("&Put back"), [this] {
@@ -276,8 +279,8 @@ void TrainWorkspace::reset() {
           rewind_->noteReset();
         });
   } else if (workstation_.phase() == Workstation::Phase::ready) {
-    app_.unlessLost({AppContext::UnsavedWork::cuts}, [this] {
-      app_.showWholeCase();
+    guards_.unlessLost({UnsavedWork::cuts}, [this] {
+      case_views_.showWholeCase();
       result_shown_ = aside_ = false;
       showCard();
     });
@@ -286,7 +289,7 @@ void TrainWorkspace::reset() {
 
 void TrainWorkspace::sessionStarted() {
   pedal_ = {};
-  app_.say({});  // of the exercise before
+  messages_.say({});  // of the exercise before
   Session& session = *workstation_.session();
   limits_N_.clear();
   for (const ExerciseArm& arm : session.exercise().arms) limits_N_.push_back(arm.max_force_N);
@@ -294,7 +297,7 @@ void TrainWorkspace::sessionStarted() {
   undoing_.reset();
   ticks_shown_ = 0;
   rate_clock_.restart();
-  if (!session.isPoke()) app_.exerciseBegan();
+  if (!session.isPoke()) case_views_.exerciseBegan();
   touched_ = result_shown_ = aside_ = false;
   removed_clock_.restart();
   exercise_->showIdle();
@@ -314,11 +317,11 @@ void TrainWorkspace::sessionEnded(Session& session) {
   emit ratesChanged({});
   if (session.isPoke()) return;
   const RunReport report = session.report();
-  app_.exerciseEnded(report.done.removed_voxels > 0);
-  if (std::exchange(back_from_trial_, false)) app_.showWholeCase();
+  case_views_.exerciseEnded(report.done.removed_voxels > 0);
+  if (std::exchange(back_from_trial_, false)) case_views_.showWholeCase();
   std::error_code ec;
   const bool any = std::filesystem::exists(report.recording, ec);
-  app_.say(session.recordingStatus() ? QString()
+  messages_.say(session.recordingStatus() ? QString()
              : any                     ? tr("The exercise is recorded in part only.")
                                        : tr("The exercise is not recorded."));
   showResult(session, report);
@@ -326,7 +329,7 @@ void TrainWorkspace::sessionEnded(Session& session) {
 
 // The exercise goes on behind the question.
 void TrainWorkspace::askToGoOn(const Error& error) {
-  QMessageBox* dialog = showError(app_.window(), error);
+  QMessageBox* dialog = showError(messages_.window(), error);
   dialog->setObjectName("recordingFailed");
   dialog->setStandardButtons(QMessageBox::NoButton);
   QPushButton* go_on = dialog->addButton(tr("Go on unrecorded"), QMessageBox::AcceptRole);

@@ -79,10 +79,10 @@ class TrainWorkspace : public Workspace {
   void showReset();
   void start();
   void tryAgain();
-  void startUnlessLost(const std::vector<AppContext::UnsavedWork>& losses);
+  void startUnlessLost(const std::vector<UnsavedWork>& losses);
   void reset();
   // Goes on with the exercise; where the case is not what it is for it asks first.
-  void unlessItDoesNotFit(AppContext::Next go_on);
+  void unlessItDoesNotFit(WorkGuards::Next go_on);
   void sessionStarted();
   void sessionEnded(Session& session);
   void followPedal(const LoopState& state);
@@ -114,6 +114,9 @@ class TrainWorkspace : public Workspace {
 
   AppContext& app_;
   Workstation& workstation_;
+  Messages& messages_;
+  WorkGuards& guards_;
+  CaseViews& case_views_;
   FourUp* views_;
   ViewWidget* view_;
   QAction *start_, *stop_, *pause_, *reset_, *clutch_, *recentre_, *other_hand_, *change_tool_;

@@ -717,7 +717,7 @@ class ExerciseGuiTest : public test::WindowTest {
     QTRY_VERIFY_WITH_TIMEOUT(workstation().phase() == Workstation::Phase::ready, kLong_ms);
     QCOMPARE(window_->place(), Place::prepare);
     // Of a trial no cut stays in the view.
-    QVERIFY(!window_->findChild<AppContext*>()->carved());
+    QVERIFY(!window_->findChild<CaseViews*>()->carved());
     QVERIFY(!workstation().carved());
     // Out, and in again elsewhere.
     find<QPushButton>("exportExercise")->click();

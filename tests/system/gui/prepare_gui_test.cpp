@@ -245,7 +245,7 @@ class PrepareGuiTest : public test::WindowTest {
     QVERIFY(tissues() == before);
     // What a landmark of the exercise is on goes, and it is said where it is on now.
     QString said;
-    const auto listening = connect(window_->findChild<AppContext*>(), &AppContext::said, this,
+    const auto listening = connect(window_->findChild<Messages*>(), &Messages::said, this,
                                    [&](const QString& words) { said = words; });
     panel().select("bone");
     QTest::mouseClick(find<QToolButton>("removeTissue"), Qt::LeftButton);
