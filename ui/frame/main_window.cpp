@@ -241,11 +241,10 @@ void MainWindow::closeEvent(QCloseEvent* event) {
   }
   event->ignore();
   const auto for_good = [this] {
-    app_.guards().unlessLost({UnsavedWork::structures, UnsavedWork::tissues},
-                    [this] {
-                      may_close_ = true;
-                      close();
-                    });
+    app_.guards().unlessLost({UnsavedWork::structures, UnsavedWork::tissues}, [this] {
+      may_close_ = true;
+      close();
+    });
   };
   if (!running) return app_.guards().unlessLost({UnsavedWork::cuts}, for_good);
   ask(this, "closeQuestion", tr("An exercise is running."),
@@ -361,11 +360,11 @@ void MainWindow::showHeadset() {
   connect(dialog, &HeadsetDialog::screenChanged, stereo_, &StereoView::settingsChanged);
   connect(dialog, &HeadsetDialog::lensWanted, dialog, [this, dialog] {
     app_.messages().askForFile("lensDialog", tr("A lens's file"), tr("Lenses (*.json)"),
-                    [this, of = QPointer(dialog)](const std::filesystem::path& file) {
-                      const Result<LensProfile> lens = readLensProfile(file);
-                      if (!lens) return app_.messages().report(lens.error());
-                      if (of) of->setLens(toQt(file.string()));
-                    });
+                               [this, of = QPointer(dialog)](const std::filesystem::path& file) {
+                                 const Result<LensProfile> lens = readLensProfile(file);
+                                 if (!lens) return app_.messages().report(lens.error());
+                                 if (of) of->setLens(toQt(file.string()));
+                               });
   });
   // A window over its screen must not keep the keys from coming back here.
   connect(dialog, &QDialog::finished, this, [this] { activateWindow(); });
@@ -385,11 +384,13 @@ void MainWindow::showCommission() {
   connect(page, &CommissionPage::ended, this, [this] { workstation().lendArms(false); });
   connect(page, &CommissionPage::commissioned, fitness_, &FitnessLine::look);
   connect(page, &CommissionPage::saveWanted, page, [this, page] {
-    QFileDialog* dialog = app_.messages().saveDialog(tr("Save the commissioning"), "commissioning.pdf",
-                                          tr("PDF (*.pdf);;A page for a browser (*.html)"));
+    QFileDialog* dialog =
+        app_.messages().saveDialog(tr("Save the commissioning"), "commissioning.pdf",
+                                   tr("PDF (*.pdf);;A page for a browser (*.html)"));
     connect(dialog, &QFileDialog::fileSelected, page, [this, page](const QString& file) {
       const Status saved = page->save(toPath(file));
-      saved ? app_.messages().say(tr("The commissioning is saved.")) : app_.messages().report(saved.error());
+      saved ? app_.messages().say(tr("The commissioning is saved."))
+            : app_.messages().report(saved.error());
     });
     dialog->open();
   });
@@ -418,9 +419,8 @@ void MainWindow::askForPin() {
       workstation().setUnlocked(false);
       app_.messages().say(tr("Locked again."));
     };
-    return workstation().tissuesWouldGo()
-               ? app_.guards().unlessLost({UnsavedWork::tissues}, lock)
-               : lock();
+    return workstation().tissuesWouldGo() ? app_.guards().unlessLost({UnsavedWork::tissues}, lock)
+                                          : lock();
   }
   if (!workstation().policy().pin) return;
   auto* dialog = new UnlockDialog(*workstation().policy().pin, this);

@@ -22,8 +22,8 @@ PokeTab::PokeTab(Workstation& workstation, Messages& messages, WorkGuards& guard
       tissues_(tissues),
       plot_(plot) {
   action_ = makeAction(*messages_.window(), Symbol::train, "poke", tr("Poke"),
-                     QKeySequence(Qt::CTRL | Qt::Key_E),
-                     tr("Feel the tissue with mouse or arm; nothing is cut"));
+                       QKeySequence(Qt::CTRL | Qt::Key_E),
+                       tr("Feel the tissue with mouse or arm; nothing is cut"));
   action_->setCheckable(true);
   connect(action_, &QAction::triggered, this, &PokeTab::toggle);
   connect(&tissues_, &TissuePanel::pokeWanted, action_, &QAction::trigger);

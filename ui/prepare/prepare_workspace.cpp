@@ -25,7 +25,8 @@ PrepareWorkspace::PrepareWorkspace(AppContext& app)
   CaseViews& case_views = app_.caseViews();
   picture_ =
       new TissuePicture(workstation_, *views_, *tissue_panel_, *structure_panel_, editor_, &app_);
-  tissues_ = new TissueTab(app_, *tissue_panel_, editor_, *picture_);
+  tissues_ = new TissueTab(workstation_, *views_, messages, app_.storage(), *app_.undoAction(),
+                           *app_.redoAction(), *tissue_panel_, editor_, *picture_, &app_);
   thresholds_ =
       new ThresholdTab(workstation_, case_views, *histogram_, *tissue_panel_, *picture_, &app_);
   poke_ =

@@ -75,7 +75,7 @@ StructureTab::StructureTab(Workstation& workstation, Messages& messages, WorkGua
   settled_.setInterval(kSettled_ms);
   connect(&settled_, &QTimer::timeout, this, [this] { (void)take(); });
   guards_.setGuard(UnsavedWork::structures,
-                [this](WorkGuards::Next go_on) { unlessLost(std::move(go_on)); });
+                   [this](WorkGuards::Next go_on) { unlessLost(std::move(go_on)); });
   guards_.setBeforeStart([this](WorkGuards::Next go_on) { beforeStart(std::move(go_on)); });
   connect(&case_views_, &CaseViews::caseShown, this, &StructureTab::showOpened);
   connect(&workstation_, &Workstation::phaseChanged, this, [this] {
@@ -290,7 +290,8 @@ void StructureTab::askAboutPreview(WorkGuards::Next go_on) {
 // An exercise runs on what was made a moment ago.
 void StructureTab::beforeStart(WorkGuards::Next go_on) {
   if (editor_.busy()) {
-    return messages_.say(tr("A structure is being made: wait for it, or cancel it, and start then."));
+    return messages_.say(
+        tr("A structure is being made: wait for it, or cancel it, and start then."));
   }
   if (editor_.preview() && editor_.preview()->leaked) return askAboutPreview(std::move(go_on));
   if (editor_.preview()) editor_.takePreview();
@@ -311,7 +312,7 @@ void StructureTab::askForLabels() {
   QFileDialog* dialog = messages_.fileDialog("labelsDialog", tr("Open structures of the case"));
   connect(dialog, &QFileDialog::fileSelected, this, [this](const QString& file) {
     guards_.unlessLost({UnsavedWork::structures, UnsavedWork::cuts},
-                    [this, file] { workstation_.useLabels(toPath(file)); });
+                       [this, file] { workstation_.useLabels(toPath(file)); });
   });
   dialog->open();
 }
@@ -328,7 +329,8 @@ void StructureTab::saveThen(WorkGuards::Next then) {
   connect(
       dialog, &QFileDialog::fileSelected, this,
       [this, copy, changes, then = std::move(then)](const QString& file) {
-        if (!guards_.keepsTheCase(structuresFile(toPath(file))) || !guards_.keepsTheCase(toPath(file)))
+        if (!guards_.keepsTheCase(structuresFile(toPath(file))) ||
+            !guards_.keepsTheCase(toPath(file)))
           return;
         workstation_.save(
             tr("The structures are saved as %1.").arg(QFileInfo(file).fileName()),

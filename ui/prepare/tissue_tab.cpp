@@ -77,13 +77,17 @@ QString setFileName(const std::string& set) {
 
 }  // namespace
 
-TissueTab::TissueTab(AppContext& app, TissuePanel& tissues, StructureEditor& editor,
-                     TissuePicture& picture)
-    : QObject(&app),
-      app_(app),
-      workstation_(app.workstation()),
-      messages_(app.messages()),
-      views_(&app.caseViews().views()),
+TissueTab::TissueTab(Workstation& workstation, FourUp& views, Messages& messages,
+                     const std::filesystem::path& storage, QAction& undo, QAction& redo,
+                     TissuePanel& tissues, StructureEditor& editor, TissuePicture& picture,
+                     QObject* parent)
+    : QObject(parent),
+      workstation_(workstation),
+      messages_(messages),
+      storage_(storage),
+      undo_(undo),
+      redo_(redo),
+      views_(&views),
       tissues_(tissues),
       editor_(editor),
       picture_(picture) {
@@ -144,13 +148,12 @@ void TissueTab::showHistory(bool serve) {
   const QString redo = edits.canRedo() ? editWords(edits.redoWhat()) : QString();
   tissues_.showHistory(undo, redo);
   if (!serve) return;
-  QAction *undo_action = app_.undoAction(), *redo_action = app_.redoAction();
-  undo_action->setEnabled(!undo.isEmpty());
-  redo_action->setEnabled(!redo.isEmpty());
-  undo_action->setToolTip(undo.isEmpty() ? tr("Takes back the last change; there is none")
-                                         : tr("Undo: %1").arg(undo));
-  redo_action->setToolTip(redo.isEmpty() ? tr("Brings back what was taken back; there is nothing")
-                                         : tr("Redo: %1").arg(redo));
+  undo_.setEnabled(!undo.isEmpty());
+  redo_.setEnabled(!redo.isEmpty());
+  undo_.setToolTip(undo.isEmpty() ? tr("Takes back the last change; there is none")
+                                  : tr("Undo: %1").arg(undo));
+  redo_.setToolTip(redo.isEmpty() ? tr("Brings back what was taken back; there is nothing")
+                                  : tr("Redo: %1").arg(redo));
 }
 
 // --- Sets ---
@@ -186,7 +189,7 @@ std::vector<std::pair<QString, std::filesystem::path>> TissueTab::setsOfWorkstat
 }
 
 std::filesystem::path TissueTab::ownSets() const {
-  return app_.storage() / "tissues";
+  return storage_ / "tissues";
 }
 
 // In the place of the exercise's: what landmarks lose by it is said.

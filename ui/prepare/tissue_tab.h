@@ -2,6 +2,7 @@
 // views and the workstation.
 #pragma once
 
+#include <QAction>
 #include <QObject>
 #include <filesystem>
 #include <utility>
@@ -10,14 +11,18 @@
 #include "ui/prepare/tissue_picture.h"
 #include "ui/structures/structure_editor.h"
 #include "ui/tissue/tissue_panel.h"
-#include "ui/work/app_context.h"
+#include "ui/work/messages.h"
+#include "ui/work/workstation.h"
 
 namespace trephine {
 
 class TissueTab : public QObject {
   Q_OBJECT
  public:
-  TissueTab(AppContext& app, TissuePanel& tissues, StructureEditor& editor, TissuePicture& picture);
+  // `storage`: a person's own sets are in a folder of it. `undo`, `redo`: the window's.
+  TissueTab(Workstation& workstation, FourUp& views, Messages& messages,
+            const std::filesystem::path& storage, QAction& undo, QAction& redo,
+            TissuePanel& tissues, StructureEditor& editor, TissuePicture& picture, QObject* parent);
 
   // The exercise as it is, in the panel and the views.
   void showExercise();
@@ -43,9 +48,10 @@ class TissueTab : public QObject {
   void revertSet();
   std::filesystem::path ownSets() const;
 
-  AppContext& app_;
   Workstation& workstation_;
   Messages& messages_;
+  std::filesystem::path storage_;
+  QAction &undo_, &redo_;
   FourUp* views_;
   TissuePanel& tissues_;
   StructureEditor& editor_;

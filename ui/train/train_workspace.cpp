@@ -242,8 +242,9 @@ void TrainWorkspace::showPhase() {
       return messages_.hint(tr("Ending the recording\u2026"));
     case Phase::running:
       if (workstation_.isPoke()) {
-        return messages_.hint(tr("Poking: nothing is cut. Mouse: the tool. Wheel up: press. Tab: other "
-                              "hand. Right drag: turn."));
+        return messages_.hint(
+            tr("Poking: nothing is cut. Mouse: the tool. Wheel up: press. Tab: other "
+               "hand. Right drag: turn."));
       }
       if (!pointerHasAHand()) {
         return messages_.hint(
@@ -253,8 +254,8 @@ void TrainWorkspace::showPhase() {
           tr("Space: pause. Mouse: the tool. Wheel up: press. Tab: other hand. Right drag: turn."));
     default:
       messages_.hint(opening ? tr("Opening a case\u2026")
-                  : ready ? tr("Drag: turn. Middle drag: shift. Wheel: zoom. F5: start.")
-                          : QString());
+                     : ready ? tr("Drag: turn. Middle drag: shift. Wheel: zoom. F5: start.")
+                             : QString());
   }
 }
 
@@ -322,8 +323,8 @@ void TrainWorkspace::sessionEnded(Session& session) {
   std::error_code ec;
   const bool any = std::filesystem::exists(report.recording, ec);
   messages_.say(session.recordingStatus() ? QString()
-             : any                     ? tr("The exercise is recorded in part only.")
-                                       : tr("The exercise is not recorded."));
+                : any                     ? tr("The exercise is recorded in part only.")
+                                          : tr("The exercise is not recorded."));
   showResult(session, report);
 }
 
