@@ -35,13 +35,15 @@ Error notVerified(const ExerciseCheck& check) {
 
 }  // namespace
 
-ExerciseTab::ExerciseTab(AppContext& bench, ExerciseForm& form)
-    : QObject(&bench),
-      app_(bench),
-      workstation_(bench.workstation()),
-      messages_(bench.messages()),
-      guards_(bench.guards()),
-      toolbox_(bench.caseViews().views().toolbox()),
+ExerciseTab::ExerciseTab(Workstation& workstation, Messages& messages, WorkGuards& guards,
+                         Toolbox& toolbox, const std::filesystem::path& storage, ExerciseForm& form,
+                         QObject* parent)
+    : QObject(parent),
+      workstation_(workstation),
+      messages_(messages),
+      guards_(guards),
+      storage_(storage),
+      toolbox_(toolbox),
       outline_(workstation_, toolbox_, messages_),
       form_(&form) {
   form_->wanted = [this](const std::string& what, const auto& change) {
@@ -142,7 +144,7 @@ void ExerciseTab::draw(bool on) {
 
 bool ExerciseTab::isOwn() const {
   const std::filesystem::path& file = workstation_.exerciseFile();
-  return file.parent_path().parent_path() == app_.storage() / "exercises";
+  return file.parent_path().parent_path() == storage_ / "exercises";
 }
 
 // With the case that is open, as it lies in the library.
@@ -160,7 +162,7 @@ std::optional<Exercise> ExerciseTab::exerciseToSave() {
                       "Save the case first (Cases), or import it again where it was deleted"});
     return {};
   }
-  const std::filesystem::path folder = app_.storage() / "cases" / of.stored;
+  const std::filesystem::path folder = storage_ / "cases" / of.stored;
   exercise.case_source = (folder / case_folders::kVolumeFile).string();
   const std::filesystem::path structures = folder / case_folders::kStructuresFile;
   std::error_code ec;
@@ -213,11 +215,11 @@ void ExerciseTab::save(bool copy, WorkGuards::Next then, bool on_another_case) {
   }
   if (!in_place) exercise->name = freeName(exercise->name);
   const std::filesystem::path folder = in_place ? workstation_.exerciseFile().parent_path()
-                                                : freshExercise(app_.storage(), exercise->name);
+                                                : freshExercise(storage_, exercise->name);
   auto file = std::make_shared<std::filesystem::path>();
   workstation_.save(
       tr("The exercise \"%1\" is saved.").arg(toQt(exercise->name)),
-      [exercise = *exercise, folder, storage = app_.storage(), file](const Progress& progress) {
+      [exercise = *exercise, folder, storage = storage_, file](const Progress& progress) {
         const auto saved = trephine::saveExercise(exercise, folder, storage, progress);
         if (saved) *file = *saved;
         return saved ? Status() : Status(saved.error());
@@ -226,7 +228,7 @@ void ExerciseTab::save(bool copy, WorkGuards::Next then, bool on_another_case) {
         opened_ = onDisk(*file);
         workstation_.exerciseSaved(*file);
         emit saved();
-        app_.tellExercises();
+        emit exercisesChanged();
         if (then) then();
       });
 }
@@ -234,7 +236,7 @@ void ExerciseTab::save(bool copy, WorkGuards::Next then, bool on_another_case) {
 // One that no exercise in the list has.
 std::string ExerciseTab::freeName(const std::string& wanted) const {
   std::set<std::string> taken;
-  for (const auto& file : app_.exercises()) {
+  for (const auto& file : exercises()) {
     if (const Result<Exercise> exercise = readExercise(file)) taken.insert(exercise->name);
   }
   std::string name = wanted;
@@ -246,8 +248,7 @@ void ExerciseTab::tryIt() {
   if (!workstation_.currentCase()) return messages_.say(tr("Open a case first."));
   guards_.takeTyped();
   draw(false);
-  app_.go(Place::train);
-  app_.setTrying(true);
+  emit tryWanted();
 }
 
 // --- To and from other workstations ---
@@ -295,8 +296,7 @@ void ExerciseTab::importIt() {
     auto exercise = std::make_shared<std::filesystem::path>();
     workstation_.save(
         tr("The exercise is imported."),
-        [from = toPath(folder), storage = app_.storage(),
-         exercise](const Progress& progress) -> Status {
+        [from = toPath(folder), storage = storage_, exercise](const Progress& progress) -> Status {
           const auto imported = trephine::importExercise(from, storage, progress);
           if (!imported) return imported.error();
           if (!imported->check.verified()) return notVerified(imported->check);
@@ -304,9 +304,9 @@ void ExerciseTab::importIt() {
           return {};
         },
         [this, exercise] {
-          app_.tellExercises();
+          emit exercisesChanged();
           guards_.unlessLost({UnsavedWork::structures, UnsavedWork::cuts, UnsavedWork::tissues},
-                             [this, exercise] { app_.openExercise(*exercise, Place::prepare); });
+                             [this, exercise] { emit openWanted(*exercise); });
         });
   });
   dialog->open();

@@ -7,17 +7,20 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "ui/prepare/exercise_form.h"
 #include "ui/prepare/outline_tool.h"
-#include "ui/work/app_context.h"
+#include "ui/work/work_guards.h"
 
 namespace trephine {
 
 class ExerciseTab : public QObject {
   Q_OBJECT
  public:
-  ExerciseTab(AppContext& bench, ExerciseForm& form);
+  // `storage`: the folder that exercises are saved in.
+  ExerciseTab(Workstation& workstation, Messages& messages, WorkGuards& guards, Toolbox& toolbox,
+              const std::filesystem::path& storage, ExerciseForm& form, QObject* parent);
 
   // Whether it is seen; the form is filled while it is.
   void show(bool in_front);
@@ -25,12 +28,17 @@ class ExerciseTab : public QObject {
   // `on_another_case`: in the place of one that was made on another case, which is asked otherwise.
   void save(bool copy, WorkGuards::Next then, bool on_another_case = false);
 
+  // Those that there are.
+  std::function<std::vector<std::filesystem::path>()> exercises;
   // Whether the case has the structures as they are now, and what gives it them.
   std::function<bool()> structuresInCase;
   std::function<void(WorkGuards::Next then)> saveInCase;
 
  signals:
   void saved();
+  void exercisesChanged();  // in the storage folder
+  void openWanted(const std::filesystem::path& exercise);
+  void tryWanted();
   void labelsWanted();  // structures of the case from a file
   void entryWanted();   // the tool that places it, to be used once
 
@@ -54,10 +62,10 @@ class ExerciseTab : public QObject {
   void exportSaved();
   void importIt();
 
-  AppContext& app_;
   Workstation& workstation_;
   Messages& messages_;
   WorkGuards& guards_;
+  std::filesystem::path storage_;
   Toolbox& toolbox_;
   OutlineTool outline_;
   ExerciseForm* form_;

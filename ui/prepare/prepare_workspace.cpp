@@ -32,7 +32,8 @@ PrepareWorkspace::PrepareWorkspace(AppContext& app)
   poke_ =
       new PokeTab(workstation_, messages, guards, case_views, *tissue_panel_, *poke_plot_, &app_);
   arms_ = new ArmsTab(workstation_, *views_, messages, *tools_panel_, &app_);
-  exercise_ = new ExerciseTab(app_, *form_);
+  exercise_ = new ExerciseTab(workstation_, messages, guards, views_->toolbox(), app_.storage(),
+                              *form_, &app_);
   // Before the structures' own: what is open comes before what is made of it.
   const auto labels = [this] {
     tissue_panel_->setLabelsOpen(workstation_.placed()->labels != nullptr);
@@ -90,6 +91,14 @@ void PrepareWorkspace::connectTabs() {
   connect(structures_, &StructureTab::frontWanted, tabs_,
           [this] { tabs_->setCurrentIndex(kStructureTab); });
   connect(exercise_, &ExerciseTab::entryWanted, &structures_->entry(), &EntryTool::useOnce);
+  exercise_->exercises = [this] { return app_.exercises(); };
+  connect(exercise_, &ExerciseTab::exercisesChanged, &app_, &AppContext::tellExercises);
+  connect(exercise_, &ExerciseTab::openWanted, this,
+          [this](const std::filesystem::path& file) { app_.openExercise(file, Place::prepare); });
+  connect(exercise_, &ExerciseTab::tryWanted, this, [this] {
+    app_.go(Place::train);
+    app_.setTrying(true);
+  });
   exercise_->structuresInCase = [this] { return structures_->inCase(); };
   exercise_->saveInCase = [this](WorkGuards::Next then) {
     structures_->saveInCase(std::move(then));
