@@ -7,6 +7,7 @@
 #include <array>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace trephine {
 
@@ -35,5 +36,13 @@ class Code {
 
   std::array<char, kLongest + 1> name_{};  // ends with 0
 };
+
+// The names of codes, in their order, for a file or a sentence.
+template <class Codes>
+std::vector<std::string> namesOf(const Codes& codes) {
+  std::vector<std::string> names;
+  for (const Code& code : codes) names.push_back(code.str());
+  return names;
+}
 
 }  // namespace trephine

@@ -48,8 +48,23 @@ std::optional<std::string> filled(std::string_view words, std::span<const TrArg>
 std::string trWith(const char* source, std::initializer_list<TrArg> args) {
   const std::span<const TrArg> given(args.begin(), args.size());
   if (installed) {
-    if (std::optional<std::string> text = filled(installed(source), given)) return *text;
+    if (std::optional<std::string> text = filled(installed(source, {}), given)) return *text;
   }
+  return filled(source, given).value_or(source);
+}
+
+std::string trCountWith(std::uint64_t count, const char* one, const char* many,
+                        std::initializer_list<TrArg> args) {
+  const std::span<const TrArg> given(args.begin(), args.size());
+  if (installed) {
+    // Forms follow the last digits.
+    const int digits = count <= 1'000'000 ? int(count) : int(1'000'000 + count % 1'000'000);
+    const std::string translated = installed(many, digits);
+    if (translated != many) {
+      if (std::optional<std::string> text = filled(translated, given)) return *text;
+    }
+  }
+  const char* const source = count == 1 ? one : many;
   return filled(source, given).value_or(source);
 }
 

@@ -4,7 +4,9 @@
 #pragma once
 
 #include <concepts>
+#include <cstdint>
 #include <initializer_list>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -37,13 +39,25 @@ std::string tr(const char* source, const Args&... args) {
   return trWith(source, {TrArg(args)...});
 }
 
+// The same for a sentence that says a number of things: `one` where `count` is 1, else `many`,
+// whose translation has as many forms as the language does. {} or {0} is the count, {1} the first
+// of `args`.
+std::string trCountWith(std::uint64_t count, const char* one, const char* many,
+                        std::initializer_list<TrArg> args);
+
+template <class... Args>
+std::string trCount(std::uint64_t count, const char* one, const char* many, const Args&... args) {
+  return trCountWith(count, one, many, {TrArg(count), TrArg(args)...});
+}
+
 // Marks a sentence of a table for translation; who shows it calls tr().
 constexpr const char* trLater(const char* source) {
   return source;
 }
 
-// Gives the translation of a source sentence, or the sentence itself.
-using Translator = std::string (*)(const char* source);
+// Gives the translation of a source sentence, or the sentence itself; in the form for `count`
+// things where the sentence has several.
+using Translator = std::string (*)(const char* source, std::optional<int> count);
 
 // Called once, before other threads begin; English holds until then.
 void setTranslator(Translator translator);

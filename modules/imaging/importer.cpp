@@ -45,8 +45,9 @@ std::optional<Error> folderError(const ImportReport& report) {
   }
   if (std::ranges::none_of(report.series, is_ct)) {
     std::string what = report.files_seen == 1 ? tr("The only file is no CT series")
-                                              : tr("There is no CT series among the {}",
-                                                   counted(report.files_seen, "file"));
+                                              : trCount(std::uint64_t(report.files_seen),
+                                                        "There is no CT series among the {} file",
+                                                        "There is no CT series among the {} files");
     const auto isPacked = [](const SkippedFiles& s) { return s.packed; };
     auto most = std::ranges::find_if(report.skipped, isPacked);
     const bool packed = most != report.skipped.end();
@@ -60,8 +61,8 @@ std::optional<Error> folderError(const ImportReport& report) {
                    report.path, why.action};
     }
     if (most != report.skipped.end()) {
-      what += "; " + std::to_string(most->count) +
-              (most->count == 1 ? tr(" was skipped: ") : tr(" were skipped: ")) + most->reason;
+      what += trCount(std::uint64_t(most->count), "; {} was skipped: {}", "; {} were skipped: {}",
+                      most->reason);
     }
     return Error{code::kNoCt, what, report.path,
                  packed ? tr("Unpack it, and choose the folder that then holds the CT")
@@ -83,16 +84,20 @@ std::optional<Error> folderError(const ImportReport& report) {
 }
 
 void addValueFindings(const HuCounts& counts, SeriesReport& report) {
-  const auto add = [&](Code code, Severity severity, std::uint64_t voxels, const std::string& what,
+  const auto add = [&](Code code, Severity severity, std::uint64_t voxels, const std::string& text,
                        const std::string& action) {
-    if (voxels == 0) return;
-    report.findings.push_back({code, severity, counted(voxels, "voxel") + what, {}, action});
+    if (voxels > 0) report.findings.push_back({code, severity, text, {}, action});
   };
-  add(code::kPaddingToAir, Severity::notice, counts.padding, tr(" of padding"),
+  add(code::kPaddingToAir, Severity::notice, counts.padding,
+      trCount(counts.padding, "{} voxel of padding", "{} voxels of padding"),
       tr("Padding became air"));
-  add(code::kHuRounded, Severity::repair, counts.rounded, tr(" had HU that are not whole numbers"),
+  add(code::kHuRounded, Severity::repair, counts.rounded,
+      trCount(counts.rounded, "{} voxel had HU that are not whole numbers",
+              "{} voxels had HU that are not whole numbers"),
       tr("Rounded to the nearest"));
-  add(code::kHuClamped, Severity::repair, counts.clamped, tr(" had HU outside -32768..32767"),
+  add(code::kHuClamped, Severity::repair, counts.clamped,
+      trCount(counts.clamped, "{} voxel had HU outside -32768..32767",
+              "{} voxels had HU outside -32768..32767"),
       tr("Set to the nearest limit"));
 }
 
@@ -191,10 +196,11 @@ void addStoppedScan(const ScannedFiles& files, Series& series) {
   });
   keepFinding(series, {code::kScanStopped,
                        beside ? Severity::refusal : Severity::repair,
-                       tr("{} not looked at, since the search was ended early: {}",
-                          (left == 1 ? tr("1 file was") : tr("{} files were", left)),
-                          (beside ? tr("the rest of this series is probably among them")
-                                  : tr("slices of this series may be among them"))),
+                       trCount(std::uint64_t(left),
+                               "{} file was not looked at, since the search was ended early: {}",
+                               "{} files were not looked at, since the search was ended early: {}",
+                               (beside ? tr("the rest of this series is probably among them")
+                                       : tr("slices of this series may be among them"))),
                        {},
                        tr("Open the folder again and let the search come to its end")});
 }
@@ -210,13 +216,17 @@ void addEmptyFiles(const ScannedFiles& files, Series& series) {
     if (beside != files.empty_files.end()) empty += beside->second;
   }
   if (empty == 0) return;
-  keepFinding(series, {code::kIncomplete,
-                       Severity::notice,
-                       tr("{} beside its slices that are empty or cut short: slices, perhaps, that "
-                          "were not copied to their end",
-                          counted(std::uint64_t(empty), "file", "lies", "lie")),
-                       {},
-                       tr("Copy all files of the series again if the scan ends too early")});
+  keepFinding(
+      series,
+      {code::kIncomplete,
+       Severity::notice,
+       trCount(std::uint64_t(empty),
+               "{} file lies beside its slices that is empty or cut short: a slice, perhaps, that "
+               "was not copied to its end",
+               "{} files lie beside its slices that are empty or cut short: slices, perhaps, that "
+               "were not copied to their end"),
+       {},
+       tr("Copy all files of the series again if the scan ends too early")});
 }
 
 // Where a folder holds CT of several patients, or of several days of one: which of them each series
@@ -239,21 +249,22 @@ void saySeveral(std::vector<Series>& all) {
     if (known == patients.end()) patients.push_back(&one);
     if (!one.acquired.empty()) days.insert(one.acquired);
   }
-  const auto say = [](Series& series, Code code, const char* what, std::size_t number,
-                      std::size_t of) {
+  const auto say = [](Series& series, Code code, const std::string& what, std::size_t number) {
     keepFinding(series,
                 {code,
                  Severity::notice,
-                 tr("The folder holds CT of {} {}: this one is of number {}", of, what, number + 1),
+                 tr("The folder holds CT of {}: this one is of number {}", what, number + 1),
                  {},
                  tr("Make sure that it is the one that is wanted")});
   };
   for (std::size_t n = 0; n < scans.size(); ++n) {
     if (patients.size() > 1)
-      say(*scans[n], code::kPatients, "patients", patient_of[n], patients.size());
+      say(*scans[n], code::kPatients, trCount(patients.size(), "{} patient", "{} patients"),
+          patient_of[n]);
     const auto day = days.find(scans[n]->slices.front().acquired);
     if (patients.size() > 1 || days.size() < 2 || day == days.end()) continue;
-    say(*scans[n], code::kDays, "days", std::size_t(std::distance(days.begin(), day)), days.size());
+    say(*scans[n], code::kDays, trCount(days.size(), "{} day", "{} days"),
+        std::size_t(std::distance(days.begin(), day)));
   }
 }
 

@@ -140,10 +140,11 @@ void sayHidden(StructureFit& fit, int hidden) {
   fit.findings.push_back(
       {code::kRenamedStructure,
        Severity::notice,
-       hidden == 1 ? tr("The name of a structure told who the patient is")
-                   : tr("The names of {} structures told who the patient is", hidden),
+       trCount(std::uint64_t(hidden), "The name of a structure told who the patient is",
+               "The names of {} structures told who the patient is"),
        {},
-       hidden == 1 ? tr("It is called by its label") : tr("They are called by their labels")});
+       trCount(std::uint64_t(hidden), "It is called by its label",
+               "They are called by their labels")});
 }
 
 }  // namespace

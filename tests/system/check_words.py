@@ -1,5 +1,5 @@
 """No room has a sentence that cannot be translated: text of several words, which a person may read,
-is given to tr() or trLater() (modules/base/tr.h).
+is given to tr(), trCount() or trLater() (modules/base/tr.h).
 
 usage: check_words.py ROOT | --self-test
 """
@@ -19,7 +19,7 @@ FOREIGN = {
 NAMES = {'"Series Instance UID"', '"SOP Class UID"', '"SOP Instance UID"', '"Trephine case"'}
 # What takes texts that no person reads, or only in a log.
 CALLS = re.compile(
-    r"(?:\b(?:tr|trLater|static_assert|starts_with|ends_with|contains|find|rfind|getenv|setenv)"
+    r"(?:\b(?:tr|trCount|trLater|static_assert|starts_with|ends_with|contains|find|rfind|getenv|setenv)"
     r"|\bspdlog::\w+|\bwarn|\blogged)$")
 TOKEN = re.compile(
     r'//[^\n]*|/\*.*?\*/|^[ \t]*#[^\n]*|R"([^()\s\\]*)\(.*?\)\1"|"(?:[^"\\\n]|\\.)*"'
@@ -58,7 +58,7 @@ def check(root):
     for problem in problems:
         print(problem)
     if problems:
-        print(f"{len(problems)} sentences are not given to tr() or trLater()")
+        print(f"{len(problems)} sentences are not given to tr(), trCount() or trLater()")
     elif seen == 0:
         print("No sentence was found at all")
     else:

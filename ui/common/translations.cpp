@@ -24,7 +24,10 @@ bool installTranslations(QCoreApplication& application, const std::filesystem::p
     QCoreApplication::installTranslator(qt);
   }
   QCoreApplication::installTranslator(own);
-  setTranslator([](const char* source) { return fromRoom(source).toStdString(); });
+  setTranslator([](const char* source, std::optional<int> count) {
+    return QCoreApplication::translate("trephine", source, nullptr, count.value_or(-1))
+        .toStdString();
+  });
   return true;
 }
 

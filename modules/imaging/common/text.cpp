@@ -45,11 +45,8 @@ std::string guessUtf8(std::string_view text) {
   return cleanUtf8(latin);
 }
 
-std::string counted(std::uint64_t count, std::string_view thing, std::string_view one_does,
-                    std::string_view many_do) {
-  std::string text = std::to_string(count) + " " + std::string(thing) + (count == 1 ? "" : "s");
-  const std::string_view verb = count == 1 ? one_does : many_do;
-  return verb.empty() ? text : text + " " + std::string(verb);
+std::string slicesText(std::uint64_t count) {
+  return trCount(count, "{} slice", "{} slices");
 }
 
 std::string shownTerm(const std::string& text) {
@@ -64,10 +61,10 @@ std::string shownTerm(const std::string& text) {
   return text;
 }
 
-std::string listed(const std::vector<std::string>& words, std::string_view last) {
+std::string listed(const std::vector<std::string>& words, const std::string& last) {
   std::string text;
   for (std::size_t n = 0; n < words.size(); ++n) {
-    if (n > 0) text += n + 1 == words.size() ? " " + std::string(last) + " " : ", ";
+    if (n > 0) text += n + 1 == words.size() ? " " + last + " " : ", ";
     text += words[n];
   }
   return text;

@@ -319,8 +319,9 @@ Result<DicomSegmentation> read(const fs::path& file, double threshold, const Pro
     if (!layer) return layer.error();
     out.layers.push_back(*std::move(layer));
     if (frames.unnamed() > 0) {
-      out.notes.push_back(tr("Left out: {} of segments that the file does not name.",
-                             counted(frames.unnamed(), "voxel")));
+      out.notes.push_back(trCount(frames.unnamed(),
+                                  "Left out: {} voxel of segments that the file does not name.",
+                                  "Left out: {} voxels of segments that the file does not name."));
     }
     out.format = "DICOM label map";
     out.named = std::ranges::any_of(out.segments, [](const auto& s) { return !s.name.empty(); });
@@ -343,8 +344,9 @@ Result<DicomSegmentation> read(const fs::path& file, double threshold, const Pro
   std::size_t unnamed = 0;
   for (const auto& [number, own] : frames_of) unnamed += own.size();
   if (unnamed > 0) {
-    out.notes.push_back(
-        tr("Left out: {} of segments that the file does not name.", counted(unnamed, "frame")));
+    out.notes.push_back(trCount(unnamed,
+                                "Left out: {} frame of segments that the file does not name.",
+                                "Left out: {} frames of segments that the file does not name."));
   }
   out.named = std::ranges::any_of(out.segments, [](const auto& s) { return !s.name.empty(); });
   auto filled = layers.take();

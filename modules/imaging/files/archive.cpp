@@ -33,9 +33,9 @@ constexpr std::size_t kMostFiles = 200000;
 using Archive = std::unique_ptr<archive, int (*)(archive*)>;
 
 // Why an archive is not whole; empty: it is.
-using Reason = std::string;
+using Reason = std::string_view;  // an English sentence that tr() knows
 
-constexpr const char* kDamaged = trLater("an archive that is damaged or cut short");
+constexpr Reason kDamaged = trLater("an archive that is damaged or cut short");
 
 std::string bytesAt(const fs::path& file, std::uint64_t from, std::size_t count) {
   const Descriptor in(::open(file.c_str(), O_RDONLY | O_CLOEXEC));
@@ -94,7 +94,7 @@ class Unpacker {
     // What was joined of several is read to its end.
     archive_read_set_format_option(in.get(), "tar", "read_concatenated_archives", "1");
     if (archive_read_open_filename(in.get(), file.c_str(), kBlock) != ARCHIVE_OK) {
-      return tr(kDamaged);
+      return kDamaged;
     }
     folders_.clear();
     Reason reason;
@@ -104,20 +104,19 @@ class Unpacker {
       progress_.at(from + (to - from) * std::clamp(share, 0.0, 1.0), "Unpacking");
       archive_entry* entry = nullptr;
       const int next = archive_read_next_header(in.get(), &entry);
-      if (next < ARCHIVE_WARN || next == ARCHIVE_RETRY)
-        return reason.empty() ? tr(kDamaged) : reason;
+      if (next < ARCHIVE_WARN || next == ARCHIVE_RETRY) return reason.empty() ? kDamaged : reason;
       const int format = archive_format(in.get());
       const bool packed_tar = archive_filter_count(in.get()) > 1;
       if (next == ARCHIVE_EOF) {
         const bool whole = packed_tar || hasItsEnd(file, packed, format);
-        return reason.empty() && !whole ? tr(kDamaged) : reason;
+        return reason.empty() && !whole ? kDamaged : reason;
       }
       if (archive_entry_is_encrypted(entry)) {
-        reason = tr("an archive that is locked by a password");
+        reason = trLater("an archive that is locked by a password");
         continue;
       }
       if (archive_entry_filetype(entry) != AE_IFREG || archive_entry_hardlink(entry)) continue;
-      if (++files_ > kMostFiles) return Reason(tr("an archive of too many files"));
+      if (++files_ > kMostFiles) return Reason(trLater("an archive of too many files"));
       const char* given = archive_entry_pathname(entry);
       const fs::path inside =
           format == ARCHIVE_FORMAT_RAW ? file.stem() : fs::path(given ? given : "");
@@ -127,7 +126,7 @@ class Unpacker {
       if (written->empty()) continue;
       fs::remove(to_file, ec);
       reason = *written;
-      if (reason != tr(kDamaged)) return reason;
+      if (reason != kDamaged) return reason;
     }
   }
 
@@ -159,9 +158,9 @@ class Unpacker {
       if (progress_.cancelled()) return cancelled();
       const la_ssize_t count = archive_read_data(in, block_.data(), block_.size());
       if (count == 0) return Reason();
-      if (count < 0) return tr(kDamaged);
+      if (count < 0) return kDamaged;
       if (std::uint64_t(count) > std::min(left_, room_)) {
-        return Reason(tr("an archive that unpacks to far more than it should"));
+        return Reason(trLater("an archive that unpacks to far more than it should"));
       }
       left_ -= std::uint64_t(count);
       room_ -= std::uint64_t(count);
@@ -199,7 +198,7 @@ Result<UnpackedArchives> unpack(const std::vector<fs::path>& archives, const Pro
         unpacker.unpack(archives[n], double(n) / count, double(n + 1) / count);
     if (!reason) return reason.error();
     if (!reason->empty())
-      unpacked.not_whole.push_back({unpacker.folder(), *reason, *reason == tr(kDamaged)});
+      unpacked.not_whole.push_back({unpacker.folder(), tr(reason->data()), *reason == kDamaged});
   }
   unpacked.files = unpacker.files();
   return unpacked;

@@ -169,20 +169,22 @@ Result<Volume> readFileSeries(const std::filesystem::path& file, const Answers& 
     const Finding& finding = report.findings.back();
     return Error{finding.code, finding.text, report.uid, finding.action};
   }
-  const auto voxels = [](std::uint64_t n) { return counted(n, "voxel"); };
   if (reading->rounded > 0) {
     add(report, code::kHuRounded, Severity::repair,
-        tr("{} had HU that are not whole numbers", voxels(reading->rounded)),
+        trCount(reading->rounded, "{} voxel had HU that are not whole numbers",
+                "{} voxels had HU that are not whole numbers"),
         tr("They were rounded to the nearest"));
   }
   if (reading->clamped > 0) {
     add(report, code::kHuClamped, Severity::repair,
-        tr("{} had HU outside -32768..32767", voxels(reading->clamped)),
+        trCount(reading->clamped, "{} voxel had HU outside -32768..32767",
+                "{} voxels had HU outside -32768..32767"),
         tr("They were set to the nearest limit"));
   }
   if (reading->not_numbers > 0) {
     add(report, code::kNotNumbers, Severity::repair,
-        tr("{} held no number", voxels(reading->not_numbers)), tr("They became air"));
+        trCount(reading->not_numbers, "{} voxel held no number", "{} voxels held no number"),
+        tr("They became air"));
   }
   if (reading->hu_min >= 0.0 && reading->hu_max <= kMostLabels) {
     refuseLabelMap(report,

@@ -43,17 +43,15 @@ bool isChoice(Code code) {
 Status fits(const Options& asked, const Answers& answers) {
   for (const auto& [code, option] : answers) {
     if (!isChoice(code)) {
-      std::vector<std::string> names;
-      for (const Code& known : codes()) names.push_back(known.str());
       return Error{code::kBadChoice, tr("There is no choice of this name"), cleanUtf8(code.str()),
-                   tr("Choose among {}", listed(names))};
+                   tr("Choose among {}", listed(namesOf(codes())))};
     }
     const auto question = asked.find(code);
     if (question == asked.end()) continue;
     if (std::ranges::find(question->second, option) != question->second.end()) continue;
     return Error{code::kBadChoice,
                  tr("The choice {} has no option '{}'", code.str(), cleanUtf8(option)), "",
-                 tr("Choose {}", listed(question->second, "or"))};
+                 tr("Choose {}", listed(question->second, tr("or")))};
   }
   return {};
 }

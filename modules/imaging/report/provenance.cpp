@@ -6,22 +6,6 @@
 
 namespace trephine {
 
-namespace {
-
-std::vector<std::string> namesOf(const std::vector<Code>& codes) {
-  std::vector<std::string> names;
-  for (const Code& code : codes) names.push_back(code.str());
-  return names;
-}
-
-std::vector<Code> codesOf(const std::vector<std::string>& names) {
-  std::vector<Code> codes;
-  for (const std::string& name : names) codes.push_back(Code::named(name));
-  return codes;
-}
-
-}  // namespace
-
 Json toJson(const Provenance& provenance) {
   Json answers = Json::object();
   for (const auto& [code, option] : provenance.answers) answers[code.str()] = option;
@@ -83,8 +67,12 @@ Result<Provenance> provenanceFrom(const Json& json, const std::string& file) {
     }
     provenance.answers[Code::named(code)] = option.get<std::string>();
   }
-  provenance.unanswered = codesOf(reader.texts("unanswered", kMost));
-  provenance.unused_answers = codesOf(reader.texts("unused_answers", kMost));
+  for (const std::string& code : reader.texts("unanswered", kMost)) {
+    provenance.unanswered.push_back(Code::named(code));
+  }
+  for (const std::string& code : reader.texts("unused_answers", kMost)) {
+    provenance.unused_answers.push_back(Code::named(code));
+  }
   for (JsonReader& item : reader.objects("changes", kMost)) {
     provenance.changes.push_back({Code::named(item.text("code")), Severity::repair,
                                   item.text("text"), item.texts("slices", kMost),

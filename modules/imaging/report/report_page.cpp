@@ -167,12 +167,13 @@ std::string reportPage(const ImportReport& report) {
     html += seriesSection(report.series[order[n]], n + 1, order.size(), chosen(order[n]));
   }
   if (order.size() > kMostSeries) {
-    html += tr("<p>{} more series {} found; the window lists all.</p>\n",
-               order.size() - kMostSeries, (order.size() == kMostSeries + 1 ? "was" : "were"));
+    html += trCount(order.size() - kMostSeries,
+                    "<p>{} more series was found; the window lists all.</p>\n",
+                    "<p>{} more series were found; the window lists all.</p>\n");
   }
   if (report.provenance) html += provenanceSection(*report.provenance);
-  html += tr("<h3>Files</h3>\n<p>{} seen, {} read.",
-             counted(std::uint64_t(report.files_seen), "file", "was", "were"), report.files_read);
+  html += trCount(std::uint64_t(report.files_seen), "<h3>Files</h3>\n<p>{} file was seen, {} read.",
+                  "<h3>Files</h3>\n<p>{} files were seen, {} read.", report.files_read);
   for (const SkippedFiles& skipped : report.skipped) {
     html += tr(" Skipped {}: {}.", skipped.count, escaped(skipped.reason));
   }

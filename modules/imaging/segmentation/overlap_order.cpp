@@ -65,7 +65,7 @@ Result<std::vector<std::size_t>> orderFrom(const std::string& answer, const Segm
                    tr("The order for OVERLAP names '{}', which is no structure of the file or "
                       "stands there already",
                       cleanUtf8(parts[first])),
-                   "", tr("Choose among {}, each once", listed(names, "and"))};
+                   "", tr("Choose among {}, each once", listed(names))};
     }
     taken[*found] = true;
     order.push_back(*found);

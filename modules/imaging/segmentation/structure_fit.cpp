@@ -47,14 +47,17 @@ std::string sidesAlong(const GridGeometry& g, int axis) {
 
 // "82 slices (246 mm) nearer to the head".
 std::string moveWords(const BetterPlace& place, const GridGeometry& g) {
-  static const char* const kAxes[] = {"column", "row", "slice"};
+  const std::uint64_t count = std::uint64_t(std::abs(place.voxels));
+  const std::string steps = place.axis == 0   ? trCount(count, "{} column", "{} columns")
+                            : place.axis == 1 ? trCount(count, "{} row", "{} rows")
+                                              : trCount(count, "{} slice", "{} slices");
   const std::string sides[][2] = {{tr("the patient's right"), tr("the patient's left")},
                                   {tr("the front"), tr("the back")},
                                   {tr("the foot"), tr("the head")}};
   const int voxels = std::abs(place.voxels), towards = patientAxis(g, place.axis);
   const bool rising = (place.voxels > 0) == (g.direction[place.axis][towards] > 0.0);
-  return tr("{} ({} mm) nearer to {}", counted(std::size_t(voxels), kAxes[place.axis]),
-            number(voxels * g.spacing_mm[place.axis]), sides[towards][rising]);
+  return tr("{} ({} mm) nearer to {}", steps, number(voxels * g.spacing_mm[place.axis]),
+            sides[towards][rising]);
 }
 
 // Voxels [low, high) of the CT whose middles lie in the other grid's box, by their extremes.
@@ -206,7 +209,7 @@ class Asking {
         return Error{
             code::kBadChoice,
             tr("The choice {} has no option '{}'", choice.code.str(), cleanUtf8(given->second)), "",
-            tr("Choose {}", listed(choice.options, "or"))};
+            tr("Choose {}", listed(choice.options, tr("or")))};
       }
       option = given->second;
     } else if (option == "refuse" && !ask_all_) {
@@ -239,9 +242,10 @@ Result<std::vector<std::size_t>> orderOf(const Segmentation& of, const Answers& 
                        [](const auto& a, const auto& b) { return a.voxels < b.voxels; });
   const double voxel_ml = of.geometry.voxelVolume_mm3() / 1000.0;
   const auto name = [&](std::size_t s) { return "'" + of.segments[s].name + "'"; };
-  const std::string what = tr("{} of structures share voxels, most of all {} and {} with {} mL",
-                              counted(shared.size(), "pair"), name(most->a), name(most->b),
-                              number(double(most->voxels) * voxel_ml, 1));
+  const std::string what = trCount(
+      shared.size(), "{} pair of structures shares voxels, most of all {} and {} with {} mL",
+      "{} pairs of structures share voxels, most of all {} and {} with {} mL", name(most->a),
+      name(most->b), number(double(most->voxels) * voxel_ml, 1));
   Choice choice{code::kOverlap,
                 tr("{}. Which of them has those voxels?", what),
                 {"smaller", "first", "last"},
@@ -257,7 +261,7 @@ Result<std::vector<std::size_t>> orderOf(const Segmentation& of, const Answers& 
                             Severity::notice,
                             what,
                             {},
-                            tr("The first has them, of {}", listed(fit.overlapping, "and"))});
+                            tr("The first has them, of {}", listed(fit.overlapping))});
     return own;
   }
   const Result<std::string> chosen = asking.ask(std::move(choice));
@@ -468,7 +472,8 @@ Result<StructureFit> fitted(Segmentation& of, const Volume& ct, const Answers& a
   std::string doubt;
   if (!doubtful.empty()) {
     doubt = tr("The HU cannot be the tissue: {}", doubtful.front());
-    if (doubtful.size() > 1) doubt += tr(", and {} alike", counted(doubtful.size() - 1, "other"));
+    if (doubtful.size() > 1)
+      doubt += trCount(doubtful.size() - 1, ", and {} other alike", ", and {} others alike");
   }
   if (better && !better->mirrored) {
     doubt += doubt.empty() ? tr("The structures' borders lie on nothing in the CT") : "";

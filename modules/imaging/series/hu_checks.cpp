@@ -63,8 +63,10 @@ void sayPadding(const UnnamedPadding& padding, SeriesReport& report) {
   report.findings.push_back(
       {code::kPaddingToAir,
        Severity::notice,
-       tr("{} had {} HU, which nothing in a patient has: the space around the scan",
-          counted(padding.voxels, "voxel"), padding.hu),
+       trCount(padding.voxels,
+               "{} voxel had {} HU, which nothing in a patient has: the space around the scan",
+               "{} voxels had {} HU, which nothing in a patient has: the space around the scan",
+               padding.hu),
        {},
        tr("They became air")});
 }

@@ -181,14 +181,13 @@ void dropDuplicates(Series& series, const Progress& progress) {
   series.slices = std::move(kept);
   if (!dropped.slices.empty()) {
     const std::size_t count = dropped.slices.size();
-    dropped.text = counted(count, "file", tr("is a copy of another"), tr("are copies of others"));
+    dropped.text = trCount(count, "{} file is a copy of another", "{} files are copies of others");
     series.report.findings.push_back(std::move(dropped));
   }
   if (!different.slices.empty()) {
     const std::size_t count = different.slices.size();
-    different.text =
-        tr("{} to be another file's image but {} from it",
-           counted(count, "file", "claims", "claim"), (count == 1 ? "differs" : "differ"));
+    different.text = trCount(count, "{} file claims to be another file's image but differs from it",
+                             "{} files claim to be another file's image but differ from it");
     series.report.findings.push_back(std::move(different));
   }
 }

@@ -55,17 +55,18 @@ Headers chooseParts(const Series& series, Headers placed, const Answers& answers
     choice.words.push_back(
         tr("Join all {}: it is assumed that they are one scan of one patient who lay still, "
            "whatever is said of {}",
-           counted(placed.size(), "slice"), differing));
+           slicesText(placed.size()), differing));
   }
   for (const auto& [part, count] : counts) {
     if (part >= kMostOffered || count < 2) continue;
     choice.options.push_back(std::to_string(part + 1));
     choice.words.push_back(
-        tr("Use only part {}: {} of {}", part + 1, count, counted(placed.size(), "slice")));
+        tr("Use only part {}: {} of {}", part + 1, count, slicesText(placed.size())));
   }
   const bool offers_part = choice.options.size() > 2;
   const std::string text =
-      tr("The series falls into {} that differ in {}", counted(counts.size(), "part"), differing);
+      trCount(counts.size(), "The series falls into {} part that differs in {}",
+              "The series falls into {} parts that differ in {}", differing);
   const std::string answer = ask(std::move(choice), answers, report.choices);
   if (answer == "join") {
     findings.repaired(
@@ -87,7 +88,7 @@ Headers chooseParts(const Series& series, Headers placed, const Answers& answers
   if (answer != "refuse") {
     findings.repaired(code::kParts, text,
                       tr("Part {} was taken, {} of {}; the others were left out", answer,
-                         placed.size(), counted(whole, "slice")));
+                         placed.size(), slicesText(whole)));
   }
   return placed;
 }
@@ -124,7 +125,7 @@ void checkAcquisition(const Headers& used, const Answers& answers, Findings& fin
     std::vector<std::string> some;
     for (const auto& [key_, one] : said) {
       if (some.size() == 3) {
-        some.push_back("others");
+        some.push_back(tr("others"));
         break;
       }
       some.push_back(tr("{} in {}", shownTerm(one.first), one.second));

@@ -84,7 +84,7 @@ void checkTransferSyntax(const Series& series, Findings& findings) {
     findings.refuse(code::kUnsupportedTransferSyntax,
                     tr("The transfer syntax {}{} of {} cannot be read", transferSyntaxName(uid),
                        (uid.starts_with("1.2.840.10008.") ? " (" + cleanUtf8(uid) + ")" : ""),
-                       counted(std::uint64_t(count), "slice")),
+                       slicesText(std::uint64_t(count))),
                     tr("Export the series uncompressed (Explicit VR Little Endian)"));
   }
 }
@@ -92,7 +92,8 @@ void checkTransferSyntax(const Series& series, Findings& findings) {
 void checkLoss(const Answers& answers, Findings& findings) {
   const auto lossy = findings.slicesWhere([](const DicomHeader& h) { return h.lossy; });
   if (lossy.empty()) return;
-  const std::string text = tr("{} compressed with loss", countOfSlices(lossy, "was", "were"));
+  const std::string text = trCount(lossy.size(), "{} slice was compressed with loss",
+                                   "{} slices were compressed with loss");
   findings.askConsent(
       {code::kLossySource,
        tr("The series was compressed with loss: its HU are not those of the scanner. Use it?"),
@@ -117,11 +118,15 @@ void checkValues(const Series& series, Findings& findings) {
            (!h.holdsGreyWords() || h.ambiguous_order || h.photometric.empty());
   });
   if (!odd_format.empty()) {
-    findings.refuse(code::kPixelFormat,
-                    tr("{} not say 8 or 16 allocated bits, as many stored bits or fewer, rows and "
-                       "columns up to 8192 and photometric interpretation as CT must",
-                       countOfSlices(odd_format, "does", "do")),
-                    tr("Export the series again as CT with 16-bit pixels"), odd_format);
+    findings.refuse(
+        code::kPixelFormat,
+        trCount(
+            odd_format.size(),
+            "{} slice does not say 8 or 16 allocated bits, as many stored bits or fewer, rows and "
+            "columns up to 8192 and photometric interpretation as CT must",
+            "{} slices do not say 8 or 16 allocated bits, as many stored bits or fewer, rows and "
+            "columns up to 8192 and photometric interpretation as CT must"),
+        tr("Export the series again as CT with 16-bit pixels"), odd_format);
   }
   const auto not_hu = findings.slicesWhere([](const DicomHeader& h) {
     return h.has_pixels && !h.rescale_type.empty() && h.rescale_type != "HU" &&
@@ -136,7 +141,7 @@ void checkValues(const Series& series, Findings& findings) {
   if (!bad.empty()) {
     findings.refuse(code::kBadRescale,
                     tr("The rescale slope or intercept of {} is no number that CT could have",
-                       countOfSlices(bad)),
+                       slicesText(bad.size())),
                     tr("Export the series again"), bad);
   }
   const auto raw = findings.slicesWhere(
@@ -144,17 +149,18 @@ void checkValues(const Series& series, Findings& findings) {
   const auto scaled =
       findings.slicesWhere([](const DicomHeader& h) { return h.has_pixels && h.intercept_given; });
   if (!raw.empty() && !scaled.empty()) {
-    findings.refuse(
-        code::kBadRescale,
-        tr("{} the rescale intercept that the others have", countOfSlices(raw, "lacks", "lack")),
-        tr("Export the series again"), raw);
+    findings.refuse(code::kBadRescale,
+                    trCount(raw.size(), "{} slice lacks the rescale intercept that the others have",
+                            "{} slices lack the rescale intercept that the others have"),
+                    tr("Export the series again"), raw);
   }
   const auto unscaled = findings.slicesWhere(
       [](const DicomHeader& h) { return h.has_pixels && !h.rescale_given && !h.rescale_bad; });
   if (!unscaled.empty()) {
     findings.notice(
         code::kRescaleDefault,
-        tr("{} a rescale slope (or have 0) or intercept", countOfSlices(unscaled, "lacks", "lack")),
+        trCount(unscaled.size(), "{} slice lacks a rescale slope (or has 0) or intercept",
+                "{} slices lack a rescale slope (or have 0) or intercept"),
         tr("Slope 1 and intercept 0 were taken where absent"), unscaled);
   }
   if (first.photometric == "MONOCHROME1") {
@@ -174,9 +180,8 @@ void checkSizes(const Series& series, Findings& findings) {
   }
   if (mismatched.empty()) return;
   findings.refuse(code::kSizeMismatch,
-                  countOfSlices(mismatched, tr("contradicts itself ("),
-                                tr("contradict themselves (the last: ")) +
-                      text + ")",
+                  trCount(mismatched.size(), "{} slice contradicts itself ({1})",
+                          "{} slices contradict themselves (the last: {1})", text),
                   tr("Export the series again"), mismatched);
 }
 
@@ -196,7 +201,8 @@ bool isPlaced(const DicomHeader& header) {
 // "; of these cannot be read: slice 2 (its pixels are cut short)"
 std::string lostText(const std::vector<const DicomHeader*>& lost) {
   if (lost.empty()) return "";
-  std::string text = tr("; {} cannot be read:", counted(lost.size(), "slice"));
+  std::string text =
+      trCount(lost.size(), "; {} slice cannot be read:", "; {} slices cannot be read:");
   for (std::size_t n = 0; n < std::min<std::size_t>(lost.size(), 5); ++n) {
     text += (n == 0 ? " " : ", ") + sliceName(*lost[n]);
   }
@@ -212,9 +218,10 @@ void checkUnplaced(const std::vector<const DicomHeader*>& lost, bool others_are_
   std::vector<std::string> names;
   for (const DicomHeader* header : lost) names.push_back(sliceName(*header));
   const std::string& why = lost.back()->defect_text;
-  const std::string text = tr("{} cannot be read, and {} not known ({})", countOfSlices(names),
-                              (names.size() == 1 ? tr("its place is") : tr("their places are")),
-                              (why.empty() ? tr("it has no pixels") : why));
+  const std::string text =
+      trCount(names.size(), "{} slice cannot be read, and its place is not known ({1})",
+              "{} slices cannot be read, and their places are not known ({1})",
+              why.empty() ? tr("it has no pixels") : why);
   const auto given = answers.find(code::kMissingSlices);
   const bool agreed = others_are_placed && given != answers.end() && given->second != "refuse";
   const bool asked = std::ranges::find(report.choices, code::kMissingSlices, &Choice::code) !=
@@ -334,7 +341,7 @@ void checkSlopes(const Answers& answers, Findings& findings) {
        {"refuse", "accept"},
        {tr("Do not use the series"), tr("Use them as their headers say")}},
       answers,
-      tr("The rescale slope of {} has another sign than the others'", countOfSlices(fewer)),
+      tr("The rescale slope of {} has another sign than the others'", slicesText(fewer.size())),
       tr("Each was taken as its header says, as was agreed"),
       tr("Look at these slices: in one with a wrong sign bone is dark. Export the series again"),
       fewer);
@@ -362,8 +369,9 @@ void checkConcatenation(const std::vector<DicomHeader>& slices, const Answers& a
     }
   }
   if (missing.empty()) return;
-  const std::string text = tr("The series was written in parts, of which {}{}", listed(missing),
-                              (missing.size() == 1 ? tr(" is missing") : tr(" are missing")));
+  const std::string text =
+      trCount(missing.size(), "The series was written in parts, of which {1} is missing",
+              "The series was written in parts, of which {1} are missing", listed(missing));
   if (std::ranges::find(asked, code::kMissingSlices, &Choice::code) != asked.end()) {
     const std::string answer = answerTo(answers, code::kMissingSlices);
     return findings.notice(code::kIncomplete, text,
@@ -424,10 +432,11 @@ SeriesPlan checkGeometry(Series& series, const Answers& answers, Findings& findi
   const auto nowhere =
       findings.slicesWhere([](const DicomHeader& h) { return h.has_pixels && !isPlaced(h); });
   if (!nowhere.empty()) {
-    findings.refuse(code::kNoGeometry,
-                    tr("{} a usable position, orientation or pixel spacing",
-                       countOfSlices(nowhere, "lacks", "lack")),
-                    tr("Export the series again with its geometry"), nowhere);
+    findings.refuse(
+        code::kNoGeometry,
+        trCount(nowhere.size(), "{} slice lacks a usable position, orientation or pixel spacing",
+                "{} slices lack a usable position, orientation or pixel spacing"),
+        tr("Export the series again with its geometry"), nowhere);
     return plan;
   }
   Headers placed, unplaced, lost;

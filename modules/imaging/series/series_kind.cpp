@@ -137,11 +137,6 @@ std::string otherScale(const DicomHeader& header) {
   return "";
 }
 
-// "1 slice holds " or "3 slices hold ".
-std::string countText(const std::vector<std::string>& slices, const char* one, const char* many) {
-  return counted(slices.size(), "slice", one, many) + " ";
-}
-
 }  // namespace
 
 void checkKind(Series& series, const Answers& answers) {
@@ -163,29 +158,32 @@ void checkKind(Series& series, const Answers& answers) {
   }
   Findings findings(series);
   if (!coloured.empty()) {
-    findings.refuse(
-        code::kColour,
-        tr("{}pixels that stand for colours, not HU", countText(coloured, "holds", "hold")),
-        tr("Export the original CT slices"), coloured);
+    findings.refuse(code::kColour,
+                    trCount(coloured.size(), "{} slice holds pixels that stand for colours, not HU",
+                            "{} slices hold pixels that stand for colours, not HU"),
+                    tr("Export the original CT slices"), coloured);
   }
   if (!tables.empty()) {
-    findings.refuse(code::kNotHu,
-                    tr("{}a look-up table (Modality LUT) to become HU, which is not read",
-                       countText(tables, "needs", "need")),
-                    tr("Export the series with a rescale slope and intercept"), tables);
+    findings.refuse(
+        code::kNotHu,
+        trCount(tables.size(),
+                "{} slice needs a look-up table (Modality LUT) to become HU, which is not read",
+                "{} slices need a look-up table (Modality LUT) to become HU, which is not read"),
+        tr("Export the series with a rescale slope and intercept"), tables);
   }
   Slices derived;
   std::vector<std::string> derived_words;
   for (const auto& [kind, slices] : kinds) {
     if (kind.first == Use::no_hu) {
       findings.refuse(code::kNotHu,
-                      tr("{}{}, not HU", countText(slices, "holds", "hold"), kind.second),
+                      trCount(slices.size(), "{} slice holds {}, not HU",
+                              "{} slices hold {}, not HU", kind.second),
                       tr("Choose the series that it was calculated from"), slices);
     } else if (kind.first == Use::projection) {
-      findings.refuse(
-          code::kProjection,
-          tr("{}{}, not what lies at their place", countText(slices, "holds", "hold"), kind.second),
-          tr("Choose the series that it was calculated from"), slices);
+      findings.refuse(code::kProjection,
+                      trCount(slices.size(), "{} slice holds {}, not what lies at their place",
+                              "{} slices hold {}, not what lies at their place", kind.second),
+                      tr("Choose the series that it was calculated from"), slices);
     } else {
       derived.insert(derived.end(), slices.begin(), slices.end());
       derived_words.push_back(kind.second);
@@ -199,7 +197,8 @@ void checkKind(Series& series, const Answers& answers) {
          {"refuse", "accept"},
          {tr("Do not use the series"),
           tr("Use them: detail and HU may differ from those of the slices that were scanned")}},
-        answers, countText(derived, "is", "are") + listed(derived_words),
+        answers,
+        trCount(derived.size(), "{} slice is {}", "{} slices are {}", listed(derived_words)),
         tr("They were taken as they are, as was agreed"),
         tr("Choose the series as it was scanned, or agree to use this one"), derived);
   }
@@ -212,8 +211,9 @@ void checkKind(Series& series, const Answers& answers) {
          {tr("Do not use the series"),
           tr("Take slope and intercept for HU and leave the map aside")}},
         answers,
-        tr("{}a real-world value map to {} beside slope and intercept",
-           countText(slices, "has", "have"), scale),
+        trCount(slices.size(),
+                "{} slice has a real-world value map to {} beside slope and intercept",
+                "{} slices have a real-world value map to {} beside slope and intercept", scale),
         tr("The map was left aside, as was agreed"),
         tr("Choose the series in HU, or agree to leave the map aside"), slices);
   }

@@ -41,6 +41,8 @@ std::vector<Place> placesOf(const std::vector<double>& places_mm) {
 }
 
 // What may tell the scans of a series apart, in the order in which it is asked.
+constexpr const char* kKernelKey = trLater("convolution kernel");
+
 struct Key {
   const char* name;
   std::function<std::optional<double>(const DicomHeader&)> of;
@@ -53,7 +55,7 @@ std::vector<Key> keysOf(const std::vector<const DicomHeader*>& slices) {
   for (const DicomHeader* slice : slices) kernels[slice->kernel];
   double number = 0.0;
   for (auto& [kernel, its] : kernels) its = number++;
-  std::vector<Key> keys{{trLater("convolution kernel"), [kernels](const DicomHeader& h) {
+  std::vector<Key> keys{{kKernelKey, [kernels](const DicomHeader& h) {
                            return h.kernel.empty() ? std::nullopt
                                                    : std::optional(kernels.at(h.kernel));
                          }}};
@@ -314,7 +316,7 @@ std::vector<int> byPause(const Numbers& numbers, const std::vector<double>& plac
 // Scans whose slices lie between one another.
 struct Interleaved {
   std::vector<int> phases;
-  std::string told_apart_by;
+  const char* told_apart_by;
 };
 
 std::optional<Interleaved> interleaved(const std::vector<const DicomHeader*>& slices,
@@ -343,7 +345,7 @@ std::optional<Interleaved> interleaved(const std::vector<const DicomHeader*>& sl
     }
     return numbers;
   };
-  std::vector<std::pair<std::string, Numbers>> all;
+  std::vector<std::pair<const char*, Numbers>> all;
   for (const Key& key : keys) {
     const std::string_view unit = key.unit;
     const bool of_heart = unit == " ms" || unit.starts_with(" %");
@@ -361,7 +363,8 @@ std::optional<Interleaved> interleaved(const std::vector<const DicomHeader*>& sl
 
 // Of phases that were told apart, those that are several scans all the same, by other keys.
 void refine(const std::vector<const DicomHeader*>& slices, const std::vector<double>& places_mm,
-            const std::vector<Key>& keys, std::vector<int>& phases, std::string& told_apart_by) {
+            const std::vector<Key>& keys, std::vector<int>& phases,
+            std::vector<std::string_view>& told_apart_by) {
   for (int phase = 0; phase <= std::ranges::max(phases); ++phase) {
     std::vector<std::size_t> own;
     for (std::size_t n = 0; n < phases.size(); ++n) {
@@ -380,8 +383,8 @@ void refine(const std::vector<const DicomHeader*>& slices, const std::vector<dou
     for (std::size_t i = 0; i < own.size(); ++i) {
       if (parts->phases[i] > 0) phases[own[i]] = most + parts->phases[i];
     }
-    if (told_apart_by.find(parts->told_apart_by) == told_apart_by.npos) {
-      told_apart_by += " and " + parts->told_apart_by;
+    if (std::ranges::find(told_apart_by, parts->told_apart_by) == told_apart_by.end()) {
+      told_apart_by.push_back(parts->told_apart_by);
     }
   }
 }
@@ -446,7 +449,7 @@ std::string timeText(const DicomHeader& slice) {
 }
 
 // " (80 kV)": what the key that tells scans apart is in this one, where a person knows its unit.
-std::string valueText(const std::vector<Key>& keys, const std::string& name,
+std::string valueText(const std::vector<Key>& keys, std::string_view name,
                       const DicomHeader& slice) {
   for (const Key& key : keys) {
     const auto value = key.name == name ? key.of(slice) : std::nullopt;
@@ -519,8 +522,9 @@ void dropEqualRepeats(Series& series, const Progress& progress) {
     if (different && repeats > kMostCompared) break;  // too many to read them all
   }
   if (finding.slices.empty()) return;
-  finding.text = tr("{} another at the same place, pixel by pixel",
-                    counted(finding.slices.size(), "slice", "repeats", "repeat"));
+  finding.text =
+      trCount(finding.slices.size(), "{} slice repeats another at the same place, pixel by pixel",
+              "{} slices repeat another at the same place, pixel by pixel");
   series.report.findings.push_back(std::move(finding));
   std::vector<DicomHeader> kept;
   for (std::size_t n = 0; n < series.slices.size(); ++n) {
@@ -537,11 +541,11 @@ std::vector<std::size_t> chooseRepeats(const std::vector<const DicomHeader*>& sl
   std::vector<std::size_t> chosen;
   const std::vector<Key> keys = keysOf(slices);
   std::optional<std::vector<int>> phases;
-  std::string told_apart_by;
+  std::vector<std::string_view> told_apart_by;  // keys: the first found the phases, the others more
   const auto found = [&](std::optional<std::vector<int>> some, const char* by) {
     if (phases || !some) return;
     phases = std::move(some);
-    told_apart_by = by;
+    told_apart_by = {by};
   };
   const auto instance = [](const DicomHeader& h) { return parseDecimal(h.instance_number); };
   const bool scanned_again = areMostRepeated(places);
@@ -551,7 +555,7 @@ std::vector<std::size_t> chooseRepeats(const std::vector<const DicomHeader*>& sl
   if (!scanned_again && places.size() > 1) {
     if (auto scans = interleaved(slices, places_mm, keys)) {
       woven = true;
-      found(std::move(scans->phases), scans->told_apart_by.c_str());
+      found(std::move(scans->phases), scans->told_apart_by);
     }
   }
   if ((single && !phases) || places.size() == 1) {
@@ -581,10 +585,12 @@ std::vector<std::size_t> chooseRepeats(const std::vector<const DicomHeader*>& sl
   };
 
   if (phases) {
-    const std::string first_key = told_apart_by;
     refine(slices, places_mm, keys, *phases, told_apart_by);
+    std::vector<std::string> its_keys;
+    for (const std::string_view key : told_apart_by) its_keys.push_back(tr(key.data()));
+    const std::string keys_text = listed(its_keys);
     report.phases = 1 + std::ranges::max(*phases);
-    const bool by_kernel = told_apart_by == "convolution kernel";
+    const bool by_kernel = told_apart_by == std::vector<std::string_view>{kKernelKey};
     Choice choice{
         code::kPhases,
         by_kernel ? tr("Which reconstruction shall be used?") : tr("Which phase shall be used?"),
@@ -600,24 +606,27 @@ std::vector<std::size_t> chooseRepeats(const std::vector<const DicomHeader*>& sl
       const DicomHeader& middle = *its[its.size() / 2];
       choice.options.push_back(std::to_string(phase + 1));
       choice.words.push_back(
-          (by_kernel ? "Reconstruction " : "Phase ") + std::to_string(phase + 1) +
-          (by_kernel ? "" : tr(" by {}", told_apart_by)) + valueText(keys, first_key, middle) +
+          (by_kernel ? tr("Reconstruction {}", phase + 1)
+                     : tr("Phase {} by {}", phase + 1, keys_text)) +
+          valueText(keys, told_apart_by.front(), middle) +
           (middle.kernel.empty() ? "" : tr(", kernel {}", shownTerm(middle.kernel))) +
-          timeText(middle) + ", " + counted(its.size(), "slice"));
+          timeText(middle) + ", " + slicesText(its.size()));
       choice.on_screen.push_back(middle.description);
       choice.shown.push_back(int(&middle - all.data()));
     }
     if (single) {
       choice.options.emplace_back("all");
-      choice.words.push_back(tr("They are one scan: use all {}", counted(slices.size(), "slice")));
+      choice.words.push_back(tr("They are one scan: use all {}", slicesText(slices.size())));
       choice.on_screen.emplace_back();
       choice.shown.push_back(-1);
     }
     const std::string answer = ask(std::move(choice), answers, report.choices);
+    const std::string lying = woven ? tr(" whose slices lie between one another") : "";
     const std::string text =
-        tr("The series holds {}{}{}, told apart by {}", report.phases,
-           (by_kernel ? " reconstructions" : tr(" phases or repeated acquisitions")),
-           (woven ? tr(" whose slices lie between one another") : ""), told_apart_by);
+        by_kernel ? tr("The series holds {} reconstructions{}, told apart by {}", report.phases,
+                       lying, keys_text)
+                  : tr("The series holds {} phases or repeated acquisitions{}, told apart by {}",
+                       report.phases, lying, keys_text);
     if (answer == "all") {
       report.findings.push_back({code::kPhases,
                                  Severity::repair,
@@ -643,8 +652,9 @@ std::vector<std::size_t> chooseRepeats(const std::vector<const DicomHeader*>& sl
   for (const Place& place : places) {
     if (place.count() > 1) finding.slices.push_back(placeText(places_mm[place.first]));
   }
-  finding.text = tr("{}{} more than one slice, with different pixels", finding.slices.size(),
-                    (finding.slices.size() == 1 ? tr(" place holds") : tr(" places hold")));
+  finding.text =
+      trCount(finding.slices.size(), "{} place holds more than one slice, with different pixels",
+              "{} places hold more than one slice, with different pixels");
   // Where most places repeat and nothing tells the phases apart, any choice would mix them.
   std::string answer = "refuse";
   if (!scanned_again) {

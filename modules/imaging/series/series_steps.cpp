@@ -109,7 +109,7 @@ std::vector<std::string> missingPlaces(const Slices& slices, const Steps& steps,
     std::string text = placeText(slices[i].place_mm + step);
     if (gap > 1) {
       text += tr(" to {} ({})", placeText(slices[i + 1].place_mm - step),
-                 counted(std::uint64_t(gap), "slice"));
+                 slicesText(std::uint64_t(gap)));
     }
     places.push_back(std::move(text));
   }
@@ -173,7 +173,7 @@ void keepPart(const Slices& part, Code code, const std::string& text, Stack& sta
        text,
        {},
        tr("Only the longest even part was taken, {}, {}; the rest is not there", rangeText(part),
-          counted(part.size(), "slice"))});
+          slicesText(part.size()))});
   planSlices(part, std::int64_t(part.size()), stack);
 }
 
@@ -201,8 +201,8 @@ void planGaps(Slices slices, const Steps& steps, const Answers& answers,
   std::int64_t missing = 0;
   const std::vector<std::string> places = missingPlaces(slices, steps, missing);
   const std::string gaps =
-      tr("{} missing from a stack with a step of {}",
-         counted(std::uint64_t(missing), "slice", "is", "are"), lengthText(steps.step_mm));
+      trCount(std::uint64_t(missing), "{} slice is missing from a stack with a step of {}",
+              "{} slices are missing from a stack with a step of {}", lengthText(steps.step_mm));
   const std::string text =
       rounded
           ? tr("Either {}, or none is and the positions were rounded to {} mm from steps of {} mm",
@@ -232,7 +232,7 @@ void planGaps(Slices slices, const Steps& steps, const Answers& answers,
   if (part.size() > 1) {
     choice.options.push_back("part");
     choice.words.push_back(tr("Use only the longest part without a gap: {}, {}", rangeText(part),
-                              counted(part.size(), "slice")));
+                              slicesText(part.size())));
   }
   if (rounded) {
     choice.options.push_back("line");
@@ -293,12 +293,12 @@ void planUneven(const Slices& slices, const Steps& steps, const Answers& answers
   if (count > 1 && count <= kMostSlices) {
     choice.options.push_back("resample");
     choice.words.push_back(tr("Interpolate {} at even steps of about {}",
-                              counted(std::uint64_t(count), "slice"), lengthText(steps.median_mm)));
+                              slicesText(std::uint64_t(count)), lengthText(steps.median_mm)));
   }
   if (part.size() > 1) {
     choice.options.push_back("part");
-    choice.words.push_back(tr("Use only the longest even part: {}, {}", rangeText(part),
-                              counted(part.size(), "slice")));
+    choice.words.push_back(
+        tr("Use only the longest even part: {}, {}", rangeText(part), slicesText(part.size())));
   }
   const std::string answer = ask(std::move(choice), answers, stack.choices);
   if (answer == "part") return keepPart(part, code::kUnevenSpacing, text, stack);
@@ -583,7 +583,7 @@ void planAlongNormal(Slices slices, const StackInput& input, const Vec3& normal,
     stack.findings.push_back({code::kMissingSlices,
                               Severity::refusal,
                               tr("{} of {} cannot be used{}", slices.size() - std::size_t(usable),
-                                 counted(slices.size(), "slice"), lost_text),
+                                 slicesText(slices.size()), lost_text),
                               {},
                               tr("Copy these files again from their source")});
   } else if ((steps.gaps || lost) && (steps.even || steps.jittered) && steps.total < kMostSlices) {

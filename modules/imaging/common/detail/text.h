@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "base/tr.h"
 #include "base/utf8.h"
 
 namespace trephine {
@@ -24,16 +25,15 @@ std::optional<int> parseInteger(std::string_view text);
 // "12.50" for (12.5, 2), whatever the locale.
 std::string fixedText(double value, int digits);
 
-// "1 slice", "3 slices"; with what they do: "1 slice lacks", "3 slices lack".
-std::string counted(std::uint64_t count, std::string_view thing, std::string_view one_does = "",
-                    std::string_view many_do = "");
+// "1 slice", "3 slices".
+std::string slicesText(std::uint64_t count);
 
 // A term as the standard's short strings hold them ("B30f", "AXIAL"): at most 16 letters, digits
 // and " _-+./" in each value. Other text, which could name somebody, becomes "another".
 std::string shownTerm(const std::string& text);
 
 // "size", "size and kernel", "size, kernel and kVp"
-std::string listed(const std::vector<std::string>& words, std::string_view last = "and");
+std::string listed(const std::vector<std::string>& words, const std::string& last = tr("and"));
 
 std::vector<std::string> splitValues(std::string_view text);  // at backslashes, trimmed
 

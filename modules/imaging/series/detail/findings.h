@@ -56,9 +56,4 @@ class Findings {
   Series& series_;
 };
 
-inline std::string countOfSlices(const std::vector<std::string>& slices,
-                                 std::string_view one_does = "", std::string_view many_do = "") {
-  return counted(slices.size(), "slice", one_does, many_do);
-}
-
 }  // namespace trephine
