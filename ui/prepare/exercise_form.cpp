@@ -83,7 +83,7 @@ void ExerciseForm::buildWhat() {
   what_ = new FormGroup(tr("What it is"), "whatProblem", wanted, body_);
   what_fields_ = what_->addFields<Exercise>(kExerciseFields, "scene:");
   what_fields_->entered = [this](const Exercise& other, const char* key) {
-    what_->edit(key, [&](Exercise& exercise) {
+    what_->edit(std::string("exercise ") + key, [&](Exercise& exercise) {
       exercise.name = other.name;
       exercise.anatomy = other.anatomy;
       exercise.structures = other.structures;
@@ -217,8 +217,8 @@ void ExerciseForm::buildPlaces() {
   places_->addRow(tr("Landmark"), besideEachOther({landmark_, add, remove}, fields),
                   tr("A place on any patient, found in the case."));
   constexpr FieldsOf<Landmark> kFields = kLandmarkFields;
-  const auto fieldsOf = [this](FieldsOf<Landmark> of) {
-    auto made = places_->addFields<Landmark>(of, "landmark:");
+  const auto fieldsOf = [this](FieldsOf<Landmark> table) {
+    auto made = places_->addFields<Landmark>(table, "landmark:");
     made->entered = [this](const Landmark& other, const char* key) {
       if (!landmark()) return;
       if (other.id != landmark()->id) {

@@ -28,7 +28,7 @@ OutlineForm::OutlineForm(const ExerciseEdited& wanted, QWidget* parent)
   form().addRow(count_);
   line_ = addFields<ExerciseOutline>(kOutlineFields, "outline:");
   line_->entered = [this](const ExerciseOutline& outline, const char* key) {
-    edit(key, [&](Exercise& exercise) {
+    edit(std::string("outline ") + key, [&](Exercise& exercise) {
       if (!exercise.outline) return;
       exercise.outline->closed = outline.closed;
       exercise.outline->width_mm = outline.width_mm;

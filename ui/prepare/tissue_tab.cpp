@@ -8,65 +8,12 @@
 #include "exercise/arm_limits.h"
 #include "tissue/tissue_edits.h"
 #include "ui/common/words.h"
+#include "ui/prepare/edit_words.h"
 #include "ui/work/arms_of_place.h"
 
 namespace trephine {
 
 namespace {
-
-// What an edit is called where it can be taken back: by what stands before the colon.
-constexpr std::pair<const char*, const char*> kEditWords[] = {
-    {"threshold", QT_TRANSLATE_NOOP("trephine::TissueTab", "HU of a tissue")},
-    {"hu", QT_TRANSLATE_NOOP("trephine::TissueTab", "HU of a tissue")},
-    {"opacity", QT_TRANSLATE_NOOP("trephine::TissueTab", "opacity")},
-    {"colour", QT_TRANSLATE_NOOP("trephine::TissueTab", "colour")},
-    {"name", QT_TRANSLATE_NOOP("trephine::TissueTab", "the name of a tissue")},
-    {"set name", QT_TRANSLATE_NOOP("trephine::TissueTab", "the name of the set")},
-    {"where", QT_TRANSLATE_NOOP("trephine::TissueTab", "where a tissue is")},
-    {"add tissue", QT_TRANSLATE_NOOP("trephine::TissueTab", "a new tissue")},
-    {"remove tissue", QT_TRANSLATE_NOOP("trephine::TissueTab", "a tissue removed")},
-    {"set", QT_TRANSLATE_NOOP("trephine::TissueTab", "another set of tissues")},
-    {"elsewhere", QT_TRANSLATE_NOOP("trephine::TissueTab", "the set for other cases")},
-    {"revert", QT_TRANSLATE_NOOP("trephine::TissueTab", "the set reverted")},
-    {"entry", QT_TRANSLATE_NOOP("trephine::TissueTab", "the entry point")},
-    {"landmark", QT_TRANSLATE_NOOP("trephine::TissueTab", "a landmark")},
-    {"add landmark", QT_TRANSLATE_NOOP("trephine::TissueTab", "a new landmark")},
-    {"remove landmark", QT_TRANSLATE_NOOP("trephine::TissueTab", "a landmark removed")},
-    {"tool", QT_TRANSLATE_NOOP("trephine::TissueTab", "a tool")},
-    {"add tool", QT_TRANSLATE_NOOP("trephine::TissueTab", "a new tool")},
-    {"remove tool", QT_TRANSLATE_NOOP("trephine::TissueTab", "a tool removed")},
-    {"arm", QT_TRANSLATE_NOOP("trephine::TissueTab", "an arm")},
-    {"workspace", QT_TRANSLATE_NOOP("trephine::TissueTab", "where an arm is")},
-    {"add arm", QT_TRANSLATE_NOOP("trephine::TissueTab", "a new arm")},
-    {"remove arm", QT_TRANSLATE_NOOP("trephine::TissueTab", "an arm removed")},
-    {"laws", QT_TRANSLATE_NOOP("trephine::TissueTab", "what is felt")},
-    {"controller", QT_TRANSLATE_NOOP("trephine::TissueTab", "the controller")},
-    {"force at", QT_TRANSLATE_NOOP("trephine::TissueTab", "where the force acts")},
-    {"removal", QT_TRANSLATE_NOOP("trephine::TissueTab", "how tissue is removed")},
-    {"rate_hz", QT_TRANSLATE_NOOP("trephine::TissueTab", "the rate")},
-    {"exercise name", QT_TRANSLATE_NOOP("trephine::TissueTab", "the name of the exercise")},
-    {"anatomy", QT_TRANSLATE_NOOP("trephine::TissueTab", "the part of the body")},
-    {"structures", QT_TRANSLATE_NOOP("trephine::TissueTab", "the structures it needs")},
-    {"operator", QT_TRANSLATE_NOOP("trephine::TissueTab", "the script")},
-    {"view landmark", QT_TRANSLATE_NOOP("trephine::TissueTab", "what is looked at")},
-    {"distance_mm", QT_TRANSLATE_NOOP("trephine::TissueTab", "the distance of the eye")},
-    {"looks", QT_TRANSLATE_NOOP("trephine::TissueTab", "the looks it begins with")},
-    {"card", QT_TRANSLATE_NOOP("trephine::TissueTab", "the card")},
-    {"card on", QT_TRANSLATE_NOOP("trephine::TissueTab", "the card")},
-    {"outline", QT_TRANSLATE_NOOP("trephine::TissueTab", "the outline")},
-    {"outline off", QT_TRANSLATE_NOOP("trephine::TissueTab", "the outline")},
-    {"outline closed", QT_TRANSLATE_NOOP("trephine::TissueTab", "the outline")},
-    {"width_mm", QT_TRANSLATE_NOOP("trephine::TissueTab", "the outline")},
-    {"locks", QT_TRANSLATE_NOOP("trephine::TissueTab", "what stays")},
-};
-
-QString editWords(const std::string& what) {
-  const std::string of = what.substr(0, what.find(':'));
-  for (const auto& [edit, words] : kEditWords) {
-    if (of == edit) return TissueTab::tr(words);
-  }
-  return TissueTab::tr("a number of a tissue");
-}
 
 // A file name that nobody has to escape.
 QString setFileName(const std::string& set) {
