@@ -48,13 +48,13 @@ class WarmthRule {
 
   template <class Self, class Archive>
   static void visitState(Self& self, Archive& archive) {
-    archive(self.share_, self.warmth_, self.limits_);
+    archive(self.share_, self.warmth_);
   }
 
  private:
   double share_ = 1.0;   // of the most, by the motors' own word
   double warmth_ = 0.0;  // h
-  bool limits_ = false;
+  bool limits_ = false;  // in this tick
 };
 
 // Whether an arm has been silent: a pose that has been the same sample for 15 ms is no pose of now,
