@@ -43,29 +43,31 @@ std::optional<std::string> filled(std::string_view words, std::span<const TrArg>
   return text;
 }
 
+// The translation of `key`, in its form for `count` things; `english` where there is none whose
+// places are those of the arguments.
+std::string said(const char* key, std::optional<int> count, const char* english,
+                 std::initializer_list<TrArg> args) {
+  const std::span<const TrArg> given(args.begin(), args.size());
+  if (installed) {
+    const std::string translated = installed(key, count);
+    std::optional<std::string> text;
+    if (translated != key) text = filled(translated, given);
+    if (text) return *text;
+  }
+  return filled(english, given).value_or(english);
+}
+
 }  // namespace
 
 std::string trWith(const char* source, std::initializer_list<TrArg> args) {
-  const std::span<const TrArg> given(args.begin(), args.size());
-  if (installed) {
-    if (std::optional<std::string> text = filled(installed(source, {}), given)) return *text;
-  }
-  return filled(source, given).value_or(source);
+  return said(source, {}, source, args);
 }
 
 std::string trCountWith(std::uint64_t count, const char* one, const char* many,
                         std::initializer_list<TrArg> args) {
-  const std::span<const TrArg> given(args.begin(), args.size());
-  if (installed) {
-    // Forms follow the last digits.
-    const int digits = count <= 1'000'000 ? int(count) : int(1'000'000 + count % 1'000'000);
-    const std::string translated = installed(many, digits);
-    if (translated != many) {
-      if (std::optional<std::string> text = filled(translated, given)) return *text;
-    }
-  }
-  const char* const source = count == 1 ? one : many;
-  return filled(source, given).value_or(source);
+  // Forms follow the last digits.
+  const int digits = count <= 1'000'000 ? int(count) : int(1'000'000 + count % 1'000'000);
+  return said(many, digits, count == 1 ? one : many, args);
 }
 
 void setTranslator(Translator translator) {

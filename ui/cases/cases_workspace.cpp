@@ -41,12 +41,12 @@ Error stillChanging() {
 
 }  // namespace
 
-CasesWorkspace::CasesWorkspace(AppContext& bench)
-    : Workspace(&bench),
-      app_(bench),
-      workstation_(bench.workstation()),
-      messages_(bench.messages()),
-      guards_(bench.guards()) {
+CasesWorkspace::CasesWorkspace(AppContext& app)
+    : Workspace(&app),
+      app_(app),
+      workstation_(app.workstation()),
+      messages_(app.messages()),
+      guards_(app.guards()) {
   QWidget& window = *messages_.window();
   open_ = makeAction(window, Symbol::open, "open", tr("Open folder\u2026"), QKeySequence::Open,
                      tr("Open a folder of CT"));

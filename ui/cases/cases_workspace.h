@@ -15,7 +15,7 @@ namespace trephine {
 class CasesWorkspace : public Workspace {
   Q_OBJECT
  public:
-  explicit CasesWorkspace(AppContext& bench);
+  explicit CasesWorkspace(AppContext& app);
 
   QString title() const override { return tr("Cases"); }
   Symbol symbol() const override { return Symbol::cases; }

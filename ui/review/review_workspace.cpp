@@ -30,8 +30,8 @@ Result<Case> recordedCase(const ListedRecording& recording, CaseLibrary& library
 
 }  // namespace
 
-ReviewWorkspace::ReviewWorkspace(AppContext& bench)
-    : Workspace(&bench), app_(bench), page_(new ReviewPage) {
+ReviewWorkspace::ReviewWorkspace(AppContext& app)
+    : Workspace(&app), app_(app), page_(new ReviewPage) {
   connect(page_, &ReviewPage::replayWanted, this, &ReviewWorkspace::replay);
   connect(page_, &ReviewPage::cancelWanted, &replaying_, &BackgroundTask::cancel);
   connect(&listing_, &BackgroundTask::progressed, page_, &ReviewPage::showReading);

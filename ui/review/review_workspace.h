@@ -10,7 +10,7 @@ namespace trephine {
 class ReviewWorkspace : public Workspace {
   Q_OBJECT
  public:
-  explicit ReviewWorkspace(AppContext& bench);
+  explicit ReviewWorkspace(AppContext& app);
 
   QString title() const override { return tr("Review"); }
   Symbol symbol() const override { return Symbol::review; }

@@ -20,13 +20,13 @@ constexpr int kLeftWidth = 165;
 
 }  // namespace
 
-TrainWorkspace::TrainWorkspace(AppContext& bench)
-    : Workspace(&bench),
-      app_(bench),
-      workstation_(bench.workstation()),
-      messages_(bench.messages()),
-      guards_(bench.guards()),
-      case_views_(bench.caseViews()),
+TrainWorkspace::TrainWorkspace(AppContext& app)
+    : Workspace(&app),
+      app_(app),
+      workstation_(app.workstation()),
+      messages_(app.messages()),
+      guards_(app.guards()),
+      case_views_(app.caseViews()),
       views_(&case_views_.views()),
       view_(&case_views_.view()) {
   buildActions();

@@ -27,7 +27,7 @@ class TrainWorkspace : public Workspace {
  public:
   static constexpr double kNoEnd_s = 1e9;
 
-  explicit TrainWorkspace(AppContext& bench);
+  explicit TrainWorkspace(AppContext& app);
 
   QString title() const override { return tr("Train"); }
   Symbol symbol() const override { return Symbol::train; }
