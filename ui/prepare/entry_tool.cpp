@@ -121,7 +121,7 @@ void EntryTool::paint(QPainter& painter, const SliceView& on) const {
   if (!entry) return;
   const Vec3 outward = entry->rotation * Vec3(0.0, 0.0, 1.0);
   draw(on.fromPatient(entry->position_mm), on.fromPatient(entry->position_mm + kArrow_mm * outward),
-       on.offSlice_mm(entry->position_mm) <= std::max(1.0, 0.5 * on.stack().spacing_mm.z));
+       on.shown().off_mm(entry->position_mm) <= std::max(1.0, 0.5 * on.stack().spacing_mm.z));
 }
 
 }  // namespace trephine

@@ -45,7 +45,7 @@ class MeasureTool : public ViewTool {
   }
   bool giveUp() override { return std::exchange(drawing_, {}).has_value(); }
   void paint(QPainter& painter, const SliceView& on) const override {
-    if (drawing_ && &on == slice_) on.paintMeasure(painter, *drawing_);
+    if (drawing_ && &on == slice_) paintMeasure(painter, on.shown(), *drawing_);
   }
 
  private:

@@ -15,6 +15,12 @@ constexpr double kLeastZoom = 0.25, kMostZoom = 64.0;
 constexpr double kZoomPerPixel = 0.008;  // of a drag, natural logarithm
 }  // namespace
 
+QPointF inBox(const QRectF& box, const QSize& shape, const QPointF& in_slice) {
+  if (box.isEmpty()) return {};
+  return {box.left() + in_slice.x() / shape.width() * box.width(),
+          box.top() + in_slice.y() / shape.height() * box.height()};
+}
+
 void paintWords(QPainter& painter, const QRectF& inside, int alignment, const QString& words,
                 const QColor& colour) {
   painter.setPen(QColor(0, 0, 0, 220));
@@ -63,10 +69,7 @@ QPointF SlicePane::toSlice(const QPointF& in_widget) const {
 }
 
 QPointF SlicePane::toWidget(const QPointF& in_slice) const {
-  const QRectF box = target();
-  if (box.isEmpty()) return {};
-  return {box.left() + in_slice.x() / shape_.width() * box.width(),
-          box.top() + in_slice.y() / shape_.height() * box.height()};
+  return inBox(target(), shape_, in_slice);
 }
 
 double SlicePane::pixelsPerMm() const {

@@ -57,6 +57,8 @@ class SlicePane : public QWidget {
   QPointF last_, zoom_around_;
 };
 
+// Where a place of a slice of that shape is drawn, all of which is drawn in `box`.
+QPointF inBox(const QRectF& box, const QSize& shape, const QPointF& in_slice);
 // Words that can be read on black and on bone alike.
 void paintWords(QPainter& painter, const QRectF& inside, int alignment, const QString& words,
                 const QColor& colour);

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "ui/common/colours.h"
 #include "ui/common/words.h"
 #include "ui/views/steps.h"
 
@@ -37,10 +38,9 @@ SliceView::SliceView(SliceAxis axis, std::shared_ptr<VolumeMirror> mirror,
 
 void SliceView::takeChanges() {
   const VolumeMirror::News news = news_.take();
-  const GridGeometry& grid = mirror_->volume().geometry;
   if (news.all) {
     const GridGeometry before = stack_;
-    stack_ = mirror_->empty() ? GridGeometry{} : sliceStack(grid, axis_);
+    stack_ = mirror_->empty() ? GridGeometry{} : sliceStack(grid(), axis_);
     if (!(stack_ == before)) {
       measures_.clear();
       (void)toolbox_.inHand().giveUp();
@@ -51,7 +51,7 @@ void SliceView::takeChanges() {
     slice_ = std::clamp(slice_, 0, std::max(0, slices() - 1));
     stale_ = true;
   }
-  for (const VoxelBox& box : news.boxes) stale_ = stale_ || touches(stack_, slice_, grid, box);
+  for (const VoxelBox& box : news.boxes) stale_ = stale_ || touches(stack_, slice_, grid(), box);
   if (stale_) update();
 }
 
@@ -61,9 +61,7 @@ void SliceView::coloursChanged() {
 }
 
 void SliceView::labelsChanged(const VoxelBox& box) {
-  if (!hasSlice() || !touches(stack_, slice_, mirror_->volume().geometry, box)) return;
-  stale_ = true;
-  update();
+  if (hasSlice() && touches(stack_, slice_, grid(), box)) coloursChanged();
 }
 
 // Where the slice stays only the lines of the other views move.
@@ -93,9 +91,9 @@ void SliceView::setSlice(int k) {
 }
 
 void SliceView::setTools(const std::vector<ToolView>& tools) {
-  const QRect before = toolsRect();
+  const QRect before = toolsRect(shown(), tools_);
   tools_ = tools;
-  update(before | toolsRect());
+  update(before | toolsRect(shown(), tools_));
 }
 
 int SliceView::gridAxis() const {
@@ -105,11 +103,6 @@ int SliceView::gridAxis() const {
 Vec3 SliceView::toPatient_mm(const QPointF& in_widget) const {
   const QPointF at = toSlice(in_widget);
   return stack_.toPatient_mm(Vec3(at.x() - 0.5, at.y() - 0.5, slice_));
-}
-
-QPointF SliceView::fromPatient(const Vec3& patient_mm) const {
-  const Vec3 at = toVoxel(stack_, patient_mm);
-  return toWidget({at.x + 0.5, at.y + 0.5});
 }
 
 QString SliceView::readout() const {
@@ -131,10 +124,39 @@ QString SliceView::readout() const {
   return words;
 }
 
-bool SliceView::isShown(const Measure& measure) const {
-  return std::ranges::all_of(measure.points_mm, [&](const Vec3& point) {
-    return std::lround(toVoxel(stack_, point).z) == slice_;
-  });
+// Only what can be seen is drawn, and only when it changed.
+void SliceView::paintSlice(QPainter& painter) {
+  const QRectF seen(toSlice({0.0, 0.0}), toSlice({double(width()), double(height())}));
+  const QRect part = seen.toAlignedRect().adjusted(-1, -1, 1, 1) & QRect(QPoint(0, 0), shape());
+  if (part.isEmpty()) return;
+  if (stale_ || part != part_) {
+    drawSlice(mirror_->volume(), mirror_->labels().get(), stack_, slice_, part, colours_, image_);
+    part_ = part;
+    stale_ = false;
+    ++drawn_;
+  }
+  const QRectF into(toWidget(part.topLeft()),
+                    toWidget(QPointF(part.left() + part.width(), part.top() + part.height())));
+  painter.drawImage(into, image_);
+}
+
+void SliceView::paintOver(QPainter& painter) {
+  const ShownSlice on = shown();
+  paintCross(painter, on, point_mm_);
+  painter.setRenderHint(QPainter::Antialiasing);
+  paintTools(painter, on, tools_);
+  for (const Measure& measure : measures_) {
+    if (on.holds(measure)) paintMeasure(painter, on, measure);
+  }
+  paintWorkspaces(painter, on, workspaces_);
+  toolbox_.inHand().paint(painter, *this);
+  paintFacts(painter, on, colours_.window(), readout());
+  if (hasFocus()) {
+    painter.setRenderHint(QPainter::Antialiasing, false);
+    painter.setBrush(Qt::NoBrush);
+    painter.setPen(colours::kAccent);
+    painter.drawRect(rect().adjusted(0, 0, -1, -1));
+  }
 }
 
 // --- Mouse and keys ---
@@ -143,10 +165,6 @@ Vec3 SliceView::nearestInSlice_mm(const Vec3& patient_mm) const {
   const Vec3 at = toVoxel(stack_, patient_mm);
   return stack_.toPatient_mm(Vec3(std::clamp(at.x, 0.0, stack_.size[0] - 1.0),
                                   std::clamp(at.y, 0.0, stack_.size[1] - 1.0), slice_));
-}
-
-double SliceView::offSlice_mm(const Vec3& patient_mm) const {
-  return std::abs(toVoxel(stack_, patient_mm).z - slice_) * stack_.spacing_mm.z;
 }
 
 SliceView::Lines SliceView::linesAt(const QPointF& in_widget) const {
@@ -170,35 +188,14 @@ void SliceView::setWorkspaces(const std::vector<WorkspaceBox>& boxes) {
   update();
 }
 
-// The chosen one, near its middle or an edge.
-const WorkspaceBox* SliceView::workspaceAt(const QPointF& in_widget) const {
-  constexpr double kReach_pixels = 11.0, kEdge_pixels = 5.0;
-  for (const WorkspaceBox& box : workspaces_) {
-    if (!box.chosen) continue;
-    const QPointF away = fromPatient(box.centre_mm) - in_widget;
-    if (std::hypot(away.x(), away.y()) <= kReach_pixels) return &box;
-    const std::array<Vec3, 8> corners = box.corners();
-    for (const auto& [a, b] : WorkspaceBox::kEdges) {
-      const QPointF from = fromPatient(corners[std::size_t(a)]);
-      const QPointF along = fromPatient(corners[std::size_t(b)]) - from;
-      const double squared = QPointF::dotProduct(along, along);
-      if (squared < 1.0) continue;
-      const double share =
-          std::clamp(QPointF::dotProduct(in_widget - from, along) / squared, 0.0, 1.0);
-      const QPointF off = in_widget - from - share * along;
-      if (std::hypot(off.x(), off.y()) <= kEdge_pixels) return &box;
-    }
-  }
-  return nullptr;
-}
-
 // Along the slice, as far as the pointer went.
 Vec3 SliceView::draggedWorkspace(const QPointF& to) const {
   return workspace_before_mm_ + toPatient_mm(to) - toPatient_mm(pressed_);
 }
 
 void SliceView::showCursor(const QPointF& in_widget) {
-  if (drag_ == Drag::workspace || (drag_ == Drag::none && workspaceAt(in_widget))) {
+  if (drag_ == Drag::workspace ||
+      (drag_ == Drag::none && workspaceAt(in_widget, shown(), workspaces_))) {
     return setCursor(Qt::SizeAllCursor);
   }
   const Lines lines = drag_ == Drag::lines ? held_ : linesAt(in_widget);
@@ -228,7 +225,7 @@ void SliceView::mousePressEvent(QMouseEvent* event) {
   if (!hasSlice() || event->button() != Qt::LeftButton) return;
   ViewTool& tool = event->modifiers() & Qt::ShiftModifier ? toolbox_.point() : toolbox_.inHand();
   const bool points = &tool == &toolbox_.point();
-  const WorkspaceBox* box = points ? nullptr : workspaceAt(pressed_);
+  const WorkspaceBox* box = points ? nullptr : workspaceAt(pressed_, shown(), workspaces_);
   if (box) {
     drag_ = Drag::workspace;
     workspace_before_mm_ = box->centre_mm;
@@ -321,7 +318,7 @@ bool SliceView::handleKey(int key) {
     case Qt::Key_Delete:
     case Qt::Key_Backspace: {
       const auto last = std::find_if(measures_.rbegin(), measures_.rend(),
-                                     [&](const Measure& m) { return isShown(m); });
+                                     [&](const Measure& m) { return shown().holds(m); });
       if (last != measures_.rend()) measures_.erase(std::next(last).base());
       update();
       return true;

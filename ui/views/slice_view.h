@@ -10,17 +10,11 @@
 #include <QImage>
 #include <memory>
 
-#include "render/scene_renderer.h"
-#include "ui/views/slice_image.h"
-#include "ui/views/slice_measure.h"
+#include "ui/views/slice_marks.h"
 #include "ui/views/slice_pane.h"
 #include "ui/views/toolbox.h"
-#include "ui/views/workspace_box.h"
 
 namespace trephine {
-
-// The colour of the lines that stand for slices of that axis in the other views.
-QColor colourOf(SliceAxis axis);
 
 class SliceView : public SlicePane {
   Q_OBJECT
@@ -40,14 +34,14 @@ class SliceView : public SlicePane {
   void setWorkspaces(const std::vector<WorkspaceBox>& boxes);
   void setSlice(int k);  // asks for the point that lies in it
 
-  SliceAxis axis() const { return axis_; }
   int slice() const { return slice_; }
   int slices() const { return stack_.size[2]; }
   const GridGeometry& stack() const { return stack_; }
   const Vec3& point_mm() const { return point_mm_; }
+  ShownSlice shown() const { return {axis_, stack_, slice_, target(), size()}; }
   // A place of the widget in the patient, on the slice; and back, along the slice's normal.
   Vec3 toPatient_mm(const QPointF& in_widget) const;
-  QPointF fromPatient(const Vec3& patient_mm) const;
+  QPointF fromPatient(const Vec3& patient_mm) const { return shown().at(patient_mm); }
   // HU, tissue and label under the pointer; empty where it is not over the volume.
   QString readout() const;
   const std::vector<Measure>& measures() const { return measures_; }
@@ -59,9 +53,7 @@ class SliceView : public SlicePane {
   int gridAxis() const;  // across which its slices lie
   // The place of the slice's picture that is nearest to one of its plane.
   Vec3 nearestInSlice_mm(const Vec3& patient_mm) const;
-  double offSlice_mm(const Vec3& patient_mm) const;  // along the normal, not below 0
   const std::optional<QPointF>& pointer() const { return pointer_; }
-  void paintMeasure(QPainter& painter, const Measure& measure) const;
   // What the slice was drawn from, without what lies over it.
   int drawn() const { return drawn_; }  // how often it was, for tests
 
@@ -92,8 +84,6 @@ class SliceView : public SlicePane {
  private:
   bool handleKey(int key);
   ToolEvent eventAt(const QPointF& in_widget);
-  void paintWorkspaces(QPainter& painter) const;
-  const WorkspaceBox* workspaceAt(const QPointF& in_widget) const;
   Vec3 draggedWorkspace(const QPointF& to) const;
   struct Lines {  // of the other views
     bool across = false, down = false;
@@ -102,17 +92,6 @@ class SliceView : public SlicePane {
   Lines linesAt(const QPointF& in_widget) const;  // that a press there takes hold of
   void dragLines(const QPointF& moved);
   void showCursor(const QPointF& in_widget);
-  bool isShown(const Measure& measure) const;
-  struct ToolMark {  // in the widget
-    QPointF tip, back;
-    double ring;
-    bool in_slice;
-  };
-  ToolMark markOf(const ToolView& tool) const;
-  QRect toolsRect() const;  // what the marks of the tools cover
-  void paintCross(QPainter& painter) const;
-  void paintTools(QPainter& painter) const;
-  void paintText(QPainter& painter) const;
 
   SliceAxis axis_;
   std::shared_ptr<VolumeMirror> mirror_;

@@ -24,10 +24,14 @@ struct WorkspaceBox {
     }
     return all;
   }
-  // Of two corners each.
-  static constexpr std::array<std::pair<int, int>, 12> kEdges{{{0, 1}, {2, 3}, {4, 5}, {6, 7},
-                                                               {0, 2}, {1, 3}, {4, 6}, {5, 7},
-                                                               {0, 4}, {1, 5}, {2, 6}, {3, 7}}};
+  std::array<std::pair<Vec3, Vec3>, 12> edges() const {
+    constexpr std::size_t kEnds[12][2] = {{0, 1}, {2, 3}, {4, 5}, {6, 7}, {0, 2}, {1, 3},
+                                          {4, 6}, {5, 7}, {0, 4}, {1, 5}, {2, 6}, {3, 7}};
+    const std::array<Vec3, 8> ends = corners();
+    std::array<std::pair<Vec3, Vec3>, 12> all;
+    for (std::size_t n = 0; n < all.size(); ++n) all[n] = {ends[kEnds[n][0]], ends[kEnds[n][1]]};
+    return all;
+  }
   friend bool operator==(const WorkspaceBox&, const WorkspaceBox&) = default;
 };
 
