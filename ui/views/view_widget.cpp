@@ -12,8 +12,8 @@
 #include "imaging/codes.h"
 #include "ui/common/colours.h"
 #include "ui/common/event_loop.h"
+#include "ui/views/device_pixels.h"
 #include "ui/views/steps.h"
-#include "ui/views/view_strip.h"
 
 namespace trephine {
 
@@ -30,8 +30,6 @@ constexpr double kTurn_deg_per_pixel = 0.4;
 constexpr int kKeyTurn_pixels = 12;
 // Movements of a tool that no picture shows.
 constexpr double kToolMoved_mm = 0.02;
-const Vec3 kLightColour(1.0, 0.95, 0.5);
-constexpr double kReach_pixels = 11.0;  // of a handle
 
 bool looksAlike(const ToolView& a, const ToolView& b) {
   return a.contact == b.contact && a.shape == b.shape && a.length_mm == b.length_mm &&
@@ -42,47 +40,49 @@ bool looksAlike(const ToolView& a, const ToolView& b) {
          std::abs(glm::dot(a.pose_mm.orientation, b.pose_mm.orientation)) > 1.0 - 1e-7;
 }
 
+void addLines(const WorkspaceBox& box, const ViewCamera& camera, const QSize& all,
+              ScreenLines& to) {
+  const Vec3 colour = colours::rgbOf(box.colour) * (box.chosen ? 1.0 : 0.6);
+  for (const auto& [a, b] : box.edges()) {
+    const auto from = camera.pixelOf(a, all.width(), all.height());
+    const auto end = camera.pixelOf(b, all.width(), all.height());
+    if (from && end) to.push_back({*from, *end, colour, box.chosen ? 1.5 : 1.0});
+  }
+}
+
 }  // namespace
 
 ViewWidget::ViewWidget(Toolbox& toolbox, QWidget* parent)
     : QOpenGLWidget(parent),
-      toolbox_(toolbox),
       hint_(new QLabel(this)),
       level_(new QLabel(this)),
-      strip_(new ViewStrip(this)) {
+      strip_(new ViewStrip(renderer_, this)),
+      tool_(toolbox, renderer_, *strip_, *this) {
   setObjectName("view");
   setAccessibleName(tr("3-D view"));
   setFocusPolicy(Qt::StrongFocus);
   setMouseTracking(true);  // a brush's ring goes with the pointer
   setMinimumSize(320, 240);
   setToolTip(QString());
-  hint_->setObjectName("viewHint");
+  for (auto [label, name] : {std::pair(hint_, "viewHint"), {level_, "viewLevel"}}) {
+    label->setObjectName(name);
+    label->setAttribute(Qt::WA_TransparentForMouseEvents);
+    label->setWordWrap(true);
+    colours::setText(*label, colours::kOnPicture);
+  }
   hint_->setAlignment(Qt::AlignCenter);
-  hint_->setWordWrap(true);
-  hint_->setAttribute(Qt::WA_TransparentForMouseEvents);
-  colours::setText(*hint_, colours::kOnPicture);
-  level_->setObjectName("viewLevel");
-  level_->setAttribute(Qt::WA_TransparentForMouseEvents);
-  colours::setText(*level_, colours::kOnPicture);
   level_->setAlignment(Qt::AlignTop | Qt::AlignLeft);
-  level_->setWordWrap(true);
-  strip_->hide();
-  connectTools();
-  connect(&toolbox_, &Toolbox::taken, this, &ViewWidget::showCursor);
-  connect(&toolbox_, &Toolbox::changed, this, &ViewWidget::showCursor);
-  still_.setObjectName("still");
-  still_.setSingleShot(true);
-  connect(&still_, &QTimer::timeout, this, [this] {
-    moving_ = false;
-    renderer_.setMoving(false);
-    refine_.start(0);  // when nothing else is to be done
-  });
-  refine_.setObjectName("refine");
-  refine_.setSingleShot(true);
-  connect(&refine_, &QTimer::timeout, this, &ViewWidget::refine);
-  warm_.setObjectName("warm");
-  warm_.setSingleShot(true);
-  connect(&warm_, &QTimer::timeout, this, &ViewWidget::warmUp);
+  connect(strip_, &ViewStrip::changed, this, &ViewWidget::redraw);
+  connect(strip_, &ViewStrip::lightToggled, this, qOverload<>(&ViewWidget::update));
+  connect(&tool_, &ToolIn3D::nothingThere, this, &ViewWidget::nothingThere);
+  const auto once = [this](QTimer& timer, const char* name, void (ViewWidget::*then)()) {
+    timer.setObjectName(name);
+    timer.setSingleShot(true);
+    connect(&timer, &QTimer::timeout, this, then);
+  };
+  once(still_, "still", &ViewWidget::rest);
+  once(refine_, "refine", &ViewWidget::refine);
+  once(warm_, "warm", &ViewWidget::warmUp);
   onEachTurn(this, [this] { worked_ = false; });
 }
 
@@ -114,8 +114,7 @@ void ViewWidget::initializeGL() {
 
 // The renderer counts device pixels, the widget does not.
 void ViewWidget::fitRenderer() {
-  renderer_.resize(int(std::lround(width() * devicePixelRatioF())),
-                   int(std::lround(height() * devicePixelRatioF())));
+  renderer_.resize(pixelsOf(*this).width(), pixelsOf(*this).height());
 }
 
 // Qt paints within it, for a layout more than once, and once more when all is in its place.
@@ -132,69 +131,6 @@ void ViewWidget::resizeGL(int, int) {
   emit resized();
 }
 
-void ViewWidget::connectTools() {
-  connect(strip_, &ViewStrip::viewWanted, this, [this](StandardView side) {
-    renderer_.lookFrom(side);
-    redraw();
-  });
-  connect(strip_, &ViewStrip::parallelWanted, this, [this](bool on) {
-    renderer_.setParallel(on);
-    redraw();
-  });
-  connect(strip_, &ViewStrip::boxWanted, this, [this](bool on) {
-    clip_.showBox(on);
-    showClip();
-  });
-  connect(strip_, &ViewStrip::planeWanted, this, [this](bool on) {
-    clip_.showPlane(on, renderer_.camera());
-    showClip();
-  });
-  connect(strip_, &ViewStrip::throughToolWanted, this, &ViewWidget::throughTool);
-  connect(strip_, &ViewStrip::planeMoved, this, [this](double mm) {
-    if (!clip_.planeShown()) return;
-    clip_.movePlane(mm);
-    showClip();
-  });
-  connect(strip_, &ViewStrip::lightWanted, this, [this](bool on) {
-    moving_light_ = on;
-    showCursor();
-    update();
-  });
-  connect(strip_, &ViewStrip::resetWanted, this, &ViewWidget::resetTools);
-}
-
-void ViewWidget::showClip() {
-  renderer_.setClip(clip_.planes());
-  redraw();
-}
-
-void ViewWidget::throughTool() {
-  if (tools_.empty()) return;
-  const Pose& pose = tools_.back().pose_mm;  // the right hand's, where there are two
-  const Vec3 axis = along_tool_ ? pose.orientation * Vec3(0, 0, 1) : Vec3(0.0);
-  clip_.planeThrough(pose.position, axis, renderer_.camera());
-  along_tool_ = !along_tool_;
-  const QSignalBlocker quiet(strip_->plane());
-  strip_->plane()->setChecked(true);
-  showClip();
-}
-
-void ViewWidget::resetTools() {
-  clip_.reset();
-  along_tool_ = false;
-  light_ = SceneRenderer::kLight;
-  for (QAction* action : {strip_->box(), strip_->plane(), strip_->light()}) {
-    action->setChecked(false);
-  }
-  renderer_.setLight(light_);
-  showClip();
-}
-
-glm::dvec2 ViewWidget::pixelAt(const QPointF& place) const {
-  const double ratio = devicePixelRatioF();
-  return {place.x() * ratio, (height() - place.y()) * ratio};
-}
-
 void ViewWidget::fitHint() {
   strip_->place();
   hint_->setGeometry(rect().adjusted(20, 20, -20, -20));
@@ -208,23 +144,10 @@ void ViewWidget::setWorkspaces(const std::vector<WorkspaceBox>& boxes) {
   update();
 }
 
-void ViewWidget::addWorkspaces(int wide, int high, ScreenLines& to) const {
-  for (const WorkspaceBox& box : workspaces_) {
-    const std::array<Vec3, 8> corners = box.corners();
-    const Vec3 colour = colours::rgbOf(box.colour) * (box.chosen ? 1.0 : 0.6);
-    for (const auto& [a, b] : WorkspaceBox::kEdges) {
-      const auto from = renderer_.camera().pixelOf(corners[std::size_t(a)], wide, high);
-      const auto end = renderer_.camera().pixelOf(corners[std::size_t(b)], wide, high);
-      if (from && end) to.push_back({*from, *end, colour, box.chosen ? 1.5 : 1.0});
-    }
-  }
-}
-
 void ViewWidget::withGraphics(const WithGraphics& work) {
   if (!context() || !drawing_) return;
   makeCurrent();
-  work(renderer_, defaultFramebufferObject(), int(std::lround(width() * devicePixelRatioF())),
-       int(std::lround(height() * devicePixelRatioF())));
+  work(renderer_, defaultFramebufferObject(), pixelsOf(*this).width(), pixelsOf(*this).height());
   doneCurrent();
 }
 
@@ -235,7 +158,8 @@ void ViewWidget::showInstead(unsigned int texture, int wide, int high) {
 }
 
 // As large as it fits, in the middle.
-void ViewWidget::paintInstead(int wide, int high) {
+void ViewWidget::paintInstead() {
+  const int wide = pixelsOf(*this).width(), high = pixelsOf(*this).height();
   QOpenGLExtraFunctions& gl = *context()->extraFunctions();
   const double by = std::min(double(wide) / instead_.width, double(high) / instead_.height);
   const int shown_wide = int(instead_.width * by), shown_high = int(instead_.height * by);
@@ -261,22 +185,15 @@ void ViewWidget::paintGL() {
   QElapsedTimer timer;
   timer.start();
   fitRenderer();  // the screen may have changed under the window
-  ScreenLines lines;
-  const int wide = int(std::lround(width() * devicePixelRatioF()));
-  const int high = int(std::lround(height() * devicePixelRatioF()));
   if (instead_.texture != 0) {
-    paintInstead(wide, high);
+    paintInstead();
     emit framePainted(double(timer.nsecsElapsed()) * 1e-6, false);
     return;
   }
-  clip_.addLines(renderer_.camera(), wide, high, lines);
-  addWorkspaces(wide, high, lines);
-  if (moving_light_) {  // on a half sphere that is seen from the eye
-    const glm::dvec2 middle(0.5 * wide, 0.5 * high);
-    const glm::dvec2 at = middle + glm::dvec2(light_) * (0.25 * high);
-    lines.push_back({middle, at, kLightColour, 2.0});
-    addSquare(at, 7.0, kLightColour, 3.0, lines);
-  }
+  ScreenLines lines;
+  strip_->addLines(lines);
+  for (const WorkspaceBox& box : workspaces_)
+    addLines(box, renderer_.camera(), pixelsOf(*this), lines);
   renderer_.setLines(lines);
   renderer_.paint(defaultFramebufferObject(), kCut_ms);
   if (!moving_ && !renderer_.complete()) refine_.start(0);
@@ -349,8 +266,14 @@ void ViewWidget::redraw() {
   update();
 }
 
+void ViewWidget::rest() {
+  moving_ = false;
+  renderer_.setMoving(false);
+  refine_.start(0);  // when nothing else is to be done
+}
+
 void ViewWidget::setMirror(std::shared_ptr<VolumeMirror> mirror) {
-  mirror_ = mirror;
+  tool_.setMirror(mirror);
   renderer_.setMirror(std::move(mirror));
   showNews();
 }
@@ -365,8 +288,7 @@ void ViewWidget::showNews() {
   shown_ = renderer_.copy().geometry;
   if (renderer_.hasVolume()) {
     refusal_said_ = false;
-    clip_.setVolume(shown_);
-    if (!clip_.cutsAnything()) resetTools();  // the one that was shown before had them
+    strip_->setVolume(shown_);
   }
   const bool flat = renderer_.hasVolume() && std::ranges::min(shown_.size) < 2;
   hint_->setText(flat ? tr("One slice has no depth.\nF6 shows it in the slices.")
@@ -378,8 +300,7 @@ void ViewWidget::showNews() {
 }
 
 void ViewWidget::setTissues(const TissueSet& tissues, const TissueLooks& looks) {
-  seen_ = tissues;
-  looks_ = looks;
+  tool_.setTissues(tissues, looks);
   renderer_.setTissues(tissues, looks);
   redraw();
 }
@@ -400,15 +321,14 @@ void ViewWidget::setTools(const std::vector<ToolView>& tools) {
   for (std::size_t i = 0; alike && i < tools.size(); ++i) alike = looksAlike(tools[i], tools_[i]);
   if (alike) return;
   tools_ = tools;
-  strip_->setToolAtHand(!tools.empty());
+  strip_->setTools(tools);
   renderer_.setTools(tools);
   update();  // over the last picture of the volume
 }
 
 void ViewWidget::setTraining(bool training) {
   training_ = training;
-  if (training) endUse();
-  showCursor();
+  tool_.setTraining(training);
 }
 
 void ViewWidget::setOutline(const std::vector<Vec3>& points_mm, bool closed, double width_mm) {
@@ -439,51 +359,34 @@ void ViewWidget::turn(double right_pixels, double down_pixels) {
 }
 
 void ViewWidget::mousePressEvent(QMouseEvent* event) {
-  last_ = event->position();
-  dragged_.reset();
+  tool_.setPointer(event->position());
+  strip_->letGo();
   if (event->button() != Qt::LeftButton || !renderer_.hasVolume()) return;
-  const double ratio = devicePixelRatioF();
-  dragged_ = clip_.handleAt(pixelAt(last_), renderer_.camera(), int(std::lround(width() * ratio)),
-                            int(std::lround(height() * ratio)), kReach_pixels * ratio);
-  if (!dragged_ && hasTool()) useTool();
+  if (!strip_->take(event->position()) && tool_.isInHand()) tool_.press();
 }
 
 void ViewWidget::mouseMoveEvent(QMouseEvent* event) {
-  const QPointF moved = event->position() - last_;
-  last_ = event->position();
-  if (!(event->buttons() & Qt::LeftButton)) endUse();
-  if (toolbox_.inHand().ring_mm() > 0.0) showCursor();
-  const bool points = event->buttons() == Qt::NoButton ||
-                      (event->buttons() == Qt::LeftButton && !dragged_ && !moving_light_);
-  if (training_ && points && renderer_.hasVolume()) return emit pointed(last_);
-  if (event->buttons() == Qt::NoButton || moved.isNull() || !renderer_.hasVolume()) return;
-  const double ratio = devicePixelRatioF();
-  const glm::dvec2 pixels(moved.x() * ratio, -moved.y() * ratio);
+  const QPointF moved = tool_.setPointer(event->position());
   const bool left = event->buttons() & Qt::LeftButton;
-  if (left && dragged_) {
-    clip_.drag(*dragged_, pixels, renderer_.camera(), int(std::lround(width() * ratio)),
-               int(std::lround(height() * ratio)));
-    for (const ClipTools::Handle& handle : clip_.handles()) {
-      if (handle.grip == dragged_->grip && handle.face == dragged_->face) dragged_ = handle;
-    }
-    showClip();
-  } else if (left && moving_light_) {
-    light_ = draggedLight(light_, pixels, int(std::lround(height() * ratio)));
-    renderer_.setLight(light_);
-    redraw();
+  if (!left) tool_.release();
+  tool_.followRing();
+  const bool points = event->buttons() == Qt::NoButton ||
+                      (event->buttons() == Qt::LeftButton && !strip_->dragsAnything());
+  if (training_ && points && renderer_.hasVolume()) return emit pointed(event->position());
+  if (event->buttons() == Qt::NoButton || moved.isNull() || !renderer_.hasVolume()) return;
+  if (left && strip_->dragsAnything()) {
+    strip_->drag(moved);
   } else if (event->buttons() & Qt::MiddleButton) {
     renderer_.pan(moved.x() * devicePixelRatioF(), moved.y() * devicePixelRatioF());
     redraw();
-  } else if (left && used_) {
-    if (const auto at = eventAt(last_, moved)) used_->move(last_use_ = *at);
-  } else if (!left || !hasTool()) {
+  } else if (!left || !(tool_.move(moved) || tool_.isInHand())) {
     turn(moved.x(), moved.y());
   }
 }
 
 void ViewWidget::mouseReleaseEvent(QMouseEvent* event) {
-  if (event->button() == Qt::LeftButton) endUse();
-  dragged_.reset();
+  if (event->button() == Qt::LeftButton) tool_.release();
+  strip_->letGo();
 }
 
 void ViewWidget::wheelEvent(QWheelEvent* event) {
@@ -495,39 +398,22 @@ void ViewWidget::wheelEvent(QWheelEvent* event) {
     emit pushStepped(notches);
   } else {
     renderer_.zoom(std::pow(kZoomStep, notches));
-    if (toolbox_.inHand().ring_mm() > 0.0) showCursor();
+    tool_.followRing();
     redraw();
   }
   event->accept();
 }
 
 void ViewWidget::keyPressEvent(QKeyEvent* event) {
-  int right = 0, up = 0, deeper = 0;
-  switch (event->key()) {
-    case Qt::Key_Left:
-      right = -1;
-      break;
-    case Qt::Key_Right:
-      right = 1;
-      break;
-    case Qt::Key_Up:
-      up = 1;
-      break;
-    case Qt::Key_Down:
-      up = -1;
-      break;
-    case Qt::Key_PageDown:
-      deeper = 1;
-      break;
-    case Qt::Key_PageUp:
-      deeper = -1;
-      break;
-    case Qt::Key_Home:  // with Shift; alone it is the window's
-      if (training_) return emit toolStraightened();
-      [[fallthrough]];
-    default:
-      if (!toolKey(event->key())) QOpenGLWidget::keyPressEvent(event);
-      return;
+  const int key = event->key();
+  const auto which = [key](int more, int less) { return int(key == more) - int(key == less); };
+  const int right = which(Qt::Key_Right, Qt::Key_Left), up = which(Qt::Key_Up, Qt::Key_Down);
+  const int deeper = which(Qt::Key_PageDown, Qt::Key_PageUp);
+  if (right == 0 && up == 0 && deeper == 0) {
+    // With Shift; alone it is the window's.
+    if (key == Qt::Key_Home && training_) return emit toolStraightened();
+    if (!tool_.key(key)) QOpenGLWidget::keyPressEvent(event);
+    return;
   }
   if (!renderer_.hasVolume()) return;
   if (training_ && !(event->modifiers() & Qt::ControlModifier)) {

@@ -14,22 +14,15 @@
 #include <QLabel>
 #include <QOpenGLWidget>
 #include <QTimer>
-#include <array>
 #include <functional>
-#include <optional>
 
 #include "base/codes.h"
 #include "base/result.h"
 #include "exercise/landmark.h"
-#include "render/clip_tools.h"
-#include "render/pick.h"
-#include "render/scene_renderer.h"
-#include "ui/views/toolbox.h"
+#include "ui/views/tool_in_3d.h"
 #include "ui/views/workspace_box.h"
 
 namespace trephine {
-
-class ViewStrip;
 
 class ViewWidget : public QOpenGLWidget {
   Q_OBJECT
@@ -55,11 +48,11 @@ class ViewWidget : public QOpenGLWidget {
   void setWorkspaces(const std::vector<WorkspaceBox>& boxes);
 
   // What is seen at a place of the widget.
-  std::optional<Picked> pickAt(const QPointF& place) const;
+  std::optional<Picked> pickAt(const QPointF& place) const { return tool_.pickAt(place); }
   // The line of sight there; none without a case.
-  std::optional<ViewCamera::Ray> rayAt(const QPointF& place) const;
+  std::optional<ViewCamera::Ray> rayAt(const QPointF& place) const { return tool_.rayAt(place); }
   // How many mm one unit of the widget spans at what is seen there, else at what is looked at.
-  double mmPerUnitAt(const QPointF& place) const;
+  double mmPerUnitAt(const QPointF& place) const { return tool_.mmPerUnitAt(place); }
 
   // Standard views, crop box and what else the strip over the view offers.
   const ViewStrip& tools() const { return *strip_; }
@@ -115,31 +108,16 @@ class ViewWidget : public QOpenGLWidget {
   void showNews();  // of the mirror, as a whole
   void releaseGraphics();
   void redraw();  // the volume too: coarse now, refined when still
+  void rest();
   void refine();
   void warmUp();
   void showLevel();
   void turn(double right_pixels, double down_pixels);
   void fitHint();
-  void connectTools();
-  void showClip();
-  void throughTool();
-  void resetTools();
-  bool hasTool() const;
-  void showCursor();
-  std::optional<ToolEvent> eventAt(const QPointF& place, const QPointF& moved = {}) const;
-  void useTool();
-  void endUse();
-  bool toolKey(int key);
-  glm::dvec2 pixelAt(const QPointF& place) const;  // of the renderer, from the lower left corner
-  void addWorkspaces(int wide, int high, ScreenLines& to) const;
   void fitRenderer();
-  void paintInstead(int wide, int high);
+  void paintInstead();
 
-  Toolbox& toolbox_;
   SceneRenderer renderer_;
-  std::shared_ptr<const VolumeMirror> mirror_ = std::make_shared<VolumeMirror>();
-  TissueSet seen_;
-  TissueLooks looks_;
   GridGeometry shown_;
   Status drawing_{Error{code::kNoOpengl, "The view has no OpenGL to draw with", "3-D view",
                         "Install the graphics driver and start again"}};
@@ -147,19 +125,10 @@ class ViewWidget : public QOpenGLWidget {
   QLabel* hint_;
   QLabel* level_;
   ViewStrip* strip_;
+  ToolIn3D tool_;
   QTimer still_, refine_, warm_;
-  ClipTools clip_;
-  std::optional<ClipTools::Handle> dragged_;
-  bool along_tool_ = false;  // how the plane through the tool lies next
-  bool moving_light_ = false;
-  Vec3 light_ = SceneRenderer::kLight;
-  QPointF last_;
   std::vector<ToolView> tools_;  // of the exercise
   std::vector<WorkspaceBox> workspaces_;
-  int ring_ = 0;                                   // pixels of the radius that the pointer shows
-  ViewTool* used_ = nullptr;                       // while the button is down
-  ToolEvent last_use_;                             // of it
-  std::shared_ptr<const LabelMap> stroke_labels_;  // as they were when a brush's drag began
   bool training_ = false;
   bool resizing_ = false;
   bool worked_ = false;  // since the event loop came round
