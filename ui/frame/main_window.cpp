@@ -2,36 +2,224 @@
 
 #include <QCoreApplication>
 #include <QDragEnterEvent>
-#include <QFile>
-#include <QMessageBox>
+#include <QHBoxLayout>
+#include <QMenuBar>
 #include <QMimeData>
-#include <QPointer>
-#include <QPushButton>
-#include <QStatusBar>
 #include <QTabWidget>
 #include <QTimer>
 #include <algorithm>
 #include <utility>
 
-#include "base/crash_report.h"
-#include "base/system.h"
-#include "ui/commission/commission_page.h"
 #include "ui/commission/fitness_line.h"
+#include "ui/common/actions.h"
 #include "ui/common/error_dialog.h"
-#include "ui/common/question.h"
+#include "ui/common/placing.h"
 #include "ui/common/preferences.h"
+#include "ui/common/question.h"
 #include "ui/common/settings.h"
 #include "ui/common/words.h"
-#include "ui/devices/devices_dialog.h"
 #include "ui/frame/help_page.h"
-#include "ui/frame/settings_dialog.h"
-#include "ui/frame/shortcuts_page.h"
-#include "ui/frame/unlock_dialog.h"
-#include "ui/headset/headset_dialog.h"
 #include "ui/headset/headset_view.h"
 #include "ui/headset/stereo_view.h"
+#include "ui/views/view_strip.h"
 
 namespace trephine {
+
+MainWindow::MainWindow(std::filesystem::path recordings, const Policy& policy, QWidget* parent)
+    : QMainWindow(parent), app_(*this, std::move(recordings), policy) {
+  setWindowTitle(tr("Trephine"));
+  setAcceptDrops(true);
+  buildWorkspaces();
+  buildActions();
+  buildBars();
+  buildMenus();
+  connectParts();
+  resize(sizeOnScreen({1280, 800}, *this));
+  restore();
+}
+
+void MainWindow::buildWorkspaces() {
+  cases_ = new CasesWorkspace(app_);
+  prepare_ = new PrepareWorkspace(app_);
+  train_ = new TrainWorkspace(app_);
+  review_ = new ReviewWorkspace(app_);
+  headset_ = new HeadsetView(workstation(), app_.messages(), app_.caseViews());
+  stereo_ = new StereoView(app_.messages(), view());
+  rooms_ = {Room{Place::cases, "cases", cases_, {}, {}},
+            Room{Place::prepare, "prepare", prepare_, {ViewLayout::Kind::four, 0}, {}},
+            Room{Place::train, "train", train_, {ViewLayout::Kind::one_large, 0}, {}},
+            Room{Place::review, "review", review_, {}, {}}};
+  rail_ = new Rail(*this);
+  pages_ = new QStackedWidget;
+  // Not stacks: those would be as wide as their widest page, whichever is shown.
+  for (QWidget** slot : {&left_, &below_, &right_}) {
+    *slot = new QWidget;
+    auto* slot_layout = new QVBoxLayout(*slot);
+    slot_layout->setContentsMargins(0, 0, 0, 0);
+  }
+  for (Room& one : rooms_) {
+    one.parts = one.workspace->parts();
+    rail_->add(one.place, *one.workspace);
+    if (one.parts.page) pages_->addWidget(one.parts.page);
+    if (one.parts.left) left_->layout()->addWidget(one.parts.left);
+    if (one.parts.right) right_->layout()->addWidget(one.parts.right);
+    if (one.parts.below) below_->layout()->addWidget(one.parts.below);
+  }
+  auto* middle = new QWidget;
+  auto* middle_layout = new QVBoxLayout(middle);
+  middle_layout->setContentsMargins(0, 0, 0, 0);
+  middle_layout->setSpacing(0);
+  middle_layout->addWidget(&views(), 1);
+  middle_layout->addWidget(below_);
+  columns_ = new QSplitter(Qt::Horizontal);
+  columns_->addWidget(left_);
+  columns_->addWidget(middle);
+  columns_->addWidget(right_);
+  columns_->setStretchFactor(0, 0);
+  columns_->setStretchFactor(1, 1);
+  columns_->setStretchFactor(2, 0);
+  columns_->setChildrenCollapsible(false);
+  pages_->addWidget(columns_);
+
+  auto* all = new QWidget;
+  auto* layout = new QHBoxLayout(all);
+  layout->setContentsMargins(0, 0, 0, 0);
+  layout->setSpacing(0);
+  layout->addWidget(rail_);
+  layout->addWidget(pages_, 1);
+  setCentralWidget(all);
+}
+
+void MainWindow::buildActions() {
+  picture_ = makeAction(*this, Symbol::picture, "savePicture", tr("Save picture\u2026"),
+                        QKeySequence(Qt::Key_F12), tr("Save the 3-D view as a picture"));
+  volume_ = makeAction(*this, Symbol::save, "saveVolume", tr("Save volume\u2026"),
+                       QKeySequence::Save, tr("Save the volume as it is now, with what was cut"));
+  look_ = makeAction(*this, Symbol::view, "resetView", tr("Reset view"), QKeySequence(Qt::Key_Home),
+                     tr("Look at the case as at the start"));
+  left_panel_ = makeAction(*this, Symbol::view, "leftPanel", tr("Left panel"),
+                           QKeySequence(Qt::CTRL | Qt::Key_B), tr("Show or hide the left panel"));
+  right_panel_ = makeAction(*this, Symbol::view, "rightPanel", tr("Right panel"),
+                            QKeySequence(Qt::CTRL | Qt::SHIFT | Qt::Key_B),
+                            tr("Show or hide the right panel"));
+  full_screen_ = makeAction(*this, Symbol::view, "fullScreen", tr("Full screen"),
+                            QKeySequence(Qt::Key_F11), tr("The whole screen; Esc leaves it"));
+  for (QAction* action : {left_panel_, right_panel_, full_screen_}) action->setCheckable(true);
+}
+
+void MainWindow::buildBars() {
+  bar_ = addToolBar(tr("Exercise"));
+  bar_->setObjectName("toolBar");
+  bar_->setMovable(false);
+  bar_->setIconSize({20, 20});
+  bar_->setToolButtonStyle(Qt::ToolButtonTextBesideIcon);
+  bar_->setContextMenuPolicy(Qt::PreventContextMenu);
+  bar_->addWidget(train_->exercises());
+  bar_->addSeparator();
+  bar_->addActions({train_->startAction(), train_->stopAction(), train_->pauseAction()});
+  bar_->addSeparator();
+  bar_->addActions({app_.undoAction(), app_.redoAction(), train_->resetAction()});
+  bar_->addSeparator();
+  bar_->addActions({look_, picture_, volume_});
+  // Where a bar is short this opens the rest of it. Qt's own arrow is black on black.
+  if (auto* rest = bar_->findChild<QToolButton*>("qt_toolbar_ext_button")) {
+    rest->setToolButtonStyle(Qt::ToolButtonTextOnly);
+    rest->setText(QStringLiteral("\u00bb"));
+    rest->setToolTip(tr("More"));
+  }
+  status_ = new StatusLine(app_, *headset_, *stereo_);
+  setStatusBar(status_);
+}
+
+void MainWindow::buildMenus() {
+  dialogs_ = new WindowDialogs(*this, app_, *headset_, *stereo_, status_->fitness());
+  QMenu* file = menuBar()->addMenu(tr("&File"));
+  file->addActions(cases_->openActions());
+  file->addSeparator();
+  file->addActions({prepare_->saveInCaseAction(), volume_, picture_});
+  file->addSeparator();
+  file->addActions(dialogs_->actions());
+  file->addSeparator();
+  QAction* quit = file->addAction(tr("&Quit"), QKeySequence::Quit, this, &QWidget::close);
+  quit->setObjectName("quit");
+  QMenu* exercise = menuBar()->addMenu(tr("&Exercise"));
+  exercise->addActions({train_->startAction(), train_->stopAction(), train_->pauseAction(),
+                        train_->forceOnAction(), app_.undoAction(), app_.redoAction(),
+                        train_->backAction(), train_->resetAction()});
+  exercise->addSeparator();
+  exercise->addActions(train_->handActions());
+  exercise->addSeparator();
+  exercise->addAction(prepare_->pokeAction());
+  QMenu* view = menuBar()->addMenu(tr("&View"));
+  view->addActions(rail_->actions());
+  view->addSeparator();
+  view->addActions({left_panel_, right_panel_, full_screen_});
+  view->addSeparator();
+  view->addActions(views().layoutActions());
+  view->addAction(look_);
+  view->addSeparator();
+  for (QAction* tool : this->view().tools().all())
+    tool ? view->addAction(tool) : void(view->addSeparator());
+  view->addSeparator();
+  view->addActions({headset_->onAction(), headset_->recentreAction(), stereo_->onAction(),
+                    dialogs_->headsetAction()});
+  QMenu* help = menuBar()->addMenu(tr("&Help"));
+  help->addAction(tr("&Help"), QKeySequence(Qt::Key_F1), this, &MainWindow::showHelp)
+      ->setObjectName("help");
+  QAction* keys = help->addAction(tr("&Keys"), QKeySequence(Qt::SHIFT | Qt::Key_F1), dialogs_,
+                                  &WindowDialogs::showKeys);
+  keys->setObjectName("keys");
+  help->addAction(tr("&About Trephine"), dialogs_, &WindowDialogs::showAbout)
+      ->setObjectName("about");
+}
+
+void MainWindow::connectParts() {
+  connect(headset_, &HeadsetView::changed, this, [this] {
+    train_->setCardsWanted(headset_->isOn());
+    if (!workstation().session()) headset_->setCards({});
+    if (headset_->isSeen()) stereo_->stop();
+  });
+  // One pair of pictures at a time; a headset that cannot be had takes no screen away.
+  connect(stereo_->onAction(), &QAction::toggled, this, [this](bool on) {
+    if (on && stereo_->isOn()) headset_->onAction()->setChecked(false);
+  });
+  connect(train_, &TrainWorkspace::cardsChanged, headset_, &HeadsetView::setCards);
+  connect(train_, &TrainWorkspace::recentreWanted, headset_, &HeadsetView::recentre);
+  connect(rail_, &Rail::chosen, this, qOverload<Place>(&MainWindow::show));
+  connect(&app_, &AppContext::placeWanted, this, qOverload<Place>(&MainWindow::show));
+  connect(&app_.messages(), &Messages::failed, this, &MainWindow::failed);
+  connect(train_, &TrainWorkspace::ratesChanged, status_, &StatusLine::showRates);
+  connect(train_, &TrainWorkspace::structureWanted, prepare_, &PrepareWorkspace::makeMissing);
+  connect(train_, &TrainWorkspace::replayWanted, this, [this] {
+    show(Place::review);
+    review_->replayNewest();
+  });
+  connect(look_, &QAction::triggered, &app_.caseViews(), &CaseViews::lookAtCase);
+  connect(picture_, &QAction::triggered, &app_.caseViews(), &CaseViews::askToSavePicture);
+  connect(volume_, &QAction::triggered, this, [this] { app_.caseViews().askToSaveVolume({}); });
+  for (QAction* panel : {left_panel_, right_panel_}) {
+    connect(panel, &QAction::toggled, this, &MainWindow::showPanels);
+  }
+  connect(full_screen_, &QAction::toggled, this,
+          [this](bool full) { setWindowState(windowState().setFlag(Qt::WindowFullScreen, full)); });
+
+  Workstation& workstation = app_.workstation();
+  const auto showPhase = [this] {
+    const bool any = this->workstation().phase() != Workstation::Phase::empty;
+    for (QAction* action : {picture_, volume_, look_}) action->setEnabled(any);
+  };
+  connect(&workstation, &Workstation::phaseChanged, this, showPhase);
+  showPhase();
+  for (auto changed : {&Workstation::exerciseChanged, &Workstation::caseNamed}) {
+    connect(&workstation, changed, this, &MainWindow::showTitle);
+  }
+  connect(
+      &workstation, &Workstation::savingEnded, this,
+      [this] {
+        if (std::exchange(close_when_saved_, false)) close();
+      },
+      Qt::QueuedConnection);  // what follows a save first
+}
 
 // They know the shared context, and go before it.
 MainWindow::~MainWindow() {
@@ -61,7 +249,7 @@ void MainWindow::show(Place place) {
       if (Session* session = workstation().session()) (void)session->send(CommandKind::pause);
       pages_->setCurrentWidget(now.parts.page);
     } else {
-      pages_->setCurrentWidget(views_page_);
+      pages_->setCurrentWidget(columns_);
       views().useLayoutOf(now.name, now.layout);
     }
     bar_->setVisible(!now.parts.page);
@@ -71,7 +259,7 @@ void MainWindow::show(Place place) {
     showPanels();
     restoreColumns();
     now.workspace->enter();
-    showHint();
+    status_->setPlace(place, !now.parts.page);
     QCoreApplication::sendPostedEvents(nullptr, QEvent::LayoutRequest);
   }
   if (!now.parts.page) view().setFocus();
@@ -107,35 +295,6 @@ void MainWindow::open(const std::filesystem::path& path) {
   if (!ReviewWorkspace::isRecording(path)) return cases_->open(path);
   review_->choose(path);
   place_ == Place::review ? review_->enter() : show(Place::review);
-}
-
-void MainWindow::offerLeftBehind(const LeftBehind& left) {
-  std::error_code ec;
-  const bool recorded = std::filesystem::is_regular_file(left.recording, ec);
-  if (left.report.empty() && !recorded) return;
-  auto* box = new QMessageBox(QMessageBox::Information, tr("Trephine"),
-                              tr("Trephine ended unexpectedly the last time."),
-                              QMessageBox::NoButton, this);
-  box->setObjectName("leftBehindDialog");
-  box->setAttribute(Qt::WA_DeleteOnClose);
-  box->setTextFormat(Qt::PlainText);
-  QStringList more;
-  if (recorded) more << tr("The exercise is recorded up to then.");
-  if (!left.report.empty()) {
-    QFile file(toQt(left.report.string()));
-    if (file.open(QIODevice::ReadOnly)) box->setDetailedText(QString::fromUtf8(file.readAll()));
-    more << tr("A report for those who look after Trephine lies in %1. It names nobody, and "
-               "nothing was sent.")
-                .arg(toQt(left.report.string()));
-  }
-  box->setInformativeText(more.join("\n\n"));
-  if (recorded) {
-    QPushButton* open_it = box->addButton(tr("&Open the recording"), QMessageBox::AcceptRole);
-    open_it->setObjectName("openLeftBehind");
-    connect(open_it, &QPushButton::clicked, this, [this, file = left.recording] { open(file); });
-  }
-  box->addButton(QMessageBox::Close);
-  box->open();
 }
 
 void MainWindow::startExercise(std::optional<OperatorScript> script, double seconds) {
@@ -264,29 +423,6 @@ void MainWindow::showTitle() {
   setWindowTitle(words.join(QStringLiteral(" \u2013 ")));
 }
 
-void MainWindow::showHint() {
-  hint_->setText(room(place_).parts.page  ? QString()
-                 : !help_words_.isEmpty() ? help_words_
-                                          : hint_words_);
-  // A message stands in their place.
-  const bool free = statusBar()->currentMessage().isEmpty(), first = place_ == Place::cases;
-  fitness_->setVisible(free && first);
-  hint_->setVisible(free && !first);
-}
-
-void MainWindow::showAbout() {
-  auto* box = new QMessageBox(this);
-  box->setObjectName("aboutDialog");
-  box->setAttribute(Qt::WA_DeleteOnClose);
-  box->setWindowTitle(tr("About Trephine"));
-  box->setText(tr("Trephine %1").arg(toQt(buildName())));
-  box->setInformativeText(tr("Turns a CT into a case on which cutting can be practised with two "
-                             "hands, and felt.\n\n%1.\n\n"
-                             "Graphics: %2")
-                              .arg(purposeText(), toQt(view().openGlDescription())));
-  box->open();
-}
-
 // At the page of what is before a person.
 void MainWindow::showHelp() {
   const auto* tabs = findChild<QTabWidget*>("prepareTabs");
@@ -298,137 +434,13 @@ void MainWindow::showHelp() {
                                                      : "prepare");
 }
 
-void MainWindow::showShortcuts() {
-  if (auto* page = findChild<ShortcutsPage*>()) {
-    page->raise();
-    return page->activateWindow();
-  }
-  QList<QPair<QString, QString>> views = this->views().helpOfViews();
-  views.prepend({tr("While an exercise runs, over the 3-D view"),
-                 tr("Mouse, arrow keys: where the tool goes. Wheel up, Page Down: press more. "
-                    "Wheel down, Page Up: press less. Shift+arrow keys: tilt the tool. Shift+Home: "
-                    "the tool upright again. Tab: the other hand. Space: pause. Right drag, "
-                    "Ctrl+arrow keys: turn the view. Ctrl+wheel: zoom.")});
-  (new ShortcutsPage(*this, views, this))->show();
-}
-
-void MainWindow::showSettings() {
-  auto* dialog =
-      new SettingsDialog(toQt(app_.storage()), !workstation().policy().storage.empty(), this);
-  helpByF1(dialog, "settings");
-  dialog->open();
-}
-
-void MainWindow::showDevices() {
-  if (workstation().phase() != Workstation::Phase::ready &&
-      workstation().phase() != Workstation::Phase::empty) {
-    return app_.messages().say(tr("An exercise has the arms: stop it first."));
-  }
-  workstation().lendArms(true);
-  auto* dialog = new DevicesDialog(workstation().opensArms(), this);
-  connect(dialog, &DevicesDialog::letGo, this, [this] { workstation().lendArms(false); });
-  RoomPanel& room = dialog->room();
-  const auto tell = [this, &room] { room.setHeadset(headset_->isSeen(), headset_->keepsRoom()); };
-  connect(headset_, &HeadsetView::changed, &room, tell);
-  connect(&room, &RoomPanel::marksWanted, this, [this, &room](bool wanted) {
-    if (wanted) return room.setMarks(headset_->showMarks());
-    headset_->hideMarks();
-  });
-  tell();
-  // Its marks are touched with the headset on.
-  dialog->addActions({headset_->onAction(), headset_->recentreAction()});
-  helpByF1(dialog, "devices");
-  dialog->open();
-}
-
-// What is read by both eyes, and what the window itself takes.
-void MainWindow::showEyes() {
-  QStringList words{headset_->isOn() ? headset_->words() : stereo_->words()};
-  if (words.front().isEmpty()) {
-    eyes_->hide();
-    return eyes_->clear();
-  }
-  // While it shows what an eye sees it draws nothing itself.
-  if (panel_ms_ >= 0.05) words << tr("window %1 ms").arg(panel_ms_, 0, 'f', 1);
-  eyes_->setText(words.join(QStringLiteral(" \u00b7 ")));
-  eyes_->setVisible(statusBar()->currentMessage().isEmpty());
-}
-
-void MainWindow::showHeadset() {
-  auto* dialog = new HeadsetDialog(this);
-  connect(dialog, &HeadsetDialog::headsetChanged, headset_, &HeadsetView::settingsChanged);
-  connect(dialog, &HeadsetDialog::screenChanged, stereo_, &StereoView::settingsChanged);
-  connect(dialog, &HeadsetDialog::lensWanted, dialog, [this, dialog] {
-    app_.messages().askForFile("lensDialog", tr("A lens's file"), tr("Lenses (*.json)"),
-                               [this, of = QPointer(dialog)](const std::filesystem::path& file) {
-                                 const Result<LensProfile> lens = readLensProfile(file);
-                                 if (!lens) return app_.messages().report(lens.error());
-                                 if (of) of->setLens(toQt(file.string()));
-                               });
-  });
-  // A window over its screen must not keep the keys from coming back here.
-  connect(dialog, &QDialog::finished, this, [this] { activateWindow(); });
-  helpByF1(dialog, "headset");
-  dialog->open();
-}
-
 void MainWindow::checkAtStart() {
   constexpr int kBegun_ms = 1500;
-  QTimer::singleShot(kBegun_ms, fitness_, &FitnessLine::look);
-}
-
-void MainWindow::showCommission() {
-  const CommissionFolders folders = commissionFolders(workstation().policy());
-  auto* page = new CommissionPage(app_.storage(), folders.own, folders.hospital, this);
-  connect(page, &CommissionPage::begun, this, [this] { workstation().lendArms(true); });
-  connect(page, &CommissionPage::ended, this, [this] { workstation().lendArms(false); });
-  connect(page, &CommissionPage::commissioned, fitness_, &FitnessLine::look);
-  connect(page, &CommissionPage::saveWanted, page, [this, page] {
-    QFileDialog* dialog =
-        app_.messages().saveDialog(tr("Save the commissioning"), "commissioning.pdf",
-                                   tr("PDF (*.pdf);;A page for a browser (*.html)"));
-    connect(dialog, &QFileDialog::fileSelected, page, [this, page](const QString& file) {
-      const Status saved = page->save(toPath(file));
-      saved ? app_.messages().say(tr("The commissioning is saved."))
-            : app_.messages().report(saved.error());
-    });
-    dialog->open();
-  });
-  helpByF1(page, "commission");
-  page->open();
-}
-
-void MainWindow::showLocks() {
-  const bool locked = workstation().anyLocked(), unlocked = workstation().isUnlocked();
-  const Policy& policy = workstation().policy();
-  unlock_->setEnabled(unlocked || (locked && policy.pin.has_value()));
-  unlock_->setText(unlocked ? tr("&Lock again") : tr("Unlock for &teaching\u2026"));
-  locked_->setVisible(locked || unlocked);
-  locked_->setText(unlocked ? tr("Unlocked") : tr("Locked"));
-  locked_->setToolTip(unlocked ? tr("Until it is locked again (menu File), or Trephine is closed")
-                               : unlockWords(policy));
+  QTimer::singleShot(kBegun_ms, &status_->fitness(), &FitnessLine::look);
 }
 
 void MainWindow::sayProblem() {
   if (workstation().policy().problem) showError(this, *workstation().policy().problem);
-}
-
-void MainWindow::askForPin() {
-  if (workstation().isUnlocked()) {
-    const auto lock = [this] {
-      workstation().setUnlocked(false);
-      app_.messages().say(tr("Locked again."));
-    };
-    return workstation().tissuesWouldGo() ? app_.guards().unlessLost({UnsavedWork::tissues}, lock)
-                                          : lock();
-  }
-  if (!workstation().policy().pin) return;
-  auto* dialog = new UnlockDialog(*workstation().policy().pin, this);
-  connect(dialog, &UnlockDialog::unlocked, this, [this] {
-    workstation().setUnlocked(true);
-    app_.messages().say(tr("Unlocked for teaching, until you lock it again (menu File)."));
-  });
-  dialog->open();
 }
 
 }  // namespace trephine

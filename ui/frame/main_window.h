@@ -3,27 +3,24 @@
 // context.
 #pragma once
 
-#include <QLabel>
 #include <QMainWindow>
-#include <QProgressBar>
 #include <QSplitter>
 #include <QStackedWidget>
 #include <QToolBar>
-#include <QToolButton>
 #include <filesystem>
 
 #include "ui/cases/cases_workspace.h"
 #include "ui/common/slip_guard.h"
 #include "ui/frame/rail.h"
+#include "ui/frame/status_line.h"
+#include "ui/frame/window_dialogs.h"
 #include "ui/prepare/prepare_workspace.h"
 #include "ui/review/review_workspace.h"
 #include "ui/train/train_workspace.h"
 
 namespace trephine {
 
-class FitnessLine;
 class HeadsetView;
-struct LeftBehind;
 class StereoView;
 
 class MainWindow : public QMainWindow {
@@ -47,7 +44,9 @@ class MainWindow : public QMainWindow {
   void openOnceShown(const std::filesystem::path& path);
   void open(const std::filesystem::path& path);
   // What a program that crashed has left: said, with its report, and its recording offered.
-  void offerLeftBehind(const LeftBehind& left);
+  void offerLeftBehind(const LeftBehind& left) {
+    dialogs_->offerLeftBehind(left, [this](const std::filesystem::path& file) { open(file); });
+  }
   // Whether the machine is as it was commissioned, once what begins with the window has had its
   // time.
   void checkAtStart();
@@ -93,21 +92,11 @@ class MainWindow : public QMainWindow {
   const Room& room(Place place) const { return rooms_[std::size_t(place)]; }
   void showTitle();
   void showPanels();
-  void showHint();
   void keepColumns();
   void restoreColumns();
   void restore();
   void keep();
-  void showAbout();
   void showHelp();
-  void showShortcuts();
-  void showSettings();
-  void showDevices();
-  void showHeadset();
-  void showCommission();
-  void showEyes();
-  void showLocks();
-  void askForPin();
 
   SlipGuard slip_guard_;
   AppContext app_;
@@ -122,17 +111,11 @@ class MainWindow : public QMainWindow {
   Rail* rail_;
   QStackedWidget* pages_;
   QWidget *left_, *below_, *right_;  // each holds one part a workspace
-  QWidget* views_page_;
-  QSplitter* columns_;
+  QSplitter* columns_;  // the views and what is beside them
   QToolBar* bar_;
-  QAction *picture_, *volume_, *look_, *left_panel_, *right_panel_, *full_screen_, *settings_,
-      *devices_, *headset_settings_, *commission_, *unlock_;
-  QLabel *hint_, *eyes_, *rates_, *locked_, *opening_words_;
-  FitnessLine* fitness_;
-  double panel_ms_ = 0.0;  // of its last picture
-  QWidget* opening_box_;
-  QProgressBar* opening_;
-  QString hint_words_, help_words_;
+  QAction *picture_, *volume_, *look_, *left_panel_, *right_panel_, *full_screen_;
+  StatusLine* status_;
+  WindowDialogs* dialogs_;
   bool close_when_saved_ = false;
   bool may_close_ = false;  // nothing unsaved is left to ask about
   bool entered_ = false;    // a workspace
