@@ -9,6 +9,7 @@
 #include "base/file.h"
 #include "base/system.h"
 #include "machine/commission/start_check.h"
+#include "ui/common/making.h"
 #include "ui/common/pdf_page.h"
 #include "ui/common/placing.h"
 #include "ui/common/words.h"
@@ -30,44 +31,33 @@ CommissionPage::CommissionPage(std::filesystem::path storage,
   setObjectName("commissionPage");
   setAttribute(Qt::WA_DeleteOnClose);
   setWindowTitle(tr("Commission this workstation"));
-  words_ = new QLabel(
-      tr("Measures in a minute or two whether this machine keeps the time that touch "
-         "needs, how fast it draws, its disk, memory and devices, and says for each what to do. "
-         "End other programs first. If there are arms, hold each by its tip and move it a little "
-         "when you are asked to: it pushes back gently, by a few millimetres. Esc cancels."));
-  words_->setObjectName("commissionWords");
-  words_->setWordWrap(true);
-  step_ = new ElidedLabel;
-  step_->setObjectName("commissionStep");
-  progress_ = new QProgressBar;
-  progress_->setObjectName("commissionProgress");
+  words_ = wrapped(named(
+      new QLabel(tr(
+          "Measures in a minute or two whether this machine keeps the time that touch "
+          "needs, how fast it draws, its disk, memory and devices, and says for each what to do. "
+          "End other programs first. If there are arms, hold each by its tip and move it a little "
+          "when you are asked to: it pushes back gently, by a few millimetres. Esc cancels.")),
+      "commissionWords"));
+  step_ = named(new ElidedLabel, "commissionStep");
+  progress_ = named(new QProgressBar, "commissionProgress");
   progress_->setRange(0, kSteps);
-  page_ = new QTextBrowser;
-  page_->setObjectName("commissionResult");
+  page_ = named(new QTextBrowser, "commissionResult");
   page_->setOpenLinks(false);
   QPalette paper = page_->palette();  // it is a page to be printed, in either theme
   paper.setColor(QPalette::Base, Qt::white);
   paper.setColor(QPalette::Text, QColor(0x22, 0x22, 0x22));
   page_->setPalette(paper);
-  begin_ = new QPushButton(tr("&Begin"));
-  begin_->setObjectName("beginCommission");
+  begin_ = named(new QPushButton(tr("&Begin")), "beginCommission");
   begin_->setDefault(true);
-  cancel_ = new QPushButton(tr("&Cancel"));
-  cancel_->setObjectName("cancelCommission");
-  save_ = new QPushButton(tr("&Save to print\u2026"));
-  save_->setObjectName("saveCommission");
-  close_ = new QPushButton(tr("C&lose"));
-  close_->setObjectName("closeCommission");
+  cancel_ = named(new QPushButton(tr("&Cancel")), "cancelCommission");
+  save_ = named(new QPushButton(tr("&Save to print\u2026")), "saveCommission");
+  close_ = named(new QPushButton(tr("C&lose")), "closeCommission");
   auto* row = new QHBoxLayout;
-  row->addWidget(begin_);
-  row->addWidget(cancel_);
-  row->addWidget(save_);
+  addAll(*row, {begin_, cancel_, save_});
   row->addStretch(1);
   row->addWidget(close_);
   auto* layout = new QVBoxLayout(this);
-  layout->addWidget(words_);
-  layout->addWidget(progress_);
-  layout->addWidget(step_);
+  addAll(*layout, {words_, progress_, step_});
   layout->addWidget(page_, 1);
   layout->addStretch(0);
   layout->addLayout(row);

@@ -14,6 +14,7 @@
 #include <cmath>
 
 #include "base/utf8.h"
+#include "ui/common/making.h"
 #include "ui/common/number_field.h"
 #include "ui/common/setting_words.h"
 #include "ui/common/translations.h"
@@ -349,9 +350,7 @@ struct FieldEditor::Choices : Part {
 
 FieldEditor::FieldEditor(const FieldShape& field, const QString& name, QWidget* parent)
     : QWidget(parent), field_(field) {
-  auto* column = new QVBoxLayout(this);
-  column->setContentsMargins(0, 0, 0, 0);
-  column->setSpacing(1);
+  auto* column = tight(new QVBoxLayout(this), 1);
   switch (field.kind) {
     case FieldKind::number:
     case FieldKind::whole:

@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "ui/common/colours.h"
+#include "ui/common/making.h"
 #include "ui/common/translations.h"
 #include "ui/common/words.h"
 
@@ -83,26 +84,21 @@ QLabel* settingHint(const QString& words, QWidget* parent) {
 }
 
 QLabel* settingText(const char* name, QWidget* parent) {
-  auto* label = new HintLabel(parent);
-  label->setObjectName(name);
+  auto* label = named(new HintLabel(parent), name);
   label->setWordWrap(true);
   return label;
 }
 
 QWidget* withHint(QWidget* field, const QString& words, QWidget* parent) {
   auto* both = new QWidget(parent);
-  auto* column = new QVBoxLayout(both);
-  column->setContentsMargins(0, 0, 0, 0);
-  column->setSpacing(1);
+  auto* column = tight(new QVBoxLayout(both), 1);
   column->addWidget(field);
   column->addWidget(settingHint(words, both));
   return both;
 }
 
 QLabel* problemLabel(const char* name, QWidget* parent) {
-  auto* label = new QLabel(parent);
-  label->setObjectName(name);
-  label->setWordWrap(true);
+  auto* label = wrapped(named(new QLabel(parent), name));
   colours::setText(*label, colours::kCaution);
   label->hide();
   return label;
@@ -115,17 +111,15 @@ void sayNotApplied(QLabel& problem, const Error& why) {
 }
 
 QFormLayout* settingForm(QWidget* of) {
-  auto* layout = new QFormLayout(of);
+  auto* layout = tight(new QFormLayout(of));
   layout->setFieldGrowthPolicy(QFormLayout::AllNonFixedFieldsGrow);
   layout->setRowWrapPolicy(QFormLayout::WrapLongRows);
-  layout->setContentsMargins(0, 0, 0, 0);
   layout->setVerticalSpacing(6);
   return layout;
 }
 
 QComboBox* settingChoice(const char* name, const QString& accessible, QWidget* parent) {
-  auto* box = new QComboBox(parent);
-  box->setObjectName(name);
+  auto* box = named(new QComboBox(parent), name);
   box->setAccessibleName(accessible);
   box->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon);
   box->setMinimumContentsLength(3);
@@ -134,8 +128,7 @@ QComboBox* settingChoice(const char* name, const QString& accessible, QWidget* p
 
 QToolButton* settingButton(const char* name, const QString& text, const QString& tip,
                            QWidget* parent) {
-  auto* made = new QToolButton(parent);
-  made->setObjectName(name);
+  auto* made = named(new QToolButton(parent), name);
   made->setText(text);
   made->setToolTip(tip);
   made->setFocusPolicy(Qt::TabFocus);
@@ -143,9 +136,7 @@ QToolButton* settingButton(const char* name, const QString& text, const QString&
 }
 
 QLabel* settingTitle(const QString& words, QWidget* parent) {
-  auto* label = new QLabel(words, parent);
-  label->setProperty("title", true);
-  return label;
+  return looking(new QLabel(words, parent), {"title"});
 }
 
 }  // namespace trephine

@@ -9,6 +9,7 @@
 #include "base/system.h"
 #include "device/codes.h"
 #include "exercise/arms_file.h"
+#include "ui/common/making.h"
 #include "ui/common/words.h"
 #include "ui/work/arms_of_place.h"
 
@@ -33,9 +34,7 @@ QString nameOf(const FoundArm& arm) {
 }
 
 QLabel* wordsLabel(const char* name) {
-  auto* label = new QLabel;
-  label->setObjectName(name);
-  label->setWordWrap(true);
+  auto* label = wrapped(named(new QLabel, name));
   label->setTextFormat(Qt::PlainText);  // what a device says of itself
   return label;
 }
@@ -46,16 +45,12 @@ DevicesDialog::DevicesDialog(std::shared_ptr<std::timed_mutex> opens_arms, QWidg
     : QDialog(parent), opens_arms_(std::move(opens_arms)) {
   setObjectName("devicesDialog");
   setWindowTitle(tr("Devices"));
-  list_ = new QListWidget;
-  list_->setObjectName("deviceList");
+  list_ = named(new QListWidget, "deviceList");
   list_->setAccessibleName(tr("Arms that are plugged in"));
-  problems_ = wordsLabel("deviceProblems");
-  problems_->setProperty("quiet", true);
-  again_ = new QPushButton(tr("L&ook again"));
-  again_->setObjectName("lookAgain");
+  problems_ = looking(wordsLabel("deviceProblems"), {"quiet"});
+  again_ = named(new QPushButton(tr("L&ook again")), "lookAgain");
   name_ = wordsLabel("deviceName");
-  able_ = wordsLabel("deviceAble");
-  able_->setProperty("quiet", true);
+  able_ = looking(wordsLabel("deviceAble"), {"quiet"});
   picture_ = new ArmPicture;
   room_ = new RoomPanel;
   now_ = wordsLabel("deviceNow");
@@ -64,22 +59,15 @@ DevicesDialog::DevicesDialog(std::shared_ptr<std::timed_mutex> opens_arms, QWidg
     words->setAlignment(Qt::AlignTop);
     words->setFixedHeight(3 * words->fontMetrics().lineSpacing());
   }
-  force_ = new QPushButton(tr("&Test the force"));
-  force_->setObjectName("testForce");
-  felt_ = new QPushButton(tr("It pulled &up"));
-  felt_->setObjectName("forceFelt");
-  not_felt_ = new QPushButton(tr("It did &not"));
-  not_felt_->setObjectName("forceNotFelt");
-  left_ = new QComboBox;
-  left_->setObjectName("leftArm");
-  right_ = new QComboBox;
-  right_->setObjectName("rightArm");
-  pedal_ = new QComboBox;
-  pedal_->setObjectName("pedal");
+  force_ = named(new QPushButton(tr("&Test the force")), "testForce");
+  felt_ = named(new QPushButton(tr("It pulled &up")), "forceFelt");
+  not_felt_ = named(new QPushButton(tr("It did &not")), "forceNotFelt");
+  left_ = named(new QComboBox, "leftArm");
+  right_ = named(new QComboBox, "rightArm");
+  pedal_ = named(new QComboBox, "pedal");
   for (QPushButton* each : {again_, force_, felt_, not_felt_}) each->setAutoDefault(false);
-  auto* how = wordsLabel("deviceHow");
+  auto* how = looking(wordsLabel("deviceHow"), {"quiet"});
   how->setText(tr("Move an arm by hand: it is chosen here."));
-  how->setProperty("quiet", true);
 
   auto* found = new QVBoxLayout;
   found->addWidget(how);

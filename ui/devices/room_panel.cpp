@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "headset/room_place.h"
+#include "ui/common/making.h"
 #include "ui/common/number_field.h"
 #include "ui/common/words.h"
 
@@ -20,8 +21,7 @@ constexpr double kPoor_mm = 5.0;  // marks that were touched better than that ar
 constexpr double kFarthest_cm = 500.0;
 
 QPushButton* button(const char* name, const QString& text) {
-  auto* made = new QPushButton(text);
-  made->setObjectName(name);
+  auto* made = named(new QPushButton(text), name);
   made->setAutoDefault(false);
   return made;
 }
@@ -29,9 +29,7 @@ QPushButton* button(const char* name, const QString& text) {
 }  // namespace
 
 RoomPanel::RoomPanel(QWidget* parent) : QWidget(parent) {
-  words_ = new QLabel;
-  words_->setObjectName("roomWords");
-  words_->setWordWrap(true);
+  words_ = wrapped(named(new QLabel, "roomWords"));
   words_->setAlignment(Qt::AlignTop);
   words_->setFixedHeight(2 * words_->fontMetrics().lineSpacing());  // nothing moves with it
   begin_ = button("touchMarks", tr("Touch three &marks"));
@@ -41,8 +39,7 @@ RoomPanel::RoomPanel(QWidget* parent) : QWidget(parent) {
   auto* row = new QHBoxLayout;
   for (QPushButton* each : {begin_, here_, by_hand_, forget_}) row->addWidget(each);
   row->addStretch(1);
-  auto* layout = new QVBoxLayout(this);
-  layout->setContentsMargins(0, 0, 0, 0);
+  auto* layout = tight(new QVBoxLayout(this));
   layout->addWidget(words_);
   layout->addLayout(row);
   connect(begin_, &QPushButton::clicked, this, [this] {
@@ -125,8 +122,7 @@ void RoomPanel::byHand() {
   const FoundArm arm = *arm_;
   const std::optional<ArmInRoom> before = armInRoom(arm);
   const Pose from = before ? before->room_from_device_m : Pose{{0.0, 0.0, -0.5}, Quat(1, 0, 0, 0)};
-  auto* dialog = new QDialog(this);
-  dialog->setObjectName("roomDialog");
+  auto* dialog = named(new QDialog(this), "roomDialog");
   dialog->setAttribute(Qt::WA_DeleteOnClose);
   dialog->setWindowTitle(tr("Where the arm stands"));
   auto* form = new QFormLayout;

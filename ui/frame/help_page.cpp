@@ -11,6 +11,7 @@
 #include <QVBoxLayout>
 
 #include "base/system.h"
+#include "ui/common/making.h"
 #include "ui/common/placing.h"
 #include "ui/common/preferences.h"
 #include "ui/common/words.h"
@@ -57,13 +58,11 @@ HelpPage::HelpPage(QWidget* parent) : QWidget(parent, Qt::Window) {
   setObjectName("helpPage");
   setAttribute(Qt::WA_DeleteOnClose);
   setWindowTitle(tr("Help"));
-  text_ = new HelpText;
-  text_->setObjectName("helpText");
+  text_ = named(new HelpText, "helpText");
   text_->setOpenExternalLinks(false);
   text_->setVerticalScrollBarPolicy(
       Qt::ScrollBarAlwaysOn);  // it takes no room from a picture later
-  auto* contents = new QPushButton(tr("&Contents"));
-  contents->setObjectName("helpContents");
+  auto* contents = named(new QPushButton(tr("&Contents")), "helpContents");
   auto* back = new QPushButton(tr("&Back"));
   auto* close = new QPushButton(tr("C&lose"));
   auto* row = new QHBoxLayout;

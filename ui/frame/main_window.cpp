@@ -13,6 +13,7 @@
 #include "ui/commission/fitness_line.h"
 #include "ui/common/actions.h"
 #include "ui/common/error_dialog.h"
+#include "ui/common/making.h"
 #include "ui/common/placing.h"
 #include "ui/common/preferences.h"
 #include "ui/common/question.h"
@@ -54,8 +55,7 @@ void MainWindow::buildWorkspaces() {
   // Not stacks: those would be as wide as their widest page, whichever is shown.
   for (QWidget** slot : {&left_, &below_, &right_}) {
     *slot = new QWidget;
-    auto* slot_layout = new QVBoxLayout(*slot);
-    slot_layout->setContentsMargins(0, 0, 0, 0);
+    tight(new QVBoxLayout(*slot));
   }
   for (Room& one : rooms_) {
     one.parts = one.workspace->parts();
@@ -66,9 +66,7 @@ void MainWindow::buildWorkspaces() {
     if (one.parts.below) below_->layout()->addWidget(one.parts.below);
   }
   auto* middle = new QWidget;
-  auto* middle_layout = new QVBoxLayout(middle);
-  middle_layout->setContentsMargins(0, 0, 0, 0);
-  middle_layout->setSpacing(0);
+  auto* middle_layout = tight(new QVBoxLayout(middle), 0);
   middle_layout->addWidget(&views(), 1);
   middle_layout->addWidget(below_);
   columns_ = new QSplitter(Qt::Horizontal);
@@ -82,9 +80,7 @@ void MainWindow::buildWorkspaces() {
   pages_->addWidget(columns_);
 
   auto* all = new QWidget;
-  auto* layout = new QHBoxLayout(all);
-  layout->setContentsMargins(0, 0, 0, 0);
-  layout->setSpacing(0);
+  auto* layout = tight(new QHBoxLayout(all), 0);
   layout->addWidget(rail_);
   layout->addWidget(pages_, 1);
   setCentralWidget(all);
@@ -92,18 +88,17 @@ void MainWindow::buildWorkspaces() {
 
 void MainWindow::buildActions() {
   picture_ = makeAction(*this, Symbol::picture, "savePicture", tr("Save picture\u2026"),
-                        QKeySequence(Qt::Key_F12), tr("Save the 3-D view as a picture"));
+                        Qt::Key_F12, tr("Save the 3-D view as a picture"));
   volume_ = makeAction(*this, Symbol::save, "saveVolume", tr("Save volume\u2026"),
                        QKeySequence::Save, tr("Save the volume as it is now, with what was cut"));
-  look_ = makeAction(*this, Symbol::view, "resetView", tr("Reset view"), QKeySequence(Qt::Key_Home),
+  look_ = makeAction(*this, Symbol::view, "resetView", tr("Reset view"), Qt::Key_Home,
                      tr("Look at the case as at the start"));
-  left_panel_ = makeAction(*this, Symbol::view, "leftPanel", tr("Left panel"),
-                           QKeySequence(Qt::CTRL | Qt::Key_B), tr("Show or hide the left panel"));
+  left_panel_ = makeAction(*this, Symbol::view, "leftPanel", tr("Left panel"), Qt::CTRL | Qt::Key_B,
+                           tr("Show or hide the left panel"));
   right_panel_ = makeAction(*this, Symbol::view, "rightPanel", tr("Right panel"),
-                            QKeySequence(Qt::CTRL | Qt::SHIFT | Qt::Key_B),
-                            tr("Show or hide the right panel"));
-  full_screen_ = makeAction(*this, Symbol::view, "fullScreen", tr("Full screen"),
-                            QKeySequence(Qt::Key_F11), tr("The whole screen; Esc leaves it"));
+                            Qt::CTRL | Qt::SHIFT | Qt::Key_B, tr("Show or hide the right panel"));
+  full_screen_ = makeAction(*this, Symbol::view, "fullScreen", tr("Full screen"), Qt::Key_F11,
+                            tr("The whole screen; Esc leaves it"));
   for (QAction* action : {left_panel_, right_panel_, full_screen_}) action->setCheckable(true);
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "ui/common/actions.h"
+#include "ui/common/making.h"
 
 namespace trephine {
 
@@ -30,10 +31,8 @@ void Rail::add(Place place, const Workspace& workspace) {
   action->setCheckable(true);
   action->setData(int(place));
   group_->addAction(action);
-  auto* button = new QToolButton;
+  auto* button = named(new QToolButton, QStringLiteral("rail%1").arg(number), {"rail"});
   button->setDefaultAction(action);
-  button->setObjectName(QStringLiteral("rail%1").arg(number));
-  button->setProperty("rail", true);
   button->setToolButtonStyle(Qt::ToolButtonTextUnderIcon);
   button->setIconSize({kIcon, kIcon});
   button->setSizePolicy(QSizePolicy::Expanding, QSizePolicy::Fixed);

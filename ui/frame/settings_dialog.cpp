@@ -7,6 +7,7 @@
 #include <QPushButton>
 #include <QVBoxLayout>
 
+#include "ui/common/making.h"
 #include "ui/common/settings.h"
 
 namespace trephine {
@@ -16,21 +17,19 @@ SettingsDialog::SettingsDialog(const QString& storage, bool storage_locked, QWid
   setObjectName("settingsDialog");
   setAttribute(Qt::WA_DeleteOnClose);
   setWindowTitle(tr("Settings"));
-  storage_ = new QLineEdit(storage);
-  storage_->setObjectName("storageFolder");
+  storage_ = named(new QLineEdit(storage), "storageFolder");
   storage_->setEnabled(!storage_locked);
-  auto* browse = new QPushButton(tr("&Choose\u2026"));
-  browse->setObjectName("chooseStorage");
+  auto* browse = named(new QPushButton(tr("&Choose\u2026")), "chooseStorage");
   browse->setEnabled(!storage_locked);
   browse->setAutoDefault(false);
   auto* storage_row = new QHBoxLayout;
   storage_row->addWidget(storage_, 1);
   storage_row->addWidget(browse);
-  later_ = new QLabel(
-      tr("Arms: from the next start of an exercise on. Folder, language, theme and text: when "
-         "Trephine starts again."));
-  later_->setProperty("quiet", true);
-  later_->setWordWrap(true);
+  later_ = wrapped(looking(
+      new QLabel(
+          tr("Arms: from the next start of an exercise on. Folder, language, theme and text: when "
+             "Trephine starts again.")),
+      {"quiet"}));
 
   auto* form = new QFormLayout;
   // A field that is more than one widget is not found by its label.
@@ -62,8 +61,8 @@ SettingsDialog::SettingsDialog(const QString& storage, bool storage_locked, QWid
 }
 
 void SettingsDialog::chooseFolder() {
-  auto* dialog = new QFileDialog(this, tr("Where cases and exercises are kept"));
-  dialog->setObjectName("storageDialog");
+  auto* dialog =
+      named(new QFileDialog(this, tr("Where cases and exercises are kept")), "storageDialog");
   dialog->setAttribute(Qt::WA_DeleteOnClose);
   dialog->setFileMode(QFileDialog::Directory);
   dialog->setOption(QFileDialog::ShowDirsOnly);

@@ -11,6 +11,7 @@
 #include <QTreeWidget>
 #include <QVBoxLayout>
 
+#include "ui/common/making.h"
 #include "ui/common/placing.h"
 
 namespace trephine {
@@ -53,8 +54,7 @@ ShortcutsPage::ShortcutsPage(const QMainWindow& window, const QList<QPair<QStrin
   setObjectName("shortcutsPage");
   setWindowTitle(tr("Keys"));
   setAttribute(Qt::WA_DeleteOnClose);
-  auto* list = new QTreeWidget;
-  list->setObjectName("shortcuts");
+  auto* list = named(new QTreeWidget, "shortcuts");
   list->setHeaderLabels({tr("What"), tr("Key"), tr("What it does")});
   list->setRootIsDecorated(false);
   list->setSelectionMode(QAbstractItemView::NoSelection);
@@ -93,8 +93,7 @@ ShortcutsPage::ShortcutsPage(const QMainWindow& window, const QList<QPair<QStrin
   list->expandAll();
   list->resizeColumnToContents(0);
   list->resizeColumnToContents(1);
-  auto* find = new QLineEdit;
-  find->setObjectName("findKey");
+  auto* find = named(new QLineEdit, "findKey");
   find->setPlaceholderText(tr("Find"));
   connect(find, &QLineEdit::textChanged, list, [list](const QString& wanted) {
     for (int i = 0; i < list->topLevelItemCount(); ++i) {

@@ -5,6 +5,7 @@
 
 #include "ui/commission/fitness_line.h"
 #include "ui/common/colours.h"
+#include "ui/common/making.h"
 #include "ui/common/words.h"
 #include "ui/headset/headset_view.h"
 #include "ui/headset/stereo_view.h"
@@ -14,11 +15,9 @@ namespace trephine {
 namespace {
 
 constexpr int kProgressSteps = 1000, kProgressWidth = 140;
-using Widgets = std::initializer_list<QWidget*>;
 
 QLabel* elided(const char* name, bool quiet = true) {
-  auto* label = new ElidedLabel;
-  label->setObjectName(name);
+  auto* label = named(new ElidedLabel, name);
   if (quiet) label->setProperty("quiet", true);
   return label;
 }
@@ -30,35 +29,31 @@ StatusLine::StatusLine(AppContext& app, const HeadsetView& headset, const Stereo
   setSizePolicy(QSizePolicy::Ignored, QSizePolicy::Fixed);  // no words make the window wider
   hint_ = elided("hint");
   hint_->setContentsMargins(6, 0, 0, 0);
-  opening_ = new QProgressBar;
-  opening_->setObjectName("openProgress");
+  opening_ = named(new QProgressBar, "openProgress");
   opening_->setRange(0, kProgressSteps);
   opening_->setTextVisible(false);
   opening_->setMaximumHeight(14);
   opening_->setFixedWidth(kProgressWidth);
-  auto* cancel = new QPushButton(tr("Cancel"));
-  cancel->setObjectName("cancelOpening");
+  auto* cancel = named(new QPushButton(tr("Cancel")), "cancelOpening");
   opening_box_ = new QWidget;
   opening_words_ = elided("openWords", false);
-  auto* opening_row = new QHBoxLayout(opening_box_);
-  opening_row->setContentsMargins(0, 0, 0, 0);
-  for (QWidget* part : Widgets{opening_words_, opening_, cancel}) opening_row->addWidget(part);
+  auto* opening_row = tight(new QHBoxLayout(opening_box_));
+  addAll(*opening_row, {opening_words_, opening_, cancel});
   opening_box_->hide();
   eyes_ = elided("eyes");
   eyes_->hide();
   rates_ = elided("rates");
-  locked_ = new QLabel;
-  locked_->setObjectName("locked");
+  locked_ = named(new QLabel, "locked");
   locked_->setContentsMargins(8, 0, 8, 0);
   colours::setText(*locked_, colours::kCaution);
-  auto* purpose = new QLabel(purposeText());
-  purpose->setObjectName("purpose");
+  auto* purpose = named(new QLabel(purposeText()), "purpose");
   purpose->setContentsMargins(12, 0, 6, 0);
   Workstation& workstation = app.workstation();
   fitness_ = new FitnessLine(workstation, app.caseViews().view(), app.storage());
   addWidget(hint_, 1);
   addWidget(fitness_, 1);
-  for (QWidget* part : Widgets{opening_box_, eyes_, rates_, locked_, purpose})
+  for (QWidget* part :
+       std::initializer_list<QWidget*>{opening_box_, eyes_, rates_, locked_, purpose})
     addPermanentWidget(part);
   showLocks();
 

@@ -4,6 +4,7 @@
 #include <QVBoxLayout>
 
 #include "ui/common/colours.h"
+#include "ui/common/making.h"
 
 namespace trephine {
 
@@ -11,25 +12,21 @@ UnlockDialog::UnlockDialog(const Pin& pin, QWidget* parent) : QDialog(parent), p
   setObjectName("unlockDialog");
   setAttribute(Qt::WA_DeleteOnClose);
   setWindowTitle(tr("Unlock for teaching"));
-  text_ = new QLineEdit;
-  text_->setObjectName("pin");
+  text_ = named(new QLineEdit, "pin");
   text_->setEchoMode(QLineEdit::Password);
   text_->setMaxLength(int(kMostOfPin));
   text_->setAccessibleName(tr("PIN"));
-  said_ =
+  said_ = wrapped(named(
       new QLabel(tr("An educator's PIN unlocks controller, tissues and rate until you lock them "
-                    "again, or Trephine is closed."));
-  said_->setObjectName("pinSaid");
-  said_->setWordWrap(true);
+                    "again, or Trephine is closed.")),
+      "pinSaid"));
   auto* buttons = new QDialogButtonBox(QDialogButtonBox::Cancel);
   unlock_ = buttons->addButton(tr("&Unlock"), QDialogButtonBox::AcceptRole);
   unlock_->setObjectName("unlock");
   connect(buttons, &QDialogButtonBox::accepted, this, &UnlockDialog::check);
   connect(buttons, &QDialogButtonBox::rejected, this, &QDialog::reject);
   auto* layout = new QVBoxLayout(this);
-  layout->addWidget(said_);
-  layout->addWidget(text_);
-  layout->addWidget(buttons);
+  addAll(*layout, {said_, text_, buttons});
   text_->setFocus();
 }
 

@@ -11,6 +11,7 @@
 #include "ui/commission/commission_page.h"
 #include "ui/commission/fitness_line.h"
 #include "ui/common/actions.h"
+#include "ui/common/making.h"
 #include "ui/common/words.h"
 #include "ui/devices/devices_dialog.h"
 #include "ui/frame/help_page.h"
@@ -38,9 +39,9 @@ WindowDialogs::WindowDialogs(QMainWindow& window, AppContext& app, HeadsetView& 
     connect(action, &QAction::triggered, this, open);
     return action;
   };
-  settings_ = add("settings", tr("Settings\u2026"), QKeySequence(Qt::CTRL | Qt::Key_Comma),
+  settings_ = add("settings", tr("Settings\u2026"), Qt::CTRL | Qt::Key_Comma,
                   tr("How you like to work"), &WindowDialogs::showSettings);
-  devices_ = add("devices", tr("&Devices\u2026"), QKeySequence(Qt::CTRL | Qt::Key_D),
+  devices_ = add("devices", tr("&Devices\u2026"), Qt::CTRL | Qt::Key_D,
                  tr("The arms that are plugged in: which is the left and which the right"),
                  &WindowDialogs::showDevices);
   headset_settings_ = add("headsetSettings", tr("Headset and s&creens\u2026"), {},
@@ -89,8 +90,7 @@ void WindowDialogs::showKeys() {
 }
 
 void WindowDialogs::showAbout() {
-  auto* box = new QMessageBox(&window_);
-  box->setObjectName("aboutDialog");
+  auto* box = named(new QMessageBox(&window_), "aboutDialog");
   box->setAttribute(Qt::WA_DeleteOnClose);
   box->setWindowTitle(tr("About Trephine"));
   box->setText(tr("Trephine %1").arg(toQt(buildName())));
@@ -107,10 +107,10 @@ void WindowDialogs::offerLeftBehind(const LeftBehind& left,
   std::error_code ec;
   const bool recorded = std::filesystem::is_regular_file(left.recording, ec);
   if (left.report.empty() && !recorded) return;
-  auto* box = new QMessageBox(QMessageBox::Information, tr("Trephine"),
-                              tr("Trephine ended unexpectedly the last time."),
-                              QMessageBox::NoButton, &window_);
-  box->setObjectName("leftBehindDialog");
+  auto* box = named(new QMessageBox(QMessageBox::Information, tr("Trephine"),
+                                    tr("Trephine ended unexpectedly the last time."),
+                                    QMessageBox::NoButton, &window_),
+                    "leftBehindDialog");
   box->setAttribute(Qt::WA_DeleteOnClose);
   box->setTextFormat(Qt::PlainText);
   QStringList more;

@@ -9,6 +9,7 @@
 #include <QScreen>
 #include <QVBoxLayout>
 
+#include "ui/common/making.h"
 #include "ui/common/settings.h"
 
 namespace trephine {
@@ -49,11 +50,11 @@ QWidget* HeadsetDialog::buildHeadset() {
   auto* box = new QGroupBox(tr("Headset"));
   auto* form = new QFormLayout(box);
   of_headset_ = rows(kHeadsetFields, *form, &HeadsetDialog::headsetChanged);
-  auto* arms = new QLabel(
-      tr("Where arms are registered in the room (Devices), the patient lies where they are, and "
-         "each tool is seen where it is felt."));
-  arms->setWordWrap(true);
-  arms->setProperty("quiet", true);
+  auto* arms = wrapped(looking(
+      new QLabel(tr(
+          "Where arms are registered in the room (Devices), the patient lies where they are, and "
+          "each tool is seen where it is felt.")),
+      {"quiet"}));
   form->addRow(arms);
   return box;
 }
@@ -62,8 +63,7 @@ QWidget* HeadsetDialog::buildScreen() {
   using namespace settings;
   auto* box = new QGroupBox(tr("Two pictures on a screen"));
   auto* form = new QFormLayout(box);
-  screen_ = new QComboBox;
-  screen_->setObjectName("stereoScreen");
+  screen_ = named(new QComboBox, "stereoScreen");
   screen_->addItem(tr("Another than the window's"), QString());
   const QString chosen = read(kStereoScreen);
   for (const QScreen* each : QGuiApplication::screens()) {
@@ -76,14 +76,11 @@ QWidget* HeadsetDialog::buildScreen() {
   }
   if (screen_->findData(chosen) < 0) screen_->addItem(tr("%1, not connected").arg(chosen), chosen);
   screen_->setCurrentIndex(screen_->findData(chosen));
-  lens_ = new QLineEdit(read(kStereoLens));
-  lens_->setObjectName("stereoLens");
+  lens_ = named(new QLineEdit(read(kStereoLens)), "stereoLens");
   lens_->setReadOnly(true);
   lens_->setPlaceholderText(tr("No lens"));
-  auto* choose = new QPushButton(tr("Ch&oose\u2026"));
-  choose->setObjectName("chooseLens");
-  auto* none = new QPushButton(tr("&None"));
-  none->setObjectName("noLens");
+  auto* choose = named(new QPushButton(tr("Ch&oose\u2026")), "chooseLens");
+  auto* none = named(new QPushButton(tr("&None")), "noLens");
   auto* lens_row = new QHBoxLayout;
   lens_row->addWidget(lens_, 1);
   for (QPushButton* each : {choose, none}) {

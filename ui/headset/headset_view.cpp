@@ -37,11 +37,11 @@ HeadsetView::HeadsetView(Workstation& workstation, Messages& messages, CaseViews
       messages_(messages),
       case_views_(case_views) {
   QWidget& window = *messages.window();
-  on_ = makeAction(window, Symbol::view, "headset", tr("&Headset"), QKeySequence(Qt::Key_F9),
+  on_ = makeAction(window, Symbol::view, "headset", tr("&Headset"), Qt::Key_F9,
                    tr("The 3-D view through a head-mounted display; the exercise goes on"));
   on_->setCheckable(true);
   recentre_ = makeAction(window, Symbol::view, "headsetRecentre", tr("Put the &patient before me"),
-                         QKeySequence(Qt::CTRL | Qt::Key_F9),
+                         Qt::CTRL | Qt::Key_F9,
                          tr("Where the head looks now, at the set height and distance; with a "
                             "pedal, both outer switches at once"));
   recentre_->setEnabled(false);
@@ -279,10 +279,6 @@ void HeadsetView::stop() {
   if (std::exchange(flat_, false)) messages_.say({});  // that it shows a flat screen
   seen_ = false;
   emit changed();
-}
-
-std::optional<HeadsetState> HeadsetView::state() const {
-  return headset_ ? std::optional(headset_->state()) : std::nullopt;
 }
 
 void HeadsetView::setCards(std::vector<EyeCard> cards) {

@@ -45,7 +45,9 @@ class HeadsetView : public QObject {
   // Switches it off, and returns at once.
   void stop();
   // How it was drawn and shown, for measurements; empty while it is off.
-  std::optional<HeadsetState> state() const;
+  std::optional<HeadsetState> state() const {
+    return headset_ ? std::optional(headset_->state()) : std::nullopt;
+  }
   double pair_ms() const { return painter_.pair_ms(); }
 
  signals:

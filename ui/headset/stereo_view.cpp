@@ -13,6 +13,7 @@
 #include "ui/common/settings.h"
 #include "ui/common/words.h"
 #include "ui/headset/stereo_window.h"
+#include "ui/views/device_pixels.h"
 
 namespace trephine {
 
@@ -45,7 +46,7 @@ QScreen* chosenScreen(const QWidget& window) {
 StereoView::StereoView(Messages& messages, ViewWidget& view)
     : QObject(messages.window()), messages_(messages), view_(view), window_(*messages.window()) {
   on_ = makeAction(window_, Symbol::view, "stereo", tr("&Two pictures on another screen"),
-                   QKeySequence(Qt::SHIFT | Qt::Key_F9),
+                   Qt::SHIFT | Qt::Key_F9,
                    tr("Side by side or above each other, for a 3-D monitor or a projector; a "
                       "double click there leaves it"));
   on_->setCheckable(true);
@@ -161,7 +162,7 @@ void StereoView::release() {
 void StereoView::draw() {
   due_ = false;
   if (!screen_window_) return;
-  const int wide = screen_window_->pixelWidth(), high = screen_window_->pixelHeight();
+  const int wide = pixelsOf(*screen_window_).width(), high = pixelsOf(*screen_window_).height();
   const ViewCamera& camera = view_.camera();
   const StereoScreen screen = screenThrough(camera.distance_mm(), camera.halfHeight_mm(),
                                             aspectOf(packing_, wide, high), eyes_mm_, away_mm_);

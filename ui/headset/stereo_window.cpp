@@ -3,7 +3,8 @@
 #include <QCloseEvent>
 #include <QOpenGLContext>
 #include <QOpenGLExtraFunctions>
-#include <cmath>
+
+#include "ui/views/device_pixels.h"
 
 namespace trephine {
 
@@ -23,14 +24,6 @@ StereoWindow::~StereoWindow() {
   doneCurrent();
 }
 
-int StereoWindow::pixelWidth() const {
-  return int(std::lround(width() * devicePixelRatioF()));
-}
-
-int StereoWindow::pixelHeight() const {
-  return int(std::lround(height() * devicePixelRatioF()));
-}
-
 void StereoWindow::show(const std::array<unsigned int, 2>& textures, Packing packing,
                         const LensProfile& lens) {
   textures_ = textures;
@@ -46,15 +39,7 @@ void StereoWindow::paintGL() {
     gl.glClear(GL_COLOR_BUFFER_BIT);
     return;
   }
-  drawing_.draw(textures_, packing_, lens_, pixelWidth(), pixelHeight());
-}
-
-void StereoWindow::closeEvent(QCloseEvent*) {
-  emit leaveWanted();
-}
-
-void StereoWindow::mouseDoubleClickEvent(QMouseEvent*) {
-  emit leaveWanted();
+  drawing_.draw(textures_, packing_, lens_, pixelsOf(*this).width(), pixelsOf(*this).height());
 }
 
 }  // namespace trephine

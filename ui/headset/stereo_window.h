@@ -19,16 +19,14 @@ class StereoWindow : public QOpenGLWidget {
   // Textures of the main window's share group, drawn and flushed.
   void show(const std::array<unsigned int, 2>& textures, Packing packing, const LensProfile& lens);
   using QOpenGLWidget::show;
-  int pixelWidth() const;
-  int pixelHeight() const;
 
  signals:
   void leaveWanted();  // by a double click, or because it was closed
 
  protected:
   void paintGL() override;
-  void closeEvent(QCloseEvent* event) override;
-  void mouseDoubleClickEvent(QMouseEvent* event) override;
+  void closeEvent(QCloseEvent*) override { emit leaveWanted(); }
+  void mouseDoubleClickEvent(QMouseEvent*) override { emit leaveWanted(); }
 
  private:
   PackedDrawing drawing_;

@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "exercise/exercise_edits.h"
+#include "ui/common/making.h"
 #include "ui/common/setting_words.h"
 #include "ui/common/words.h"
 
@@ -14,8 +15,7 @@ namespace trephine {
 namespace {
 
 QPushButton* way(const char* name, const QString& text, const QString& tip, QWidget* parent) {
-  auto* made = new QPushButton(text, parent);
-  made->setObjectName(name);
+  auto* made = named(new QPushButton(text, parent), name);
   made->setToolTip(tip);
   return made;
 }
@@ -30,9 +30,7 @@ ExerciseForm::ExerciseForm(QWidget* parent) : QWidget(parent) {
   locked_ = problemLabel("formLocked", this);
   layout->addWidget(locked_);
   body_ = new QWidget(this);
-  auto* groups = new QVBoxLayout(body_);
-  groups->setContentsMargins(0, 0, 0, 0);
-  groups->setSpacing(12);
+  auto* groups = tight(new QVBoxLayout(body_), 12);
   buildWhat();
   buildPlaces();
   buildCard();
@@ -50,9 +48,7 @@ ExerciseForm::ExerciseForm(QWidget* parent) : QWidget(parent) {
 // Saving it, trying it, taking it elsewhere.
 QWidget* ExerciseForm::buildWays() {
   auto* box = new QWidget(this);
-  auto* grid = new QGridLayout(box);
-  grid->setContentsMargins(0, 0, 0, 0);
-  grid->setSpacing(4);
+  auto* grid = tight(new QGridLayout(box), 4);
   save_ = way("saveExercise", tr("&Save it"), tr("As an exercise of this workstation"), box);
   copy_ = way("saveExerciseCopy", tr("Save a &copy"), tr("As another one, beside it"), box);
   try_ = way("tryExercise", tr("&Try it"), tr("Go to Train with it; Back comes here again"), box);
@@ -69,10 +65,7 @@ QWidget* ExerciseForm::buildWays() {
   grid->addWidget(copy_, 1, 1);
   grid->addWidget(export_, 2, 0);
   grid->addWidget(import_, 2, 1);
-  saved_ = new QLabel(box);
-  saved_->setObjectName("exerciseSaved");
-  saved_->setWordWrap(true);
-  saved_->setProperty("quiet", true);
+  saved_ = wrapped(named(new QLabel(box), "exerciseSaved", {"quiet"}));
   grid->addWidget(saved_, 3, 0, 1, 2);
   return box;
 }
@@ -100,9 +93,7 @@ void ExerciseForm::buildWhat() {
 
 QWidget* ExerciseForm::buildCase() {
   auto* row = new QWidget(what_->fields());
-  auto* column = new QVBoxLayout(row);
-  column->setContentsMargins(0, 0, 0, 0);
-  column->setSpacing(4);
+  auto* column = tight(new QVBoxLayout(row), 4);
   case_ = settingText("exerciseCase", row);
   auto* labels = settingButton("chooseLabels", tr("Structures from a file\u2026"),
                                tr("A label map of this case, also from another program"), row);
@@ -143,22 +134,6 @@ QWidget* ExerciseForm::buildOperator() {
   connect(choose, &QToolButton::clicked, this, &ExerciseForm::operatorWanted);
   connect(none, &QToolButton::clicked, this, [this] { setOperator({}); });
   return chosenFile(operator_, choose, none, fields);
-}
-
-void ExerciseForm::setOperator(const std::string& file) {
-  what_->edit("operator", [&](Exercise& exercise) { exercise.operator_file = file; });
-}
-
-void ExerciseForm::setElsewhere(const std::optional<TissueSet>& set) {
-  what_->edit("elsewhere", [&](Exercise& exercise) { exercise.tissues_elsewhere = set; });
-}
-
-void ExerciseForm::showCase(const QString& words) {
-  case_->setText(words);
-}
-
-void ExerciseForm::setElsewherePossible(bool possible) {
-  for (QWidget* of : {choose_elsewhere_, no_elsewhere_}) of->setEnabled(possible);
 }
 
 void ExerciseForm::setStructures(const std::vector<std::string>& names) {
@@ -253,8 +228,7 @@ void ExerciseForm::buildPlaces() {
 
 QWidget* ExerciseForm::buildEntry() {
   auto* row = new QWidget(places_->fields());
-  auto* column = new QVBoxLayout(row);
-  column->setContentsMargins(0, 0, 0, 0);
+  auto* column = tight(new QVBoxLayout(row));
   auto* entry =
       settingButton("placeEntry", tr("Click it in a view"),
                     tr("A click on skin, bone or a slice is where it enters (I)"), row);
@@ -302,8 +276,7 @@ void ExerciseForm::showLandmark() {
 
 QCheckBox* ExerciseForm::cardSwitch(const char* name, const QString& words,
                                     const std::function<void(Exercise&, bool on)>& edit) {
-  auto* box = new QCheckBox(words, card_->fields());
-  box->setObjectName(name);
+  auto* box = named(new QCheckBox(words, card_->fields()), name);
   connect(box, &QCheckBox::toggled, this, [this, edit](bool on) {
     if (!showing_) card_->edit("card on", [&](Exercise& exercise) { edit(exercise, on); });
   });

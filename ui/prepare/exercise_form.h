@@ -29,9 +29,11 @@ class ExerciseForm : public QWidget {
   std::function<std::vector<std::pair<QString, std::filesystem::path>>()> sets;
 
   // What it is made on: the case, and how many structures that has.
-  void showCase(const QString& words);
+  void showCase(const QString& words) { case_->setText(words); }
   // False: the case lacks structures, and the exercise runs on its other set already.
-  void setElsewherePossible(bool possible);
+  void setElsewherePossible(bool possible) {
+    for (QWidget* of : {choose_elsewhere_, no_elsewhere_}) of->setEnabled(possible);
+  }
   // What it is called where it is saved, and whether it is as it was saved.
   void showSaved(const QString& words);
   // Clicks on the surface add points.
@@ -54,8 +56,12 @@ class ExerciseForm : public QWidget {
   void importWanted();
 
  public slots:
-  void setOperator(const std::string& file);
-  void setElsewhere(const std::optional<TissueSet>& set);
+  void setOperator(const std::string& file) {
+    what_->edit("operator", [&](Exercise& exercise) { exercise.operator_file = file; });
+  }
+  void setElsewhere(const std::optional<TissueSet>& set) {
+    what_->edit("elsewhere", [&](Exercise& exercise) { exercise.tissues_elsewhere = set; });
+  }
 
  private:
   QWidget* buildWays();

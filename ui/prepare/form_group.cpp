@@ -3,6 +3,7 @@
 #include <QGridLayout>
 #include <QVBoxLayout>
 
+#include "ui/common/making.h"
 #include "ui/common/setting_words.h"
 
 namespace trephine {
@@ -10,8 +11,7 @@ namespace trephine {
 FormGroup::FormGroup(const QString& title, const char* problem, const ExerciseEdited& wanted,
                      QWidget* parent)
     : QWidget(parent), wanted_(wanted) {
-  auto* layout = new QVBoxLayout(this);
-  layout->setContentsMargins(0, 0, 0, 0);
+  auto* layout = tight(new QVBoxLayout(this));
   problem_ = problemLabel(problem, this);
   fields_ = new QWidget(this);
   form_ = settingForm(fields_);
@@ -45,18 +45,14 @@ void FormGroup::refuse(const QString& why) {
 
 QWidget* besideEachOther(std::initializer_list<QWidget*> widgets, QWidget* parent) {
   auto* row = new QWidget(parent);
-  auto* layout = new QHBoxLayout(row);
-  layout->setContentsMargins(0, 0, 0, 0);
-  layout->setSpacing(4);
+  auto* layout = tight(new QHBoxLayout(row), 4);
   for (QWidget* widget : widgets) layout->addWidget(widget, widget == *widgets.begin() ? 1 : 0);
   return row;
 }
 
 QWidget* chosenFile(QLabel* name, QToolButton* choose, QToolButton* none, QWidget* parent) {
   auto* row = new QWidget(parent);
-  auto* grid = new QGridLayout(row);
-  grid->setContentsMargins(0, 0, 0, 0);
-  grid->setSpacing(4);
+  auto* grid = tight(new QGridLayout(row), 4);
   grid->addWidget(name, 0, 0, 1, 3);
   grid->addWidget(choose, 1, 0);
   grid->addWidget(none, 1, 1);

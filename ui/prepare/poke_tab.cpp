@@ -21,8 +21,7 @@ PokeTab::PokeTab(Workstation& workstation, Messages& messages, WorkGuards& guard
       view_(&case_views.view()),
       tissues_(tissues),
       plot_(plot) {
-  action_ = makeAction(*messages_.window(), Symbol::train, "poke", tr("Poke"),
-                       QKeySequence(Qt::CTRL | Qt::Key_E),
+  action_ = makeAction(*messages_.window(), Symbol::train, "poke", tr("Poke"), Qt::CTRL | Qt::Key_E,
                        tr("Feel the tissue with mouse or arm; nothing is cut"));
   action_->setCheckable(true);
   connect(action_, &QAction::triggered, this, &PokeTab::toggle);

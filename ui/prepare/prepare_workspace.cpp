@@ -6,6 +6,7 @@
 #include <QTabBar>
 
 #include "ui/common/actions.h"
+#include "ui/common/making.h"
 #include "ui/common/placing.h"
 #include "ui/common/words.h"
 
@@ -17,7 +18,7 @@ PrepareWorkspace::PrepareWorkspace(AppContext& app)
       workstation_(app.workstation()),
       views_(&app.caseViews().views()) {
   save_in_case_ = makeAction(*app.messages().window(), Symbol::save, "saveInCase",
-                             tr("Save in the case"), QKeySequence(Qt::CTRL | Qt::SHIFT | Qt::Key_S),
+                             tr("Save in the case"), Qt::CTRL | Qt::SHIFT | Qt::Key_S,
                              tr("Keep changed structures and tissues in the case"));
   makePanels();
   Messages& messages = app_.messages();
@@ -52,8 +53,7 @@ void PrepareWorkspace::makePanels() {
   structure_panel_ = new StructurePanel(editor_);
   tools_panel_ = new ToolsPanel;
   form_ = new ExerciseForm;
-  tabs_ = new QTabWidget;
-  tabs_->setObjectName("prepareTabs");
+  tabs_ = named(new QTabWidget, "prepareTabs");
   tabs_->setDocumentMode(true);
   tabs_->insertTab(kTissueTab, scrolled(tissue_panel_, "tissuePage"), tr("Tissues"));
   tabs_->insertTab(kStructureTab, scrolled(structure_panel_, "structurePage"), tr("Structures"));
@@ -62,11 +62,9 @@ void PrepareWorkspace::makePanels() {
   tabs_->setMinimumWidth(275);
   // Four names beside each other in a narrow column.
   tabs_->tabBar()->setStyleSheet("QTabBar::tab { padding: 5px 4px; min-width: 0; }");
-  below_ = new QWidget;
-  below_->setObjectName("prepareBelow");
+  below_ = named(new QWidget, "prepareBelow");
   histogram_ = new HistogramView(below_);
-  auto* beside = new QHBoxLayout(below_);
-  beside->setContentsMargins(0, 0, 0, 0);
+  auto* beside = tight(new QHBoxLayout(below_));
   beside->addWidget(histogram_, 1);
   poke_plot_ = new PokePlot(below_);
   beside->addWidget(poke_plot_, 1);
@@ -200,12 +198,12 @@ void PrepareWorkspace::showUndo() {
 void PrepareWorkspace::unlessTissuesStay(WorkGuards::Next go_on) {
   const bool exercise = workstation_.exerciseEdited();
   if (!exercise && !workstation_.tissuesEdited()) return go_on();
-  auto* box = new QMessageBox(QMessageBox::Question, tr("Trephine"),
-                              exercise ? tr("The exercise has been changed and not saved.")
-                                       : tr("The tissues have been changed and not saved."),
-                              QMessageBox::Save | QMessageBox::Discard | QMessageBox::Cancel,
-                              app_.messages().window());
-  box->setObjectName("unsavedTissues");
+  auto* box = named(new QMessageBox(QMessageBox::Question, tr("Trephine"),
+                                    exercise ? tr("The exercise has been changed and not saved.")
+                                             : tr("The tissues have been changed and not saved."),
+                                    QMessageBox::Save | QMessageBox::Discard | QMessageBox::Cancel,
+                                    app_.messages().window()),
+                    "unsavedTissues");
   box->setAttribute(Qt::WA_DeleteOnClose);
   box->setInformativeText(exercise ? tr("Save it? Discarded changes cannot be had back.")
                           : structures_->isStored()

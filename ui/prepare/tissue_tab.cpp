@@ -135,10 +135,6 @@ std::vector<std::pair<QString, std::filesystem::path>> TissueTab::setsOfWorkstat
   return sets;
 }
 
-std::filesystem::path TissueTab::ownSets() const {
-  return storage_ / "tissues";
-}
-
 // In the place of the exercise's: what landmarks lose by it is said.
 void TissueTab::takeSet(const TissueSet& set, const char* what) {
   if (!workstation_.exercise()) return;

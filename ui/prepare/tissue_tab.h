@@ -46,7 +46,7 @@ class TissueTab : public QObject {
   void useSet(const std::filesystem::path& file);
   void askToExportSet();
   void revertSet();
-  std::filesystem::path ownSets() const;
+  std::filesystem::path ownSets() const { return storage_ / "tissues"; }
 
   Workstation& workstation_;
   Messages& messages_;

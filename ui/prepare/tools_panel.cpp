@@ -11,6 +11,7 @@
 #include "exercise/arms_file.h"
 #include "exercise/exercise_edits.h"
 #include "render/scene_renderer.h"
+#include "ui/common/making.h"
 #include "ui/common/setting_words.h"
 #include "ui/common/translations.h"
 #include "ui/common/words.h"
@@ -43,9 +44,7 @@ ToolsPanel::ToolsPanel(QWidget* parent) : QWidget(parent) {
   locked_ = problemLabel("exerciseLocked", this);
   layout->addWidget(locked_);
   body_ = new QWidget(this);
-  auto* groups = new QVBoxLayout(body_);
-  groups->setContentsMargins(0, 0, 0, 0);
-  groups->setSpacing(12);
+  auto* groups = tight(new QVBoxLayout(body_), 12);
   buildTools();
   buildArms();
   buildLaws();
@@ -85,8 +84,7 @@ void ToolsPanel::buildTools() {
 
 QWidget* ToolsPanel::buildToolList() {
   auto* box = new QWidget(of_tools_);
-  tools_ = new QListWidget(box);
-  tools_->setObjectName("toolList");
+  tools_ = named(new QListWidget(box), "toolList");
   tools_->setAccessibleName(tr("Tools of the exercise"));
   tools_->setMaximumHeight(5 * fontMetrics().height() + 12);
   connect(tools_, &QListWidget::currentRowChanged, this, [this] {
@@ -119,8 +117,7 @@ QWidget* ToolsPanel::buildToolList() {
   buttons->addWidget(add);
   buttons->addWidget(remove_);
   buttons->addStretch(1);
-  auto* column = new QVBoxLayout(box);
-  column->setContentsMargins(0, 0, 0, 0);
+  auto* column = tight(new QVBoxLayout(box));
   column->addWidget(tools_);
   column->addLayout(buttons);
   return box;
@@ -128,8 +125,7 @@ QWidget* ToolsPanel::buildToolList() {
 
 QWidget* ToolsPanel::buildMesh() {
   QWidget* fields = of_tools_->fields();
-  mesh_ = new QLabel(fields);
-  mesh_->setObjectName("toolMesh");
+  mesh_ = named(new QLabel(fields), "toolMesh");
   auto* choose = settingButton("chooseMesh", tr("Choose\u2026"), tr("An STL file, in mm"), fields);
   no_mesh_ = settingButton("noMesh", tr("None"), tr("A plain shape is drawn"), fields);
   connect(choose, &QToolButton::clicked, this, &ToolsPanel::meshWanted);
@@ -273,10 +269,6 @@ void ToolsPanel::buildArms() {
   arm_numbers_ = fieldsOf(kFields.subspan(3));
 }
 
-const ExerciseArm* ToolsPanel::arm() const {
-  return chosenArm() < exercise_.arms.size() ? &exercise_.arms[chosenArm()] : nullptr;
-}
-
 void ToolsPanel::editArm(const std::string& what, const std::function<void(ExerciseArm&)>& edit) {
   if (!arm()) return;
   of_arms_->edit("arm:" + arm()->name + ":" + what,
@@ -335,9 +327,8 @@ void ToolsPanel::buildLaws() {
   };
   force_trade_ = trade("forceTrade");
   rate_trade_ = trade("rateTrade");
-  auto* rays =
-      new QLabel(tr("Samples of a ray in 3-D: what the view draws with is in bold."), fields);
-  rays->setWordWrap(true);
+  auto* rays = wrapped(
+      new QLabel(tr("Samples of a ray in 3-D: what the view draws with is in bold."), fields));
   of_laws_->form().addRow(rays);
   rays_trade_ = trade("raysTrade");
   trades_where_ = settingHint({}, fields);

@@ -68,7 +68,9 @@ class ToolsPanel : public QWidget {
   void showTrades();
   void describeCosts();
   const ExerciseTool* tool() const;
-  const ExerciseArm* arm() const;
+  const ExerciseArm* arm() const {
+    return chosenArm() < exercise_.arms.size() ? &exercise_.arms[chosenArm()] : nullptr;
+  }
   void editTool(const std::string& what, const std::function<void(ExerciseTool&)>& edit);
   void editArm(const std::string& what, const std::function<void(ExerciseArm&)>& edit);
   void removeTool();

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <chrono>
 
+#include "ui/common/making.h"
 #include "ui/common/words.h"
 
 namespace trephine {
@@ -28,10 +29,8 @@ QDateTime timeOf(const ListedRecording& row) {
 }  // namespace
 
 ReviewPage::ReviewPage(QWidget* parent) : QWidget(parent) {
-  auto* title = new QLabel(tr("Recorded exercises"));
-  title->setProperty("heading", true);
-  list_ = new QTreeWidget;
-  list_->setObjectName("recordings");
+  auto* title = looking(new QLabel(tr("Recorded exercises")), {"heading"});
+  list_ = named(new QTreeWidget, "recordings");
   list_->setRootIsDecorated(false);
   list_->setAllColumnsShowFocus(true);
   list_->setHeaderLabels({tr("Ended"), tr("Exercise"), tr("Case"), tr("Length"), tr("State")});
@@ -40,32 +39,21 @@ ReviewPage::ReviewPage(QWidget* parent) : QWidget(parent) {
   for (int column : {kTimeColumn, kCaseColumn, kLengthColumn, kStateColumn}) {
     list_->header()->setSectionResizeMode(column, QHeaderView::ResizeToContents);
   }
-  empty_ = new QLabel;
-  empty_->setObjectName("noRecordings");
-  empty_->setWordWrap(true);
-  empty_->setProperty("quiet", true);
+  empty_ = wrapped(named(new QLabel, "noRecordings", {"quiet"}));
   empty_->setAlignment(Qt::AlignTop | Qt::AlignLeft);
-  reading_ = new QLabel;
-  reading_->setObjectName("readingRecordings");
-  reading_->setProperty("quiet", true);
-  outcome_ = new QLabel;
-  outcome_->setObjectName("replayOutcome");
-  outcome_->setWordWrap(true);
-  replay_ = new QPushButton(tr("&Check by replay"));
-  replay_->setObjectName("replay");
+  reading_ = named(new QLabel, "readingRecordings", {"quiet"});
+  outcome_ = wrapped(named(new QLabel, "replayOutcome"));
+  replay_ = named(new QPushButton(tr("&Check by replay")), "replay");
   replay_->setToolTip(
       tr("Computes the exercise again from what the arms did, and compares every bit"));
   step_ = new QLabel;
-  progress_ = new QProgressBar;
-  progress_->setObjectName("replayProgress");
+  progress_ = named(new QProgressBar, "replayProgress");
   progress_->setRange(0, kProgressSteps);
   progress_->setTextVisible(false);
   progress_->setMaximumHeight(14);
-  cancel_ = new QPushButton(tr("Cancel"));
-  cancel_->setObjectName("cancelReplay");
+  cancel_ = named(new QPushButton(tr("Cancel")), "cancelReplay");
   progress_box_ = new QWidget;
-  auto* progress_row = new QHBoxLayout(progress_box_);
-  progress_row->setContentsMargins(0, 0, 0, 0);
+  auto* progress_row = tight(new QHBoxLayout(progress_box_));
   progress_row->addWidget(step_);
   progress_row->addWidget(progress_, 1);
   progress_row->addWidget(cancel_);
@@ -96,10 +84,6 @@ ReviewPage::ReviewPage(QWidget* parent) : QWidget(parent) {
 const ListedRecording* ReviewPage::chosen() const {
   const int row = list_->indexOfTopLevelItem(list_->currentItem());
   return row >= 0 && std::size_t(row) < rows_.size() ? &rows_[std::size_t(row)] : nullptr;
-}
-
-void ReviewPage::showReading(double fraction) {
-  reading_->setText(tr("Reading the recordings\u2026 %1 %").arg(int(fraction * 100.0)));
 }
 
 void ReviewPage::showNoRecordings(const QString& why) {
@@ -184,10 +168,6 @@ void ReviewPage::endProgress() {
   busy_ = false;
   progress_box_->hide();
   showChosen();
-}
-
-void ReviewPage::showOutcome(const QString& words) {
-  outcome_->setText(words);
 }
 
 }  // namespace trephine

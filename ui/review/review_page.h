@@ -25,7 +25,9 @@ class ReviewPage : public QWidget {
   // Not `all` of them while the folder is still being read.
   void showRecordings(const std::vector<ListedRecording>& rows, bool all, const std::string& in_use,
                       const std::map<std::string, QString>& cases);
-  void showReading(double fraction);
+  void showReading(double fraction) {
+    reading_->setText(tr("Reading the recordings\u2026 %1 %").arg(int(fraction * 100.0)));
+  }
   void showNoRecordings(const QString& why);
   std::size_t count() const { return rows_.size(); }
   void selectNewest() { list_->setCurrentItem(list_->topLevelItem(0)); }
@@ -35,7 +37,7 @@ class ReviewPage : public QWidget {
   bool selectNewestOf(const std::string& case_key);
   void showProgress(double fraction, const QString& step);
   void endProgress();
-  void showOutcome(const QString& words);
+  void showOutcome(const QString& words) { outcome_->setText(words); }
 
  signals:
   void replayWanted(const trephine::ListedRecording& of);

@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "ui/common/colours.h"
+#include "ui/common/making.h"
 #include "ui/common/plain_text.h"
 #include "ui/common/words.h"
 
@@ -18,16 +19,13 @@ namespace {
 constexpr double kMilli = 1000.0;
 
 QLabel* value(QWidget* parent, const QString& name) {
-  auto* label = new QLabel(parent);
-  label->setObjectName(name);
+  auto* label = named(new QLabel(parent), name);
   label->setTextInteractionFlags(Qt::TextSelectableByMouse);
   return label;
 }
 
 QLabel* quiet(const QString& text, QWidget* parent) {
-  auto* label = new QLabel(text, parent);
-  label->setProperty("quiet", true);
-  return label;
+  return looking(new QLabel(text, parent), {"quiet"});
 }
 
 QString newtons(double force_N) {
@@ -65,8 +63,7 @@ ArmsPanel::ArmsPanel(QWidget* parent) : QWidget(parent) {
   area->setFrameShape(QFrame::NoFrame);
   area->setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
 
-  controller_ = new QComboBox(inside);
-  controller_->setObjectName("controller");
+  controller_ = named(new QComboBox(inside), "controller");
   controller_->setFocusPolicy(Qt::TabFocus);  // a click leaves the keys with the hands
   controller_->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon);
   for (const auto& [name, kind] : kControllerNames) {
@@ -77,11 +74,10 @@ ArmsPanel::ArmsPanel(QWidget* parent) : QWidget(parent) {
   missed_ = value(inside, "missedDeadlines");
   dropped_ = value(inside, "dropped");
   for (QLabel* label : {missed_, dropped_}) label->setWordWrap(true);
-  journal_ =
+  journal_ = wrapped(
       new QLabel(tr("The way back can no longer be kept on the disk: nothing more is removed. Undo "
                     "and rewind still work. Free some space, then start the exercise anew."),
-                 inside);
-  journal_->setWordWrap(true);
+                 inside));
   colours::setText(*journal_, colours::kBad);
   journal_->hide();
 
@@ -94,8 +90,7 @@ ArmsPanel::ArmsPanel(QWidget* parent) : QWidget(parent) {
   cards_layout_->addWidget(journal_);
   cards_layout_->addStretch(1);
 
-  auto* layout = new QVBoxLayout(this);
-  layout->setContentsMargins(0, 0, 0, 0);
+  auto* layout = tight(new QVBoxLayout(this));
   layout->addWidget(area);
 
   // Of the widest row, with its frames and the scroll bar: what does not fit would be cut off.
@@ -121,11 +116,9 @@ void ArmsPanel::setExercise(const Exercise& exercise) {
 
 ArmsPanel::Card ArmsPanel::addCard(const Exercise& exercise, std::size_t index) {
   const ExerciseArm& arm = exercise.arms[index];
-  auto* frame = new QFrame(this);
-  frame->setProperty("card", true);
+  auto* frame = looking(new QFrame(this), {"card"});
   const QString prefix = toQt(arm.name);
-  auto* title = new QLabel(armName(arm), frame);
-  title->setProperty("title", true);
+  auto* title = looking(new QLabel(armName(arm), frame), {"title"});
   colours::setText(*title, colours::ofArm(arm, index));
 
   Card card{value(frame, prefix + "Contact"),

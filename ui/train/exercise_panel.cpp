@@ -3,6 +3,7 @@
 #include <QVBoxLayout>
 #include <cmath>
 
+#include "ui/common/making.h"
 #include "ui/common/words.h"
 #include "ui/train/arms_panel.h"
 
@@ -10,18 +11,14 @@ namespace trephine {
 
 namespace {
 
-QLabel* wrapped(const char* name, Qt::TextFormat format = Qt::PlainText) {
-  auto* label = new QLabel;
-  label->setObjectName(name);
+QLabel* wordsLabel(const char* name, Qt::TextFormat format = Qt::PlainText) {
+  auto* label = wrapped(named(new QLabel, name));
   label->setTextFormat(format);
-  label->setWordWrap(true);
   return label;
 }
 
 QLabel* heading(const QString& text) {
-  auto* label = new QLabel(text);
-  label->setProperty("title", true);
-  return label;
+  return looking(new QLabel(text), {"title"});
 }
 
 QString rows(const QString& title, const std::vector<RemovedOf>& removed) {
@@ -62,48 +59,37 @@ QString toolWords(const Exercise& exercise, const std::array<std::int32_t, kMaxA
 }
 
 ExercisePanel::ExercisePanel(QWidget* parent) : QWidget(parent) {
-  title_ = wrapped("exerciseTitle");
-  title_->setProperty("heading", true);
-  goal_ = wrapped("exerciseGoal");
-  steps_ = wrapped("exerciseSteps", Qt::RichText);
-  tools_ = wrapped("exerciseTools");
-  hands_ = wrapped("exerciseHands");
-  time_ = new QLabel;
-  time_->setObjectName("exerciseTime");
-  time_->setProperty("largest", true);
-  removed_ = wrapped("exerciseRemoved", Qt::RichText);
-  keys_ = wrapped("exerciseKeys");
-  keys_->setProperty("quiet", true);
+  title_ = looking(wordsLabel("exerciseTitle"), {"heading"});
+  goal_ = wordsLabel("exerciseGoal");
+  steps_ = wordsLabel("exerciseSteps", Qt::RichText);
+  tools_ = wordsLabel("exerciseTools");
+  hands_ = wordsLabel("exerciseHands");
+  time_ = named(new QLabel, "exerciseTime", {"largest"});
+  removed_ = wordsLabel("exerciseRemoved", Qt::RichText);
+  keys_ = looking(wordsLabel("exerciseKeys"), {"quiet"});
   keys_->setText(
       tr("Mouse or arrows: where the tool goes. Wheel up or down, Page Down or Up: presses more or "
          "less. Shift and arrows: tilt. Tab: the other hand. Space: pause. Right drag: turn the "
          "view. The tool follows the mouse wherever it goes: pause before you take it to a "
          "button."));
-  card_ = new QPushButton;
-  card_->setObjectName("showCard");
+  card_ = named(new QPushButton, "showCard");
   card_->hide();
   connect(card_, &QPushButton::clicked, this, &ExercisePanel::cardWanted);
-  back_ = new QPushButton(tr("&Back to Prepare"));
-  back_->setObjectName("backToPrepare");
+  back_ = named(new QPushButton(tr("&Back to Prepare")), "backToPrepare");
   back_->setToolTip(tr("Ends the try and goes on preparing the exercise"));
   back_->hide();
   connect(back_, &QPushButton::clicked, this, &ExercisePanel::backWanted);
   auto* layout = new QVBoxLayout(this);
   layout->setContentsMargins(12, 10, 12, 10);
   layout->setSpacing(8);
-  layout->addWidget(title_);
-  layout->addWidget(back_);
-  layout->addWidget(card_);
-  layout->addWidget(time_);
+  addAll(*layout, {title_, back_, card_, time_});
   layout->addWidget(heading(tr("Removed")));
   layout->addWidget(removed_);
   layout->addWidget(heading(tr("Goal")));
   layout->addWidget(goal_);
   layout->addWidget(steps_);
   layout->addWidget(heading(tr("Hands")));
-  layout->addWidget(tools_);
-  layout->addWidget(hands_);
-  layout->addWidget(keys_);
+  addAll(*layout, {tools_, hands_, keys_});
   layout->addStretch(1);
   showIdle();
 }

@@ -11,10 +11,6 @@ ForceBar::ForceBar(QWidget* parent) : QWidget(parent) {
   setSizePolicy(QSizePolicy::Expanding, QSizePolicy::Fixed);
 }
 
-QSize ForceBar::sizeHint() const {
-  return {160, 18};
-}
-
 void ForceBar::setForce(double sent_N, double demanded_N, double limit_N) {
   if (sent_N == sent_N_ && demanded_N == demanded_N_ && limit_N == limit_N_) return;
   sent_N_ = sent_N;

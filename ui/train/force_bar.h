@@ -12,7 +12,7 @@ class ForceBar : public QWidget {
   explicit ForceBar(QWidget* parent = nullptr);
   // Newtons. `demanded_N` may lie above the limit: then the bar's end says so.
   void setForce(double sent_N, double demanded_N, double limit_N);
-  QSize sizeHint() const override;
+  QSize sizeHint() const override { return {160, 18}; }
 
  protected:
   void paintEvent(QPaintEvent* event) override;

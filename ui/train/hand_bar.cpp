@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "ui/common/colours.h"
+#include "ui/common/making.h"
 #include "ui/common/words.h"
 #include "ui/train/arms_panel.h"
 
@@ -15,23 +16,14 @@ constexpr int kWidest = 460, kNarrowestForceBar = 60;
 HandBar::HandBar(QWidget& over) : FloatingCard(over, At::bottom, kWidest) {
   setObjectName("handBar");
   setAttribute(Qt::WA_TransparentForMouseEvents);
-  hand_ = new QLabel;
-  hand_->setObjectName("activeHand");
-  hand_->setProperty("large", true);
-  tool_ = new QLabel;
-  tool_->setObjectName("handTool");
-  touches_ = new QLabel;
-  touches_->setObjectName("handTouches");
-  waits_ = new QLabel(toolWaitsWords());
-  waits_->setObjectName("handToolWaits");
-  waits_->setWordWrap(true);
+  hand_ = named(new QLabel, "activeHand", {"large"});
+  tool_ = named(new QLabel, "handTool");
+  touches_ = named(new QLabel, "handTouches");
+  waits_ = wrapped(named(new QLabel(toolWaitsWords()), "handToolWaits"));
   waits_->setAlignment(Qt::AlignCenter);
   colours::setText(*waits_, colours::kCaution);
-  bar_ = new ForceBar;
-  bar_->setObjectName("pushBar");
-  push_ = new QLabel;
-  push_->setObjectName("pushWords");
-  push_->setProperty("large", true);
+  bar_ = named(new ForceBar, "pushBar");
+  push_ = named(new QLabel, "pushWords", {"large"});
   bar_->setMinimumWidth(kNarrowestForceBar);
   auto* held = new QHBoxLayout;
   auto* pushed = new QHBoxLayout;

@@ -138,10 +138,6 @@ void PointerHands::tilt(int right, int up) {
   if (up != 0) session_->turnHand(active_, camera.right(), -kTilt_rad * up);
 }
 
-void PointerHands::follow() {
-  if (!stays_) send();
-}
-
 void PointerHands::send() {
   if (!session_ || !place()) return;
   const std::optional<ViewCamera::Ray> ray = view_.rayAt(*place());

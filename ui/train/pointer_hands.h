@@ -23,7 +23,9 @@ class PointerHands : public QObject {
   // them. Null: it is over.
   void begin(Session* session);
   // Once a picture: where the pointer is the tissue may have changed.
-  void follow();
+  void follow() {
+    if (!stays_) send();
+  }
 
   // The arm that the pointer has, and how hard it presses.
   std::size_t active() const { return active_; }

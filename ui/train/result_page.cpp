@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "ui/common/making.h"
 #include "ui/common/words.h"
 #include "volume/label_map.h"
 
@@ -44,30 +45,16 @@ const CutStructure* structureOf(const RemovedOf& tissue, const ExerciseResult& r
 
 ResultPage::ResultPage(QWidget& over) : FloatingCard(over, At::middle, kResultWidest) {
   setObjectName("resultPage");
-  title_ = new QLabel;
-  title_->setObjectName("resultTitle");
-  title_->setProperty("heading", true);
-  title_->setWordWrap(true);
-  goal_ = new QLabel;
-  goal_->setObjectName("resultGoal");
-  goal_->setWordWrap(true);
-  time_ = new QLabel;
-  time_->setObjectName("resultTime");
-  time_->setProperty("large", true);
-  rows_ = new QLabel;
-  rows_->setObjectName("resultRows");
+  title_ = wrapped(named(new QLabel, "resultTitle", {"heading"}));
+  goal_ = wrapped(named(new QLabel, "resultGoal"));
+  time_ = named(new QLabel, "resultTime", {"large"});
+  rows_ = wrapped(named(new QLabel, "resultRows"));
   rows_->setTextFormat(Qt::RichText);
-  rows_->setWordWrap(true);
-  auto* purpose = new QLabel(purposeText());
-  purpose->setProperty("quiet", true);
-  again_ = new QPushButton(tr("Try &again"));
-  again_->setObjectName("resultAgain");
-  again_->setProperty("primary", true);
+  auto* purpose = looking(new QLabel(purposeText()), {"quiet"});
+  again_ = named(new QPushButton(tr("Try &again")), "resultAgain", {"primary"});
   again_->setToolTip(tr("On whole tissue; the recording of this one stays"));
-  replay_ = new QPushButton(tr("&Replay"));
-  replay_->setObjectName("resultReplay");
-  look_ = new QPushButton(tr("&Look at it (Esc)"));
-  look_->setObjectName("resultLook");
+  replay_ = named(new QPushButton(tr("&Replay")), "resultReplay");
+  look_ = named(new QPushButton(tr("&Look at it (Esc)")), "resultLook");
   look_->setToolTip(tr(
       "Puts this page aside: the tissue stays as it was left until the next start, and the panel "
       "at the left brings the page back"));
@@ -78,10 +65,7 @@ ResultPage::ResultPage(QWidget& over) : FloatingCard(over, At::middle, kResultWi
   auto* layout = new QVBoxLayout(this);
   layout->setContentsMargins(20, 16, 20, 16);
   layout->setSpacing(10);
-  layout->addWidget(title_);
-  layout->addWidget(goal_);
-  layout->addWidget(time_);
-  layout->addWidget(rows_);
+  addAll(*layout, {title_, goal_, time_, rows_});
   layout->addLayout(buttons);
   layout->addWidget(purpose, 0, Qt::AlignCenter);
   connect(again_, &QPushButton::clicked, this, &ResultPage::againWanted);

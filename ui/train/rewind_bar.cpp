@@ -12,6 +12,7 @@
 
 #include "ui/common/colours.h"
 #include "ui/common/icons.h"
+#include "ui/common/making.h"
 #include "ui/common/words.h"
 
 namespace trephine {
@@ -122,27 +123,23 @@ std::optional<std::uint32_t> RewindHistory::last() const {
 }
 
 RewindBar::RewindBar(QWidget* parent) : QWidget(parent) {
-  back_ = new QAction(symbolIcon(Symbol::back), tr("Back %1 s").arg(kBack_s), this);
-  back_->setObjectName("back");
+  back_ = named(new QAction(symbolIcon(Symbol::back), tr("Back %1 s").arg(kBack_s), this), "back");
   back_->setShortcut(QKeySequence(Qt::CTRL | Qt::Key_Backspace));
   back_->setToolTip(tr("Tissue, counts and forces as they were %1 s ago (%2)")
                         .arg(kBack_s)
                         .arg(back_->shortcut().toString(QKeySequence::NativeText)));
-  back_button_ = new QToolButton(this);
-  back_button_->setObjectName("backButton");
+  back_button_ = named(new QToolButton(this), "backButton");
   back_button_->setDefaultAction(back_);
   back_button_->setToolButtonStyle(Qt::ToolButtonTextBesideIcon);
   back_button_->setAutoRaise(true);
-  slider_ = new TimeSlider(this);
-  slider_->setObjectName("rewindSlider");
+  slider_ = named(new TimeSlider(this), "rewindSlider");
   slider_->setAccessibleName(tr("Second of the exercise to go back to"));
   slider_->setToolTip(
       tr("Go back to any second: tissue, counts and forces as they were then.\n"
          "Left, Right: 1 s. Page Up, Page Down: 10 s. Home: the beginning. Esc: stay."));
   slider_->setSingleStep(1);
   slider_->setPageStep(kBack_s);
-  time_ = new QLabel(this);
-  time_->setObjectName("rewindTime");
+  time_ = named(new QLabel(this), "rewindTime");
   time_->setAlignment(Qt::AlignRight | Qt::AlignVCenter);
   const QFontMetrics metrics = time_->fontMetrics();
   time_->setMinimumWidth(
@@ -276,10 +273,6 @@ void RewindBar::askChosen() {
   } else {
     follow();
   }
-}
-
-void RewindBar::goBack() {
-  ask(rewind_history_.before(now_, kBack_s));
 }
 
 void RewindBar::ask(std::uint32_t second) {

@@ -72,7 +72,7 @@ class RewindBar : public QWidget {
   void setUsable(bool usable);
   void follow();
   void askChosen();
-  void goBack();
+  void goBack() { ask(rewind_history_.before(now_, kBack_s)); }
   void ask(std::uint32_t second);
   void showChosen();
   void showMarks();

@@ -3,6 +3,7 @@
 #include <QHBoxLayout>
 #include <QVBoxLayout>
 
+#include "ui/common/making.h"
 #include "ui/common/words.h"
 #include "ui/train/exercise_panel.h"
 
@@ -14,49 +15,30 @@ constexpr int kStartWidest = 560;
 
 StartCard::StartCard(QWidget& over) : FloatingCard(over, At::middle, kStartWidest) {
   setObjectName("startCard");
-  title_ = new QLabel;
-  title_->setObjectName("startCardTitle");
-  title_->setProperty("heading", true);
-  goal_ = new QLabel;
-  goal_->setObjectName("startCardGoal");
-  goal_->setProperty("large", true);
-  steps_ = new QLabel;
-  steps_->setObjectName("startCardSteps");
+  title_ = named(new QLabel, "startCardTitle", {"heading"});
+  goal_ = named(new QLabel, "startCardGoal", {"large"});
+  steps_ = named(new QLabel, "startCardSteps");
   steps_->setTextFormat(Qt::RichText);  // a numbered list, of escaped steps
-  hands_ = new QLabel;
-  hands_->setObjectName("startCardHands");
-  keys_ = new QLabel(
-      tr("Without arms the mouse is the hand: move it over the tissue, turn the wheel up "
-         "to press, change hands with Tab. By keys alone: arrows, Page Down to press, Page "
-         "Up to ease, Shift and arrows to tilt."));
-  keys_->setProperty("quiet", true);
+  hands_ = named(new QLabel, "startCardHands");
+  keys_ = looking(
+      new QLabel(
+          tr("Without arms the mouse is the hand: move it over the tissue, turn the wheel up "
+             "to press, change hands with Tab. By keys alone: arrows, Page Down to press, Page "
+             "Up to ease, Shift and arrows to tilt.")),
+      {"quiet"});
   for (QLabel* label : {title_, goal_, steps_, hands_, keys_}) label->setWordWrap(true);
-  start_ = new QPushButton(tr("&Start (F5)"));
-  start_->setObjectName("startCardStart");
-  start_->setProperty("primary", true);
-  start_->setProperty("big", true);
-  choose_ = new QPushButton(tr("&Choose a case"));
-  choose_->setObjectName("startCardChoose");
-  choose_->setProperty("primary", true);
-  choose_->setProperty("big", true);
-  aside_ = new QPushButton(tr("Put &aside (Esc)"));
-  aside_->setObjectName("startCardAside");
-  aside_->setProperty("big", true);
+  start_ = named(new QPushButton(tr("&Start (F5)")), "startCardStart", {"primary", "big"});
+  choose_ = named(new QPushButton(tr("&Choose a case")), "startCardChoose", {"primary", "big"});
+  aside_ = named(new QPushButton(tr("Put &aside (Esc)")), "startCardAside", {"big"});
   aside_->setToolTip(tr("Shows what lies behind; the panel at the left brings it back"));
   auto* buttons = new QHBoxLayout;
   buttons->addStretch(1);
-  buttons->addWidget(start_);
-  buttons->addWidget(choose_);
-  buttons->addWidget(aside_);
+  addAll(*buttons, {start_, choose_, aside_});
   buttons->addStretch(1);
   auto* layout = new QVBoxLayout(this);
   layout->setContentsMargins(20, 16, 20, 16);
   layout->setSpacing(10);
-  layout->addWidget(title_);
-  layout->addWidget(goal_);
-  layout->addWidget(steps_);
-  layout->addWidget(hands_);
-  layout->addWidget(keys_);
+  addAll(*layout, {title_, goal_, steps_, hands_, keys_});
   layout->addLayout(buttons);
   connect(start_, &QPushButton::clicked, this, &StartCard::startWanted);
   connect(choose_, &QPushButton::clicked, this, &StartCard::caseWanted);

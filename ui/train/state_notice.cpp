@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "ui/common/making.h"
 #include "ui/common/words.h"
 #include "ui/train/arms_panel.h"
 #include "ui/train/exercise_panel.h"
@@ -141,13 +142,10 @@ QString undoneWords(const LoopState& before, const LoopState& after, const Exerc
 
 StateNotice::StateNotice(QWidget* view, const QWidget* bar) : QWidget(view), bar_(bar) {
   setObjectName("stateNotice");
-  force_on_ = new QAction(tr("Force on"), this);
-  force_on_->setObjectName("forceBack");
+  force_on_ = named(new QAction(tr("Force on"), this), "forceBack");
   force_on_->setShortcut(QKeySequence(Qt::CTRL | Qt::Key_F));
   force_on_->setAutoRepeat(false);
-  auto* layout = new QVBoxLayout(this);
-  layout->setContentsMargins(0, 0, 0, 0);
-  layout->setSpacing(8);
+  tight(new QVBoxLayout(this), 8);
   pause_ = makeCard("pauseNotice", "goOn");
   pause_.title->setText(tr("PAUSED"));
   pause_.why->setText(tr("No force, no cutting, and the clock stands still."));
@@ -165,16 +163,10 @@ StateNotice::StateNotice(QWidget* view, const QWidget* bar) : QWidget(view), bar
 }
 
 StateNotice::Card StateNotice::makeCard(const char* name, const char* button_name) {
-  auto* frame = new QFrame(this);
-  frame->setObjectName(name);
-  frame->setProperty("notice", true);
-  auto* title = new QLabel(frame);
-  title->setObjectName(QString(name) + "Title");
-  title->setProperty("noticeTitle", true);
-  auto* why = new QLabel(frame);
-  why->setObjectName(QString(name) + "Why");
-  auto* button = new QPushButton(frame);
-  button->setObjectName(button_name);
+  auto* frame = named(new QFrame(this), name, {"notice"});
+  auto* title = named(new QLabel(frame), QString(name) + "Title", {"noticeTitle"});
+  auto* why = named(new QLabel(frame), QString(name) + "Why");
+  auto* button = named(new QPushButton(frame), button_name);
   button->setFocusPolicy(Qt::TabFocus);  // a click leaves the keys with the hands
   auto* layout = new QVBoxLayout(frame);
   layout->setContentsMargins(16, 10, 16, 12);
@@ -193,10 +185,6 @@ StateNotice::Card StateNotice::makeCard(const char* name, const char* button_nam
 void StateNotice::showState(const LoopState& state, const Exercise& exercise, double still_s,
                             bool ready) {
   show(state.paused, forceNotice(state, exercise, still_s), ready);
-}
-
-void StateNotice::showIdle() {
-  show(false, {}, false);
 }
 
 void StateNotice::show(bool paused, const ForceNotice& force, bool ready) {

@@ -38,7 +38,7 @@ class StateNotice : public QWidget {
   // `ready`: nothing has been touched yet.
   void showState(const LoopState& state, const Exercise& exercise, double still_s,
                  bool ready = false);
-  void showIdle();
+  void showIdle() { show(false, {}, false); }
   // "Force on" with its key, for a menu; enabled while it can be used.
   QAction* forceOnAction() { return force_on_; }
 

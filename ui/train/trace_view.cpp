@@ -20,10 +20,6 @@ TraceView::TraceView(const QString& title, const QString& unit, double low, doub
   setAccessibleName(title);
 }
 
-QSize TraceView::sizeHint() const {
-  return {200, 3 * fontMetrics().height() + 20};
-}
-
 QSize TraceView::minimumSizeHint() const {
   return {120, sizeHint().height()};
 }
@@ -32,10 +28,6 @@ void TraceView::setLimits(double low, double high) {
   low_ = low;
   high_ = high;
   update();
-}
-
-void TraceView::add(double time_s, double value) {
-  add(time_s, value, value);
 }
 
 void TraceView::add(double time_s, double value, double demanded) {

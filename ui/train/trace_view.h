@@ -23,10 +23,10 @@ class TraceView : public QWidget {
   void setLimits(double low, double high);
   // At a time that does not fall; what is older than ten seconds goes. Of an earlier time than the
   // last one the trace begins anew.
-  void add(double time_s, double value);
+  void add(double time_s, double value) { add(time_s, value, value); }
   void add(double time_s, double value, double demanded);
   void clear();
-  QSize sizeHint() const override;
+  QSize sizeHint() const override { return {200, 3 * fontMetrics().height() + 20}; }
   QSize minimumSizeHint() const override;
 
   struct Sample {

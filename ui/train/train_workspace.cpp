@@ -85,31 +85,28 @@ bool TrainWorkspace::escape() {
 
 void TrainWorkspace::buildActions() {
   QWidget& window = *messages_.window();
-  start_ = makeAction(window, Symbol::start, "start", tr("Start"), QKeySequence(Qt::Key_F5),
-                      tr("Start the exercise"));
-  stop_ =
-      makeAction(window, Symbol::stop, "stop", tr("Stop"), QKeySequence(Qt::CTRL | Qt::Key_Period),
-                 tr("End the exercise and its recording"));
-  pause_ =
-      makeAction(window, Symbol::pause, "pause", tr("Pause"), QKeySequence(Qt::CTRL | Qt::Key_P),
-                 tr("Hold: no force and no cutting until it is released; in the view Space"));
+  start_ =
+      makeAction(window, Symbol::start, "start", tr("Start"), Qt::Key_F5, tr("Start the exercise"));
+  stop_ = makeAction(window, Symbol::stop, "stop", tr("Stop"), Qt::CTRL | Qt::Key_Period,
+                     tr("End the exercise and its recording"));
+  pause_ = makeAction(window, Symbol::pause, "pause", tr("Pause"), Qt::CTRL | Qt::Key_P,
+                      tr("Hold: no force and no cutting until it is released; in the view Space"));
   pause_->setCheckable(true);
   pause_->setAutoRepeat(false);
-  reset_ = makeAction(window, Symbol::reset, "reset", tr("Reset"),
-                      QKeySequence(Qt::CTRL | Qt::Key_R), tr("Put all tissue back"));
+  reset_ = makeAction(window, Symbol::reset, "reset", tr("Reset"), Qt::CTRL | Qt::Key_R,
+                      tr("Put all tissue back"));
   other_hand_ = makeAction(window, Symbol::train, "otherHand", tr("Other hand"), {},
                            tr("The mouse takes the other hand; in the view Tab"));
-  change_tool_ = makeAction(window, Symbol::train, "changeTool", tr("Change tool"),
-                            QKeySequence(Qt::CTRL | Qt::Key_T),
-                            tr("The hand takes the next of its tools, out of the tissue"));
-  clutch_ =
-      makeAction(window, Symbol::train, "clutch", tr("Clutch"), QKeySequence(Qt::CTRL | Qt::Key_K),
-                 tr("The arms move freely and their tools stay, until it is pressed again: "
-                    "then a hand's motion follows the view"));
+  change_tool_ =
+      makeAction(window, Symbol::train, "changeTool", tr("Change tool"), Qt::CTRL | Qt::Key_T,
+                 tr("The hand takes the next of its tools, out of the tissue"));
+  clutch_ = makeAction(window, Symbol::train, "clutch", tr("Clutch"), Qt::CTRL | Qt::Key_K,
+                       tr("The arms move freely and their tools stay, until it is pressed again: "
+                          "then a hand's motion follows the view"));
   clutch_->setCheckable(true);
-  recentre_ = makeAction(
-      window, Symbol::train, "recentre", tr("Re-centre"), QKeySequence(Qt::CTRL | Qt::Key_L),
-      tr("The tools are where the exercise starts, with the arms where they are"));
+  recentre_ =
+      makeAction(window, Symbol::train, "recentre", tr("Re-centre"), Qt::CTRL | Qt::Key_L,
+                 tr("The tools are where the exercise starts, with the arms where they are"));
 }
 
 void TrainWorkspace::connectParts() {
@@ -192,15 +189,6 @@ void TrainWorkspace::startExercise(std::optional<OperatorScript> script, double 
   app_.go(Place::train);
   if (const Status& drawing = view_->canDraw(); !drawing) return messages_.report(drawing.error());
   workstation_.start(app_.recordings(), std::move(script), seconds);
-}
-
-void TrainWorkspace::start() {
-  startUnlessLost({UnsavedWork::cuts});
-}
-
-// What was cut can be seen again by its recording, so nothing is asked.
-void TrainWorkspace::tryAgain() {
-  recorded_ ? startUnlessLost({}) : start();
 }
 
 void TrainWorkspace::startUnlessLost(const std::vector<UnsavedWork>& losses) {

@@ -77,8 +77,9 @@ class TrainWorkspace : public Workspace {
   void sayWhatIsOpen();
   void showPhase();
   void showReset();
-  void start();
-  void tryAgain();
+  void start() { startUnlessLost({UnsavedWork::cuts}); }
+  // What was cut can be seen again by its recording, so nothing is asked.
+  void tryAgain() { recorded_ ? startUnlessLost({}) : start(); }
   void startUnlessLost(const std::vector<UnsavedWork>& losses);
   void reset();
   // Goes on with the exercise; where the case is not what it is for it asks first.

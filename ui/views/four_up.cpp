@@ -9,6 +9,7 @@
 #include <algorithm>
 
 #include "ui/common/colours.h"
+#include "ui/common/making.h"
 #include "ui/common/settings.h"
 
 namespace trephine {
@@ -42,8 +43,7 @@ FourUp::FourUp(QWidget* parent) : QWidget(parent) {
   three_d_->installEventFilter(this);
   setFocusProxy(three_d_);
   for (SliceAxis axis : kSliceAxes) slices_[std::size_t(axis)] = makeSlices(axis);
-  bar_ = new SliceBar(toolbox_, this);
-  bar_->setObjectName("sliceBar");
+  bar_ = named(new SliceBar(toolbox_, this), "sliceBar");
   bar_->setAutoFillBackground(true);
   connect(bar_, &SliceBar::windowChosen, this, &FourUp::setWindow);
   connect(bar_, &SliceBar::overlayChosen, this, &FourUp::setOverlay);
@@ -66,8 +66,7 @@ FourUp::FourUp(QWidget* parent) : QWidget(parent) {
 
 QAction* FourUp::makeAction(const char* name, const QString& text, Qt::Key key,
                             const QString& tip) {
-  auto* action = new QAction(text, this);
-  action->setObjectName(name);
+  auto* action = named(new QAction(text, this), name);
   action->setShortcut(QKeySequence(key));
   action->setToolTip(tip);
   action->setCheckable(true);
@@ -80,20 +79,16 @@ FourUp::Slices FourUp::makeSlices(SliceAxis axis) {
   Slices made;
   made.box = new QWidget(this);
   made.box->setAutoFillBackground(true);
-  made.view = new SliceView(axis, mirror_, colours_, toolbox_, made.box);
-  made.view->setObjectName(name);
+  made.view = named(new SliceView(axis, mirror_, colours_, toolbox_, made.box), name);
   made.view->installEventFilter(this);
   made.view->setAccessibleName(tr("%1 slices").arg(name));
-  made.slider = new QSlider(Qt::Vertical, made.box);
-  made.slider->setObjectName(QString(name) + "Slider");
+  made.slider = named(new QSlider(Qt::Vertical, made.box), QString(name) + "Slider");
   made.slider->setAccessibleName(tr("%1 slice").arg(name));
   made.slider->setInvertedAppearance(axis != SliceAxis::axial);  // the head, or the front, is up
   made.slider->setPageStep(10);
   made.slider->setFocusPolicy(Qt::TabFocus);
   made.slider->setEnabled(false);
-  auto* layout = new QHBoxLayout(made.box);
-  layout->setContentsMargins(0, 0, 0, 0);
-  layout->setSpacing(0);
+  auto* layout = tight(new QHBoxLayout(made.box), 0);
   layout->addWidget(made.view, 1);
   layout->addWidget(made.slider);
   connect(made.view, &SliceView::pointChosen, this, &FourUp::setPoint);
@@ -151,10 +146,6 @@ void FourUp::refill(const std::shared_ptr<const Volume>& whole,
   changed();
 }
 
-void FourUp::pullChanges(Grid& grid) {
-  if (mirror_->pull(grid)) changed();
-}
-
 void FourUp::showLabels(const std::shared_ptr<const LabelMap>& labels) {
   mirror_->setLabels(labels);
   three_d_->takeChanges();
@@ -186,14 +177,6 @@ void FourUp::setMark(const std::optional<SliceColours::Mark>& mark) {
   for (const Slices& of : slices_) of.view->coloursChanged();
 }
 
-void FourUp::setAnatomy(const std::string& anatomy) {
-  if (std::exchange(anatomy_, anatomy) != anatomy) setWindow(usualWindow(anatomy));
-}
-
-void FourUp::setTools(const std::vector<ToolView>& tools) {
-  for (const Slices& of : slices_) of.view->setTools(tools);
-}
-
 void FourUp::setPoint(const Vec3& patient_mm) {
   if (mirror_->empty() || !isFinite(patient_mm)) return;
   const GridGeometry& g = mirror_->volume().geometry;
@@ -209,10 +192,6 @@ void FourUp::setWindow(const HuWindow& window) {
   colours_.setWindow(window);
   bar_->showWindow(colours_.window());
   for (const Slices& of : slices_) of.view->coloursChanged();
-}
-
-const QWidget* FourUp::bar() const {
-  return bar_;
 }
 
 void FourUp::setWorkspaces(const std::vector<WorkspaceBox>& boxes) {
@@ -333,10 +312,6 @@ void FourUp::arrange() {
     if (!place.isEmpty()) box(view)->setGeometry(place);
     box(view)->setVisible(!place.isEmpty());
   }
-}
-
-void FourUp::resizeEvent(QResizeEvent*) {
-  arrange();
 }
 
 void FourUp::paintEvent(QPaintEvent*) {

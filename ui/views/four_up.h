@@ -39,7 +39,9 @@ class FourUp : public QWidget {
   void refill(const std::shared_ptr<const Volume>& whole,
               const std::shared_ptr<const LabelMap>& labels);
   // What the writer changed since the last call, once for all views.
-  void pullChanges(Grid& grid);
+  void pullChanges(Grid& grid) {
+    if (mirror_->pull(grid)) changed();
+  }
   const VolumeMirror& mirror() const { return *mirror_; }
 
   // Of the slices; the 3-D view has its own.
@@ -47,8 +49,12 @@ class FourUp : public QWidget {
   // While a threshold is moved: which voxels the tissue has, gains and loses, over the slices.
   void setMark(const std::optional<SliceColours::Mark>& mark);
   // Another anatomy than before is looked at with its usual HU window.
-  void setAnatomy(const std::string& anatomy);
-  void setTools(const std::vector<ToolView>& tools);
+  void setAnatomy(const std::string& anatomy) {
+    if (std::exchange(anatomy_, anatomy) != anatomy) setWindow(usualWindow(anatomy));
+  }
+  void setTools(const std::vector<ToolView>& tools) {
+    for (const Slices& of : slices_) of.view->setTools(tools);
+  }
   // The point that all slices show; outside the case, the nearest in it.
   void setPoint(const Vec3& patient_mm);
   const Vec3& point_mm() const { return point_mm_; }
@@ -61,7 +67,7 @@ class FourUp : public QWidget {
   // Where arms reach, in all four; the chosen one is dragged in the slices.
   void setWorkspaces(const std::vector<WorkspaceBox>& boxes);
   // Above the views: what lies over them stays below it.
-  const QWidget* bar() const;
+  const QWidget* bar() const { return bar_; }
   void setOverlay(Overlay overlay, double opacity);
   // Other labels of the same voxels; labelsChanged() of each box that is changed in them.
   void showLabels(const std::shared_ptr<const LabelMap>& labels);
@@ -98,7 +104,7 @@ class FourUp : public QWidget {
   void workspaceMoved(const trephine::Vec3& centre_mm, bool done);  // as SliceView has it
 
  protected:
-  void resizeEvent(QResizeEvent* event) override;
+  void resizeEvent(QResizeEvent*) override { arrange(); }
   void paintEvent(QPaintEvent* event) override;
   bool eventFilter(QObject* watched, QEvent* event) override;
   void takeKeys(QWidget* view);

@@ -9,6 +9,7 @@
 #include <cmath>
 
 #include "ui/common/colours.h"
+#include "ui/common/making.h"
 
 namespace trephine {
 
@@ -42,8 +43,7 @@ SliceBar::SliceBar(Toolbox& toolbox, QWidget* parent)
   connect(&toolbox, &Toolbox::taken, this, &SliceBar::showTool);
 
   const auto list = [&](const char* name, const QString& tip) {
-    auto* box = new QComboBox(this);
-    box->setObjectName(name);
+    auto* box = named(new QComboBox(this), name);
     box->setToolTip(tip);
     box->setAccessibleName(tip);
     box->setSizePolicy(QSizePolicy::Ignored, QSizePolicy::Fixed);
@@ -65,8 +65,7 @@ SliceBar::SliceBar(Toolbox& toolbox, QWidget* parent)
   windows_->setPlaceholderText(tr("own"));
   overlays_ = list("sliceOverlay", tr("What is coloured over the slices (O)"));
   overlays_->addItems({tr("Plain"), tr("Tissues"), tr("Structures")});
-  opacity_ = new QSlider(Qt::Horizontal, this);
-  opacity_->setObjectName("sliceOpacity");
+  opacity_ = named(new QSlider(Qt::Horizontal, this), "sliceOpacity");
   opacity_->setRange(0, 100);
   opacity_->setPageStep(10);
   opacity_->setMinimumWidth(36);
@@ -88,8 +87,7 @@ SliceBar::SliceBar(Toolbox& toolbox, QWidget* parent)
 void SliceBar::addTool(ViewTool* tool) {
   const ViewTool::Facts& facts = tool->facts();
   if (!facts.symbol) return;
-  auto* button = new QToolButton(this);
-  button->setObjectName(facts.name);
+  auto* button = named(new QToolButton(this), facts.name);
   button->setIcon(iconOf(*tool));
   button->setIconSize({kSymbol, kSymbol});
   button->setToolTip(facts.tip);

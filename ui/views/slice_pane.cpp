@@ -72,10 +72,6 @@ QPointF SlicePane::toWidget(const QPointF& in_slice) const {
   return inBox(target(), shape_, in_slice);
 }
 
-double SlicePane::pixelsPerMm() const {
-  return hasSlice() ? target().width() / (shape_.width() * pixel_mm_.width()) : 0.0;
-}
-
 void SlicePane::zoomAt(const QPointF& in_widget, double factor) {
   if (!hasSlice()) return;
   const QPointF place = toSlice(in_widget);

@@ -24,7 +24,9 @@ class SlicePane : public QWidget {
   // Larger by the factor around a point of the widget.
   void zoomAt(const QPointF& in_widget, double factor);
   void fit();
-  double pixelsPerMm() const;
+  double pixelsPerMm() const {
+    return hasSlice() ? target().width() / (shape_.width() * pixel_mm_.width()) : 0.0;
+  }
 
  protected:
   // So many pixels of that size. An empty size: no slice, only the message.

@@ -7,6 +7,7 @@
 #include <QVBoxLayout>
 #include <QWheelEvent>
 
+#include "ui/common/making.h"
 #include "ui/common/words.h"
 #include "ui/views/steps.h"
 
@@ -17,26 +18,22 @@ constexpr int kNoAirHu = -900;  // what removeCouch counts as gone
 }  // namespace
 
 SlicePreview::SlicePreview(QWidget* parent) : QWidget(parent) {
-  canvas_ = new SliceCanvas(this);
-  canvas_->setObjectName("sliceCanvas");
+  canvas_ = named(new SliceCanvas(this), "sliceCanvas");
 
   windows_ = new QButtonGroup(this);
   auto* window_row = new QHBoxLayout;
   window_row->setSpacing(4);
-  auto* title = new QLabel(tr("Window"), this);
-  title->setProperty("quiet", true);
+  auto* title = looking(new QLabel(tr("Window"), this), {"quiet"});
   window_row->addWidget(title);
   for (int i = 0; i < int(kWindowPresets.size()); ++i) {
     const WindowPreset& preset = kWindowPresets[std::size_t(i)];
-    auto* button = new QToolButton(this);
-    button->setObjectName(QString("window%1").arg(i + 1));
+    auto* button = named(new QToolButton(this), QString("window%1").arg(i + 1), {"segment"});
     button->setText(QCoreApplication::translate("HuWindow", preset.name));
     button->setToolTip(tr("Width %1 HU around %2 HU (key %3). Only the picture changes.")
                            .arg(preset.window.width_hu)
                            .arg(preset.window.centre_hu)
                            .arg(i + 1));
     button->setCheckable(true);
-    button->setProperty("segment", true);
     button->setFocusPolicy(Qt::StrongFocus);
     connect(new QShortcut(QKeySequence(Qt::Key_1 + i), this), &QShortcut::activated, button,
             &QAbstractButton::click);
@@ -46,12 +43,10 @@ SlicePreview::SlicePreview(QWidget* parent) : QWidget(parent) {
   window_row->addStretch(1);
   windows_->button(int(kFirstPreset))->setChecked(true);
 
-  slider_ = new QSlider(Qt::Horizontal, this);
-  slider_->setObjectName("sliceSlider");
+  slider_ = named(new QSlider(Qt::Horizontal, this), "sliceSlider");
   slider_->setAccessibleName(tr("Slice"));
   slider_->setPageStep(kPageOfSlices);
-  position_ = new QLabel(this);
-  position_->setObjectName("slicePosition");
+  position_ = named(new QLabel(this), "slicePosition");
   position_->setMinimumWidth(fontMetrics().horizontalAdvance("Slice 0000 of 0000"));
   position_->setAlignment(Qt::AlignRight | Qt::AlignVCenter);
   auto* slider_row = new QHBoxLayout;

@@ -60,10 +60,6 @@ void SliceView::coloursChanged() {
   update();
 }
 
-void SliceView::labelsChanged(const VoxelBox& box) {
-  if (hasSlice() && touches(stack_, slice_, grid(), box)) coloursChanged();
-}
-
 // Where the slice stays only the lines of the other views move.
 void SliceView::setPoint(const Vec3& patient_mm) {
   const QPointF before = fromPatient(point_mm_);
@@ -94,10 +90,6 @@ void SliceView::setTools(const std::vector<ToolView>& tools) {
   const QRect before = toolsRect(shown(), tools_);
   tools_ = tools;
   update(before | toolsRect(shown(), tools_));
-}
-
-int SliceView::gridAxis() const {
-  return axisAlong(grid(), stack_.direction[2]);
 }
 
 Vec3 SliceView::toPatient_mm(const QPointF& in_widget) const {
@@ -186,11 +178,6 @@ void SliceView::setWorkspaces(const std::vector<WorkspaceBox>& boxes) {
   if (boxes == workspaces_) return;
   workspaces_ = boxes;
   update();
-}
-
-// Along the slice, as far as the pointer went.
-Vec3 SliceView::draggedWorkspace(const QPointF& to) const {
-  return workspace_before_mm_ + toPatient_mm(to) - toPatient_mm(pressed_);
 }
 
 void SliceView::showCursor(const QPointF& in_widget) {
@@ -293,36 +280,26 @@ void SliceView::wheelEvent(QWheelEvent* event) {
 
 bool SliceView::handleKey(int key) {
   if (toolbox_.useKey(key, &point_mm_) || toolbox_.takeByKey(key)) return true;
-  const auto go = [this](int k) {
-    setSlice(k);
+  const auto is = [key](auto... any) { return ((key == any) || ...); };
+  const int by = is(Qt::Key_Up, Qt::Key_Right)    ? 1
+                 : is(Qt::Key_Down, Qt::Key_Left) ? -1
+                 : is(Qt::Key_PageUp)             ? kPageOfSlices
+                 : is(Qt::Key_PageDown)           ? -kPageOfSlices
+                                                  : 0;
+  if (by != 0 || is(Qt::Key_Home, Qt::Key_End)) {
+    setSlice(is(Qt::Key_Home) ? 0 : is(Qt::Key_End) ? slices() - 1 : slice_ + by);
     return true;
-  };
-  switch (key) {
-    case Qt::Key_Up:
-    case Qt::Key_Right:
-      return go(slice_ + 1);
-    case Qt::Key_Down:
-    case Qt::Key_Left:
-      return go(slice_ - 1);
-    case Qt::Key_PageUp:
-      return go(slice_ + kPageOfSlices);
-    case Qt::Key_PageDown:
-      return go(slice_ - kPageOfSlices);
-    case Qt::Key_Home:
-      return go(0);
-    case Qt::Key_End:
-      return go(slices() - 1);
-    case Qt::Key_O:
-      emit overlayWanted();
-      return true;
-    case Qt::Key_Delete:
-    case Qt::Key_Backspace: {
-      const auto last = std::find_if(measures_.rbegin(), measures_.rend(),
-                                     [&](const Measure& m) { return shown().holds(m); });
-      if (last != measures_.rend()) measures_.erase(std::next(last).base());
-      update();
-      return true;
-    }
+  }
+  if (is(Qt::Key_O)) {
+    emit overlayWanted();
+    return true;
+  }
+  if (is(Qt::Key_Delete, Qt::Key_Backspace)) {
+    const auto last = std::find_if(measures_.rbegin(), measures_.rend(),
+                                   [&](const Measure& m) { return shown().holds(m); });
+    if (last != measures_.rend()) measures_.erase(std::next(last).base());
+    update();
+    return true;
   }
   if (key >= Qt::Key_1 && key < Qt::Key_1 + int(kWindowPresets.size())) {
     emit windowChosen(kWindowPresets[std::size_t(key - Qt::Key_1)].window);

@@ -26,7 +26,9 @@ class SliceView : public SlicePane {
   // What is new in the mirror. Draws only where the slice shows a voxel that changed.
   void takeChanges();
   void coloursChanged();
-  void labelsChanged(const VoxelBox& box);  // of the mirror's labels
+  void labelsChanged(const VoxelBox& box) {  // of the mirror's labels
+    if (hasSlice() && touches(stack_, slice_, grid(), box)) coloursChanged();
+  }
   // All three views show the slice that holds it.
   void setPoint(const Vec3& patient_mm);
   void setTools(const std::vector<ToolView>& tools);  // of the exercise
@@ -50,7 +52,8 @@ class SliceView : public SlicePane {
   // ---- For tools, while there is a case.
   const HuWindow& window() const { return colours_.window(); }
   const GridGeometry& grid() const { return mirror_->volume().geometry; }
-  int gridAxis() const;  // across which its slices lie
+  // Across which its slices lie.
+  int gridAxis() const { return axisAlong(grid(), stack_.direction[2]); }
   // The place of the slice's picture that is nearest to one of its plane.
   Vec3 nearestInSlice_mm(const Vec3& patient_mm) const;
   const std::optional<QPointF>& pointer() const { return pointer_; }
@@ -84,7 +87,10 @@ class SliceView : public SlicePane {
  private:
   bool handleKey(int key);
   ToolEvent eventAt(const QPointF& in_widget);
-  Vec3 draggedWorkspace(const QPointF& to) const;
+  // Along the slice, as far as the pointer went.
+  Vec3 draggedWorkspace(const QPointF& to) const {
+    return workspace_before_mm_ + toPatient_mm(to) - toPatient_mm(pressed_);
+  }
   struct Lines {  // of the other views
     bool across = false, down = false;
     explicit operator bool() const { return across || down; }

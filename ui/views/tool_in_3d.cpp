@@ -54,18 +54,6 @@ void ToolIn3D::setTraining(bool training) {
   showCursor();
 }
 
-bool ToolIn3D::isInHand() const {
-  return toolbox_.inHand().worksIn3D() && !training_ && !strip_.movesLight();
-}
-
-QPointF ToolIn3D::setPointer(const QPointF& place) {
-  return place - std::exchange(pointer_, place);
-}
-
-void ToolIn3D::followRing() {
-  if (toolbox_.inHand().ring_mm() > 0.0) showCursor();
-}
-
 // A brush is a ring as wide as it paints on what is under the pointer.
 void ToolIn3D::showCursor() {
   if (!strip_.movesLight() && !isInHand()) return view_.setCursor(Qt::ArrowCursor);

@@ -28,13 +28,17 @@ class ToolIn3D : public QObject {
   double mmPerUnitAt(const QPointF& place) const;
 
   // One that works in 3-D, and may.
-  bool isInHand() const;
+  bool isInHand() const {
+    return toolbox_.inHand().worksIn3D() && !training_ && !strip_.movesLight();
+  }
   // Where the pointer is; returns how far it went.
-  QPointF setPointer(const QPointF& place);
+  QPointF setPointer(const QPointF& place) { return place - std::exchange(pointer_, place); }
   const QPointF& pointer() const { return pointer_; }
   void showCursor();
   // A brush's cursor is as large as what it paints on, which is looked up.
-  void followRing();
+  void followRing() {
+    if (toolbox_.inHand().ring_mm() > 0.0) showCursor();
+  }
   void press();
   bool move(const QPointF& moved);  // whether it is pressed
   void release();

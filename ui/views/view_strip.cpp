@@ -4,6 +4,7 @@
 #include <QSignalBlocker>
 #include <QToolButton>
 
+#include "ui/common/making.h"
 #include "ui/views/device_pixels.h"
 
 namespace trephine {
@@ -71,9 +72,10 @@ ViewStrip::ViewStrip(SceneRenderer& renderer, QWidget* view)
                tr("Show everything again, with the light back in its place")),
           &QAction::triggered, this, &ViewStrip::reset);
   for (const double way : {1.0, -1.0}) {
-    auto* step = new QAction(way > 0 ? tr("Clip plane nearer") : tr("Clip plane farther"), this);
+    auto* step =
+        named(new QAction(way > 0 ? tr("Clip plane nearer") : tr("Clip plane farther"), this),
+              way > 0 ? "planeNearer" : "planeFarther");
     step->setToolTip(tr("By %1 mm").arg(kPlaneStep_mm));
-    step->setObjectName(way > 0 ? "planeNearer" : "planeFarther");
     step->setShortcut(way > 0 ? Qt::Key_Comma : Qt::Key_Period);
     step->setShortcutContext(Qt::WidgetShortcut);
     view->addAction(step);
@@ -90,8 +92,7 @@ ViewStrip::ViewStrip(SceneRenderer& renderer, QWidget* view)
 
 QAction* ViewStrip::make(const char* name, const QString& text, const QString& word,
                          const QKeySequence& key, const QString& tip) {
-  auto* action = new QAction(text, this);
-  action->setObjectName(name);
+  auto* action = named(new QAction(text, this), name);
   action->setShortcut(key);
   action->setShortcutContext(Qt::WidgetShortcut);  // the letters belong to fields elsewhere
   action->setIconText(word);

@@ -33,10 +33,10 @@ AppContext::AppContext(QMainWindow& window, std::filesystem::path recordings, co
       workstation_(policy),
       guards_(workstation_, messages_),
       case_views_(window, workstation_, messages_, guards_) {
-  undo_ = makeAction(window, Symbol::undo, "undo", tr("Undo"), QKeySequence(Qt::CTRL | Qt::Key_Z),
+  undo_ = makeAction(window, Symbol::undo, "undo", tr("Undo"), Qt::CTRL | Qt::Key_Z,
                      tr("Put the last stroke's tissue back"));
-  redo_ = makeAction(window, Symbol::redo, "redo", tr("Redo"),
-                     QKeySequence(Qt::CTRL | Qt::SHIFT | Qt::Key_Z), tr("Cut the stroke again"));
+  redo_ = makeAction(window, Symbol::redo, "redo", tr("Redo"), Qt::CTRL | Qt::SHIFT | Qt::Key_Z,
+                     tr("Cut the stroke again"));
   redo_->setShortcuts(
       {QKeySequence(Qt::CTRL | Qt::SHIFT | Qt::Key_Z), QKeySequence(Qt::CTRL | Qt::Key_Y)});
   // After the views have shown it.
@@ -79,10 +79,6 @@ void AppContext::openExercise(const std::filesystem::path& file, Place then) {
     }
     return stored;
   });
-}
-
-void AppContext::setTrying(bool trying) {
-  if (std::exchange(trying_, trying) != trying) emit tryingChanged();
 }
 
 }  // namespace trephine

@@ -30,7 +30,9 @@ class AppContext : public QObject {
   // Of the storage folder: there is another one, or one is called otherwise.
   void tellExercises() { emit exercisesChanged(); }
   // An exercise is tried from Prepare, and one comes back there.
-  void setTrying(bool trying);
+  void setTrying(bool trying) {
+    if (std::exchange(trying_, trying) != trying) emit tryingChanged();
+  }
   bool trying() const { return trying_; }
 
   // Of the exercise while one runs, else of what is prepared: who serves them enables them.

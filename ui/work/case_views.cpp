@@ -67,10 +67,6 @@ void CaseViews::exerciseBegan() {
   setCuts(true, false);
 }
 
-void CaseViews::exerciseEnded(bool anything_cut) {
-  setCuts(carved_, anything_cut);
-}
-
 void CaseViews::showWholeCase() {
   workstation_.makeWhole();
   const Placement& placed = *workstation_.placed();

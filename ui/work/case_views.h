@@ -21,7 +21,7 @@ class CaseViews : public QObject {
   bool carved() const { return carved_; }
   bool cutsUnsaved() const { return cuts_unsaved_; }
   void exerciseBegan();
-  void exerciseEnded(bool anything_cut);
+  void exerciseEnded(bool anything_cut) { setCuts(carved_, anything_cut); }
   void showWholeCase();
   void lookAtCase();
   // As a PNG; the voxels as they are now.

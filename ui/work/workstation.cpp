@@ -1,6 +1,5 @@
 #include "ui/work/workstation.h"
 
-#include "ui/common/words.h"
 #include "ui/work/arms_of_place.h"
 
 namespace trephine {
@@ -81,42 +80,6 @@ void Workstation::onChange(DeskChange change) {
     case DeskChange::saving_ended:
       return emit savingEnded();
   }
-}
-
-void Workstation::onOpeningProgress(double fraction, const std::string& step) {
-  emit openingProgressed(fraction, toQt(step));
-}
-
-void Workstation::onSavingProgress(double fraction, const std::string& step) {
-  emit savingProgressed(fraction, toQt(step));
-}
-
-void Workstation::onExerciseOpening(const Exercise& exercise, const std::filesystem::path& file) {
-  emit exerciseOpening(exercise, file);
-}
-
-void Workstation::onQuestion(const StructureQuestion& question) {
-  emit asked(question);
-}
-
-void Workstation::onRecordingFailed(const Error& error) {
-  emit recordingFailed(error);
-}
-
-void Workstation::onSessionEnded(Session& session) {
-  emit sessionEnded(session);
-}
-
-void Workstation::onReport(const RunReport& report) {
-  emit exerciseReported(report);
-}
-
-void Workstation::onSaved(const std::string& said) {
-  emit saved(toQt(said));
-}
-
-void Workstation::onFailure(const Error& error) {
-  emit failed(error);
 }
 
 }  // namespace trephine

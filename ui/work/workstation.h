@@ -6,6 +6,7 @@
 #include <QTimer>
 
 #include "desk/desk.h"
+#include "ui/common/words.h"
 #include "ui/work/import_task.h"
 
 namespace trephine {
@@ -60,15 +61,21 @@ class Workstation : public QObject, public Desk, private DeskEvents {
   void takeNow();
 
   void onChange(DeskChange change) override;
-  void onOpeningProgress(double fraction, const std::string& step) override;
-  void onSavingProgress(double fraction, const std::string& step) override;
-  void onExerciseOpening(const Exercise& exercise, const std::filesystem::path& file) override;
-  void onQuestion(const StructureQuestion& question) override;
-  void onRecordingFailed(const Error& error) override;
-  void onSessionEnded(Session& session) override;
-  void onReport(const RunReport& report) override;
-  void onSaved(const std::string& said) override;
-  void onFailure(const Error& error) override;
+  void onOpeningProgress(double fraction, const std::string& step) override {
+    emit openingProgressed(fraction, toQt(step));
+  }
+  void onSavingProgress(double fraction, const std::string& step) override {
+    emit savingProgressed(fraction, toQt(step));
+  }
+  void onExerciseOpening(const Exercise& exercise, const std::filesystem::path& file) override {
+    emit exerciseOpening(exercise, file);
+  }
+  void onQuestion(const StructureQuestion& question) override { emit asked(question); }
+  void onRecordingFailed(const Error& error) override { emit recordingFailed(error); }
+  void onSessionEnded(Session& session) override { emit sessionEnded(session); }
+  void onReport(const RunReport& report) override { emit exerciseReported(report); }
+  void onSaved(const std::string& said) override { emit saved(toQt(said)); }
+  void onFailure(const Error& error) override { emit failed(error); }
 
   QTimer look_again_;  // while the desk waits for what wakes nobody
   ImportTask import_;
