@@ -11,7 +11,7 @@
 #include <iterator>
 #include <utility>
 
-#include "ui/cases/named_button.h"
+#include "ui/common/named_parts.h"
 #include "ui/common/colours.h"
 #include "ui/common/icons.h"
 #include "ui/common/placing.h"

@@ -3,7 +3,7 @@
 #include <QVBoxLayout>
 
 #include "ui/cases/import_page.h"
-#include "ui/cases/named_button.h"
+#include "ui/common/named_parts.h"
 #include "ui/common/icons.h"
 #include "ui/common/placing.h"
 #include "ui/common/words.h"

@@ -13,6 +13,7 @@
 #include "ui/common/question.h"
 #include "ui/common/words.h"
 #include "ui/structures/structure_report.h"
+#include "ui/structures/structure_shaping.h"
 #include "volume/segmentation.h"
 
 namespace trephine {
@@ -253,7 +254,7 @@ bool StructureTab::key(int key) {
   switch (key) {
     case Qt::Key_K:
       emit frontWanted();
-      editor_.makeSkull();
+      makeSkull(editor_);
       break;
     case Qt::Key_S:
       emit frontWanted();

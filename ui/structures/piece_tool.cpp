@@ -1,3 +1,4 @@
+#include "ui/structures/structure_shaping.h"
 #include "ui/structures/structure_tool.h"
 
 namespace trephine {
@@ -8,7 +9,7 @@ class PieceTool : public StructureTool {
  public:
   using StructureTool::StructureTool;
   void press(const ToolEvent& event) override {
-    if (event.in_picture) editor_.keepPieceAt(event.at_mm);
+    if (event.in_picture) keepPieceAt(editor_, event.at_mm);
   }
 };
 

@@ -2,14 +2,11 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
-#include <new>
 #include <utility>
 
 #include "base/codes.h"
-#include "base/memory.h"
-#include "structures/skin.h"
-#include "structures/skull.h"
+#include "library/codes.h"
+#include "structures/grow_box.h"
 #include "ui/common/words.h"
 #include "ui/views/slice_plane.h"
 
@@ -17,12 +14,7 @@ namespace trephine {
 
 namespace {
 
-bool isIn(const VoxelBox& box, const Index3& voxel) {
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    if (voxel[axis] < box.low[axis] || voxel[axis] >= box.high[axis]) return false;
-  }
-  return true;
-}
+const Vec3 kWallColour(0.93);
 
 }  // namespace
 
@@ -36,21 +28,17 @@ void StructureEditor::setCase(std::shared_ptr<const Volume> volume,
                               const std::shared_ptr<const LabelMap>& structures) {
   work_.cancel();
   volume_ = std::move(volume);
-  map_.reset();
-  given_ = structures;
-  history_.clear();
+  structures_.start(structures);
   preview_.reset();
   box_.reset();
   regrow_.reset();
-  wall_ = 0;
-  shell_of_.clear();
   stroke_.reset();
-  edited_ = untaken_ = false;
-  current_ = given_ && !given_->structures.empty() ? given_->structures.front().label : 0;
-  countAll();
+  saved_ = structures_.changes();
+  taken_ = saved_;
+  current_ =
+      structures && !structures->structures.empty() ? structures->structures.front().label : 0;
   emit boxChanged();
-  emit listChanged();
-  emit stateChanged();
+  changedRows();
 }
 
 void StructureEditor::setLocked(const QString& why) {
@@ -62,43 +50,27 @@ void StructureEditor::setLocked(const QString& why) {
 }
 
 std::shared_ptr<const LabelMap> StructureEditor::takeEdited() {
-  if (preview_ || stroke_ || busy() || !std::exchange(untaken_, false)) return nullptr;
+  if (preview_ || stroke_ || busy() || taken_ == changes()) return nullptr;
+  taken_ = changes();
   return withoutWall();
 }
 
-void StructureEditor::touched() {
-  edited_ = untaken_ = true;
-  ++changes_;
+void StructureEditor::giveBack() {
+  taken_ = structures_.isOwn() ? std::nullopt : std::optional(changes());
 }
 
 // Null where nothing but a wall was made, or for want of memory.
 std::shared_ptr<LabelMap> StructureEditor::withoutWall() {
-  const std::shared_ptr<const LabelMap> shown = map();
-  if (!shown) return nullptr;
-  try {
-    auto copy = std::make_shared<LabelMap>(*shown);
-    if (wall_ != 0) {
-      std::ranges::replace(copy->labels, std::uint8_t(wall_), std::uint8_t(0));
-      std::erase_if(copy->structures, [&](const Structure& s) { return s.label == wall_; });
-    }
-    return copy->structures.empty() ? nullptr : copy;
-  } catch (const std::bad_alloc&) {
-    emit failed(outOfMemory("to use the structures", "the case"));
-    return nullptr;
-  }
+  const Result<std::shared_ptr<LabelMap>> copy = structures_.withoutWall();
+  if (copy) return *copy;
+  emit failed(copy.error());
+  return nullptr;
 }
 
 std::shared_ptr<const LabelMap> StructureEditor::finished() {
   const std::shared_ptr<LabelMap> copy = withoutWall();
   if (copy) *copy = withoutEmpty(std::move(*copy));
   return copy;
-}
-
-// What is made takes the wall's voxels: they are of nothing.
-Labels StructureEditor::overWall() const {
-  Labels over;
-  if (wall_ != 0) over.set(std::size_t(wall_));
-  return over;
 }
 
 bool StructureEditor::mayChange() {
@@ -110,67 +82,99 @@ bool StructureEditor::mayChange() {
     emit said(tr("Wait for what is being done, or cancel it."));
   } else {
     emit said({});  // what was said of the last one
-    return makeOwn();
+    if (structures_.isOwn()) return true;
+    const Status own = structures_.makeOwn(volume_->geometry);
+    if (own) {
+      emit listChanged();  // it is another that is shown now
+    } else {
+      emit failed(own.error());
+    }
+    return own.ok();
   }
   return false;
 }
 
-// A map of its own, where there is none yet.
-bool StructureEditor::makeOwn() {
-  if (map_) return true;
-  try {
-    if (given_) {
-      map_ = std::make_shared<LabelMap>(*given_);
-    } else {
-      const std::size_t voxels = volume_->geometry.voxelCount();
-      map_ = std::make_shared<LabelMap>(
-          LabelMap{volume_->geometry, std::vector<std::uint8_t>(voxels)});
-    }
-  } catch (const std::bad_alloc&) {
-    emit failed(outOfMemory("to change structures", "the case"));
-    return false;
-  }
-  given_.reset();
-  emit listChanged();  // it is another that is shown now
+bool StructureEditor::begin() {
+  if (!mayChange()) return false;
+  leavePreview();
   return true;
 }
 
-const Structure* StructureEditor::structure(int label) const {
-  const LabelMap* shown = map_ ? map_.get() : given_.get();
-  return shown ? shown->find(label) : nullptr;
+void StructureEditor::changedRows() {
+  emit listChanged();
+  emit stateChanged();
+}
+
+QString StructureEditor::nameOf(int label) const {
+  const Structure* of = structures_.find(label);
+  return of ? toQt(of->name) : QString();
+}
+
+// --- The structures as rows: names, colours, which is current, those that come and go ---
+
+void StructureEditor::setCurrent(int label) {
+  if ((label != 0 && !structures_.find(label)) || current_ == label) return;
+  current_ = label;
+  emit listChanged();
+}
+
+Status StructureEditor::rename(int label, const QString& name) {
+  const std::string wanted = structureName(name.toStdString());
+  if (wanted.empty()) {
+    return Error{code::kBadName, "A structure needs a name", "", "Type one"};
+  }
+  if (!mayChange() || !structures_.find(label)) return {};
+  if (!structures_.rename(tr("Rename").toStdString(), label, wanted)) {
+    return Error{code::kBadName,
+                 "Another structure is called '" + structures_.find(wanted)->name + "'", "",
+                 "Choose another name"};
+  }
+  changedRows();
+  return {};
+}
+
+bool StructureEditor::setColour(int label, const Vec3& colour) {
+  if (!mayChange() || !structures_.find(label)) return false;
+  structures_.recolour(tr("Colour").toStdString(), label, colour);
+  changedRows();
+  return true;
+}
+
+void StructureEditor::remove(int label) {
+  if (!mayChange() || !structures_.find(label)) return;
+  leavePreview();
+  const int whole = structures_.layerOf(label);
+  put(tr("Delete"), structures_.removalOf(label));
+  if (current_ == label) chooseAnother();
+  if (whole != 0) emit said(tr("\"%1\" has its layer back.").arg(nameOf(whole)));
+}
+
+void StructureEditor::chooseAnother() {
+  current_ = structures_.first();
+  emit listChanged();
+}
+
+std::string StructureEditor::freeName(const QString& wanted) const {
+  const std::string base = structureName(wanted.toStdString());
+  return structures_.freeName(base.empty() ? tr("structure").toStdString() : base);
+}
+
+int StructureEditor::addStructure(const std::string& name, const std::string& like) {
+  if (const Structure* there = structures_.find(name)) return there->label;
+  const Result<int> label = structures_.freeLabel();
+  if (!label) {
+    emit failed(label.error());
+    return 0;
+  }
+  Vec3 colour = colourOfNew(tissues_, name, *label);
+  if (colour == labelColour(*label) && !like.empty()) colour = colourOfNew(tissues_, like, *label);
+  structures_.addRow({*label, name, colour});
+  return *label;
 }
 
 // --- What changes voxels ---
 
-void StructureEditor::countAll() {
-  ml_.fill(0.0);
-  const std::shared_ptr<const LabelMap> shown = map();
-  if (!shown) return;
-  std::array<std::size_t, 256> counts{};
-  for (const std::uint8_t label : shown->labels) ++counts[label];
-  const double voxel_ml = shown->geometry.voxelVolume_mm3() / 1000.0;
-  for (std::size_t n = 1; n < 256; ++n) ml_[n] = double(counts[n]) * voxel_ml;
-}
-
-void StructureEditor::count(const LabelEdit& edit, bool added) {
-  const double voxel_ml = map_->geometry.voxelVolume_mm3() / 1000.0;
-  for (const LabelEdit::Run& run : edit.runs) {
-    const double ml = double(run.count) * voxel_ml * (added ? 1.0 : -1.0);
-    ml_[run.after] += ml;
-    ml_[run.before] -= ml;
-  }
-  for (double& ml : ml_) {
-    if (std::abs(ml) < 0.1 * voxel_ml) ml = 0.0;  // what adding and taking away leaves
-  }
-}
-
-void StructureEditor::applied(const LabelEdit& edit, bool added) {
-  count(edit, added);
-  touched();
-  emit changed(edit.box);
-}
-
-void StructureEditor::put(const std::string& step, const Result<LabelEdit>& edit, bool joins) {
+void StructureEditor::put(const QString& step, const Result<LabelEdit>& edit, bool joins) {
   if (!edit) {
     emit failed(edit.error());
     return;
@@ -181,62 +185,42 @@ void StructureEditor::put(const std::string& step, const Result<LabelEdit>& edit
     }
     return;
   }
-  trephine::apply(*map_, *edit);
-  applied(*edit, true);
-  const std::size_t dropped = history_.dropped();
-  history_.add(step, *edit, joins);
-  if (history_.dropped() > dropped) {
+  const std::size_t dropped = structures_.put(step.toStdString(), *edit, joins);
+  emit changed(edit->box);
+  if (dropped > 0) {
     emit said(tr("The first steps can no longer be undone: their memory is full."));
   }
-  if (stroke_) return;  // the list and what can be undone follow at its end
-  emit listChanged();
-  emit stateChanged();
+  if (!stroke_) changedRows();  // the list and what can be undone follow at its end
 }
 
-// `take` gets what the work made, unless the case is gone by then.
-template <class Work, class Take>
-void StructureEditor::inBackground(Work work, Take take) {
-  using Made = std::invoke_result_t<Work&, const Progress&>;
-  work_.run(std::move(work), [this, take, own = map_](Made made) {
-    if (map_ != own) return;
-    if (made) return take(*std::move(made));
-    const Error& error = made.error();
-    if (error.code == code::kCancelled) return emit said(tr("Cancelled: nothing was changed."));
-    // A place that was missed is clicked anew: no dialog for that.
-    if (error.where == "seed" || error.where == "at") {
-      return emit said(toQt(error.what) + QStringLiteral(". ") + toQt(error.next) + '.');
-    }
-    emit failed(error);
-    emit said({});
-  });
-}
-
-template <class Make>
-void StructureEditor::editInBackground(Make make, const QString& step) {
-  inBackground(std::move(make),
-               [this, step](LabelEdit edit) { put(step.toStdString(), std::move(edit)); });
+void StructureEditor::sayNotMade(const Error& error) {
+  if (error.code == code::kCancelled) return emit said(tr("Cancelled: nothing was changed."));
+  // A place that was missed is clicked anew: no dialog for that.
+  if (error.where == "seed" || error.where == "at") {
+    return emit said(toQt(error.what) + QStringLiteral(". ") + toQt(error.next) + '.');
+  }
+  emit failed(error);
+  emit said({});
 }
 
 void StructureEditor::growAt(Vec3 patient_mm, const QString& name, const GrowOptions& options) {
-  if (!mayChange()) return;
-  leavePreview();
-  const std::optional<Index3> voxel = voxelAt(map_->geometry, patient_mm);
+  if (!begin()) return;
+  const std::optional<Index3> voxel = voxelAt(volume_->geometry, patient_mm);
   if (!voxel) return emit said(tr("Click inside the scan."));
-  if (const int label =
-          map_->labels[map_->geometry.indexOf((*voxel)[0], (*voxel)[1], (*voxel)[2])]) {
-    const Structure* there = map_->find(label);
+  if (const int label = structures_.labelAt(*voxel)) {
+    const QString there = structures_.find(label) ? nameOf(label) : tr("label %1").arg(label);
     return emit said(tr("This place is of \"%1\" already: click beside it, or delete that one to "
                         "grow it anew.")
-                         .arg(there ? toQt(there->name) : tr("label %1").arg(label)));
+                         .arg(there));
   }
-  if (box_ && !isIn(*box_, *voxel)) {
+  if (box_ && !holds(*box_, *voxel)) {
     return emit said(tr("Click inside the box, or take the box away."));
   }
   grown_with_ = options;
   GrowOptions within = options;
   within.box = box_;
   // Without any, looking for them would take a while for nothing.
-  if (std::ranges::any_of(ml_, [](double ml) { return ml > 0.0; })) within.others = map_;
+  if (structures_.anyVoxels()) within.others = map();
   inBackground(
       [volume = volume_, patient_mm, within](const Progress& progress) {
         return grow(*volume, patient_mm, within, progress);
@@ -249,79 +233,54 @@ void StructureEditor::growAt(Vec3 patient_mm, const QString& name, const GrowOpt
 // As a preview.
 void StructureEditor::showGrown(const Growth& grown, const std::string& name, const Vec3& seed_mm) {
   if (!locked_.isEmpty()) return;  // an exercise began meanwhile
-  preview_has_new_row_ = !map_->find(name);
+  const bool is_new = !structures_.find(name);
   const int label = addStructure(name);
   if (label == 0) return;
   // Only what no other structure has.
-  auto edit = maskEdit(*map_, grown.mask.labels, label);
+  const Result<LabelEdit> edit = maskEdit(*map(), grown.mask.labels, label);
   if (!edit) {
     emit failed(edit.error());
     return;
   }
-  preview_edit_ = *std::move(edit);
-  trephine::apply(*map_, preview_edit_);
-  count(preview_edit_, true);
-  preview_ =
-      Preview{label, ml_[std::size_t(label)], grown.hu, grown.leaked, seed_mm, grown.seed_off_mm};
+  // A row that was there before is one that undo may fill again.
+  structures_.tryOut(*edit, is_new ? label : 0);
+  preview_ = Preview{label, millilitres(label), grown.hu, grown.leaked, seed_mm, grown.seed_off_mm};
   current_ = label;
-  emit changed(preview_edit_.box);
-  emit listChanged();
-  emit stateChanged();
+  emit changed(edit->box);
+  changedRows();
 }
 
 void StructureEditor::takePreview() {
   if (!preview_ || !mayChange()) return;
-  const Structure* grown = map_->find(preview_->label);
+  structures_.takeTried(tr("Grow %1").arg(nameOf(preview_->label)).toStdString());
   preview_.reset();
-  touched();
-  history_.add(tr("Grow %1").arg(toQt(grown->name)).toStdString(),
-               std::exchange(preview_edit_, {}));
-  emit listChanged();
-  emit stateChanged();
+  changedRows();
 }
 
 void StructureEditor::leavePreview() {
   if (!preview_) return;
-  const int label = preview_->label;
   preview_.reset();
-  trephine::undo(*map_, preview_edit_);
-  count(preview_edit_, false);
-  const VoxelBox box = preview_edit_.box;
-  preview_edit_ = {};
-  // A row that was there before is one that undo may fill again.
-  if (preview_has_new_row_) {
-    std::erase_if(map_->structures, [&](const Structure& s) { return s.label == label; });
-  }
-  if (!map_->find(current_) || ml_[std::size_t(current_)] == 0.0) chooseAnother();
+  const VoxelBox box = structures_.leaveTried();
+  if (!structures_.find(current_) || !structures_.hasVoxels(current_)) chooseAnother();
   emit changed(box);
-  emit listChanged();
-  emit stateChanged();
+  changedRows();
 }
 
 void StructureEditor::growAnew() {
   if (!preview_ || busy()) return;
-  const Structure* grown = map_->find(preview_->label);
-  growAt(preview_->seed_mm, grown ? toQt(grown->name) : QString(), grown_with_);
+  growAt(preview_->seed_mm, nameOf(preview_->label), grown_with_);
 }
 
 void StructureEditor::limitTo(const Vec3& from_mm, const Vec3& to_mm, int across) {
   if (!volume_) return;
-  const GridGeometry& g = volume_->geometry;
-  const Vec3 from = toVoxel(g, from_mm), to = toVoxel(g, to_mm);
-  VoxelBox box = box_.value_or(VoxelBox{{0, 0, 0}, g.size});
-  for (int axis = 0; axis < 3; ++axis) {
-    if (axis == across) continue;
-    const auto a = std::size_t(axis);
-    const double last = g.size[a];
-    box.low[a] = int(std::clamp(std::ceil(std::min(from[axis], to[axis])), 0.0, last));
-    box.high[a] = int(std::clamp(std::floor(std::max(from[axis], to[axis])) + 1.0, 0.0, last));
-    if (box.low[a] >= box.high[a]) {
-      return emit said(
-          tr("That box holds nothing of the scan: draw it wider, inside of the scan."));
-    }
+  const GridGeometry& grid = volume_->geometry;
+  const std::optional<VoxelBox> box =
+      withSides(box_.value_or(VoxelBox{{0, 0, 0}, grid.size}), grid, from_mm, to_mm, across);
+  if (!box) {
+    return emit said(tr("That box holds nothing of the scan: draw it wider, inside of the scan."));
   }
-  const auto clicked = preview_ ? voxelAt(g, preview_->seed_mm) : std::nullopt;
-  if (clicked && !isIn(box, *clicked)) {
+  const auto clicked = preview_ ? voxelAt(grid, preview_->seed_mm) : std::nullopt;
+  if (clicked && !holds(*box, *clicked)) {
     return emit said(tr("Draw the box around the place that was clicked."));
   }
   box_ = box;
@@ -331,12 +290,7 @@ void StructureEditor::limitTo(const Vec3& from_mm, const Vec3& to_mm, int across
 }
 
 std::optional<Vec3> StructureEditor::boxSize_mm() const {
-  if (!box_) return {};
-  Vec3 mm = volume_->geometry.spacing_mm;
-  for (int axis = 0; axis < 3; ++axis) {
-    mm[axis] *= box_->high[std::size_t(axis)] - box_->low[std::size_t(axis)];
-  }
-  return mm;
+  return box_ ? std::optional(size_mm(*box_, volume_->geometry)) : std::nullopt;
 }
 
 void StructureEditor::leaveBox() {
@@ -347,108 +301,16 @@ void StructureEditor::leaveBox() {
   growAnew();
 }
 
-void StructureEditor::putMask(const std::vector<std::uint8_t>& mask, const std::string& name,
-                              const std::string& like) {
-  const int label = addStructure(name, like);
-  if (label == 0) return;
-  put(name, maskEdit(*map_, mask, label, overWall()));
-  setCurrent(label);
-}
-
-void StructureEditor::makeSkull() {
-  if (!mayChange()) return;
-  leavePreview();
-  inBackground([volume = volume_](const Progress& progress) { return skullOf(*volume, progress); },
-               [this](const Skull& made) {
-                 putMask(made.mask.labels, "skull", "bone");
-                 sayMade({});
-               });
-}
-
-// What is current now was made.
-void StructureEditor::sayMade(const QString& more) {
-  if (const Structure* of = structure(current_)) {
-    emit said(tr("%1: %2 mL.").arg(toQt(of->name)).arg(millilitres(current_), 0, 'f', 0) + more);
-  }
-}
-
-// A layer is a voxel thick at least.
-QString StructureEditor::wordsIfThin(double thickness_mm) const {
-  const Vec3& mm = volume_->geometry.spacing_mm;
-  const double voxel_mm = std::max({mm.x, mm.y, mm.z});
-  if (thickness_mm >= voxel_mm) return {};
-  return ' ' +
-         tr("It is one voxel thick, which is up to %1 mm on this CT.").arg(voxel_mm, 0, 'f', 1);
-}
-
-void StructureEditor::makeSkin(double thickness_mm) {
-  if (!mayChange()) return;
-  leavePreview();
-  inBackground([volume = volume_, thickness_mm](
-                   const Progress& progress) { return skinOf(*volume, thickness_mm, progress); },
-               [this, thickness_mm](const Skin& made) {
-                 putMask(made.mask.labels, "skin", "scalp");
-                 sayMade(wordsIfThin(thickness_mm));
-               });
-}
-
-void StructureEditor::makeShell(double thickness_mm, const QString& name) {
-  if (!mayChange() || current_ == 0) return;
-  leavePreview();
-  const int of = current_;
-  const int into = addStructure(freeName(name));
-  if (into == 0) return;
-  inBackground([map = std::shared_ptr<const LabelMap>(map_), of, thickness_mm,
-                into](const Progress& p) { return shellEdit(*map, of, thickness_mm, into, p); },
-               [this, of, into, thickness_mm](LabelEdit edit) {
-                 const bool any = !edit.empty();
-                 put(tr("Shell").toStdString(), std::move(edit));
-                 if (!any) return;
-                 shell_of_[into] = of;
-                 emit said(tr("\"%1\" has %2 mL of \"%3\", which keeps %4 mL. Deleting it gives "
-                              "them back.")
-                               .arg(toQt(map_->find(into)->name))
-                               .arg(millilitres(into), 0, 'f', 0)
-                               .arg(toQt(map_->find(of)->name))
-                               .arg(millilitres(of), 0, 'f', 0) +
-                           wordsIfThin(thickness_mm));
-               });
-}
-
-void StructureEditor::fillHoles() {
-  if (!mayChange() || current_ == 0) return;
-  leavePreview();
-  editInBackground([map = std::shared_ptr<const LabelMap>(map_), of = current_](
-                       const Progress& p) { return holesEdit(*map, of, std::nullopt, {}, p); },
-                   tr("Fill holes"));
-}
-
-void StructureEditor::smooth(double radius_mm) {
-  if (!mayChange() || current_ == 0) return;
-  leavePreview();
-  editInBackground([map = std::shared_ptr<const LabelMap>(map_), of = current_, radius_mm](
-                       const Progress& p) { return smoothEdit(*map, of, radius_mm, {}, p); },
-                   tr("Smooth"));
-}
-
-void StructureEditor::keepPieceAt(const Vec3& patient_mm) {
-  if (!mayChange() || current_ == 0) return;
-  leavePreview();
-  editInBackground([map = std::shared_ptr<const LabelMap>(map_), of = current_,
-                    patient_mm](const Progress&) { return keepPieceEdit(*map, of, patient_mm); },
-                   tr("Keep the piece"));
-}
-
 // --- Undo ---
 
 std::optional<QString> StructureEditor::undoText() const {
   if (preview_) return tr("Grow");
-  const std::string* name = history_.toUndo();
+  const std::string* name = structures_.toUndo();
   return name ? std::optional(toQt(*name)) : std::nullopt;
 }
 
 std::optional<QString> StructureEditor::redoText() const {
-  const std::string* name = preview_ ? nullptr : history_.toRedo();
+  const std::string* name = preview_ ? nullptr : structures_.toRedo();
   return name ? std::optional(toQt(*name)) : std::nullopt;
 }
 
@@ -456,23 +318,85 @@ void StructureEditor::undo() {
   if (!mayChange()) return;
   if (preview_) return leavePreview();
   stroke_.reset();
-  stepped(history_.undo(*map_));
+  stepped(structures_.undo());
 }
 
 void StructureEditor::redo() {
   if (!mayChange() || preview_) return;
   stroke_.reset();
-  stepped(history_.redo(*map_));
+  stepped(structures_.redo());
 }
 
 void StructureEditor::stepped(const std::optional<VoxelBox>& box) {
   if (!box) return;
-  countAll();
-  touched();
   if (box->high[0] > box->low[0]) emit changed(*box);
-  if (current_ != 0 && ml_[std::size_t(current_)] == 0.0) chooseAnother();
-  emit listChanged();
-  emit stateChanged();
+  if (current_ != 0 && !structures_.hasVoxels(current_)) chooseAnother();
+  changedRows();
+}
+
+// --- Strokes of the brush and of the wall ---
+
+void StructureEditor::beginStroke(const Vec3& patient_mm, const Brush& brush, const QString& name) {
+  if (!mayChange()) return;
+  regrow_.reset();
+  if (preview_) takePreview();  // it is what one mends
+  if (current_ == 0) {
+    if (brush.erase) return emit said(tr("Choose the structure to erase from."));
+    current_ = addStructure(freeName(name));
+    if (current_ == 0) return;
+    emit listChanged();
+  }
+  stroke_ = Stroke{current_, brush, patient_mm};
+  if (current_ != structures_.wall()) stroke_->brush.over |= structures_.overWall();
+  moveStroke(patient_mm);
+}
+
+void StructureEditor::beginWall(const Vec3& patient_mm, const Brush& brush) {
+  if (!mayChange()) return;
+  std::optional<Regrow> again;
+  if (preview_) again = Regrow{preview_->seed_mm, nameOf(preview_->label)};  // it ran through here
+  leavePreview();
+  const bool is_new = !structures_.find(structures_.wall());
+  const Result<int> wall = structures_.makeWall(tr("wall").toStdString(), kWallColour);
+  if (!wall) {
+    emit failed(wall.error());
+    return;
+  }
+  if (is_new) emit listChanged();
+  const auto voxel = voxelAt(volume_->geometry, patient_mm);
+  const int there = voxel ? structures_.labelAt(*voxel) : 0;
+  if (there != *wall && structures_.find(there)) {
+    emit said(tr("The wall goes around \"%1\", which counts already: delete it first, paint, and "
+                 "grow it anew.")
+                  .arg(nameOf(there)));
+  }
+  stroke_ = Stroke{*wall, brush, patient_mm};
+  regrow_ = again;
+  moveStroke(patient_mm);
+}
+
+void StructureEditor::moveStroke(const Vec3& patient_mm) {
+  if (!stroke_) return;
+  const std::array path{stroke_->last_mm, patient_mm};
+  const auto edit = brushEdit(*map(), stroke_->label, path, stroke_->brush,
+                              stroke_->brush.hu ? volume_.get() : nullptr);
+  stroke_->last_mm = patient_mm;
+  if (!edit) {
+    stroke_.reset();
+    emit failed(edit.error());
+    return;
+  }
+  if (edit->empty()) return;
+  put(stroke_->brush.erase ? tr("Erase") : tr("Brush"), edit, std::exchange(stroke_->any, true));
+}
+
+void StructureEditor::endStroke() {
+  if (!stroke_) return;
+  stroke_.reset();
+  changedRows();
+  if (const auto again = std::exchange(regrow_, {})) {
+    growAt(again->seed_mm, again->name, grown_with_);
+  }
 }
 
 }  // namespace trephine

@@ -1,6 +1,6 @@
-// The structures of the open case while a person makes and mends them. No widget: it holds the
-// label map that all views show meanwhile, its history, and the work in the background; the panel
-// and the slices tell it what to do.
+// The structures of the open case while a person makes and mends them. No widget: it holds what is
+// edited, which all views show meanwhile, does the work in the background and says what came of it;
+// the panel and the slices tell it what to do.
 //
 // Everything is on the window's thread but growing and what else takes over a second, which only
 // reads the map; while that runs (busy()) nothing else is changed.
@@ -8,12 +8,14 @@
 
 #include <QObject>
 #include <QString>
-#include <map>
+#include <algorithm>
 #include <memory>
 #include <optional>
+#include <type_traits>
+#include <utility>
 
 #include "exercise/structure_view.h"
-#include "structures/edit_history.h"
+#include "structures/edited_structures.h"
 #include "structures/grow.h"
 #include "structures/shape_tools.h"
 #include "ui/common/background_task.h"
@@ -39,15 +41,15 @@ class StructureEditor : public QObject {
 
   // What the views show; null: the case has none and nothing was made. From the first change on it
   // is the editor's own, which changes in place, with changed() for each box.
-  std::shared_ptr<const LabelMap> map() const { return map_ ? map_ : given_; }
-  double millilitres(int label) const { return ml_[std::size_t(label)]; }
+  std::shared_ptr<const LabelMap> map() const { return structures_.map(); }
+  double millilitres(int label) const { return structures_.millilitres(label); }
   // Since setCase() or markSaved().
-  bool edited() const { return edited_; }
+  bool edited() const { return structures_.changes() != saved_; }
   // What was saved is as it was after so many changes.
-  std::uint64_t changes() const { return changes_; }
-  void markSaved(std::uint64_t changes) { edited_ = edited_ && changes != changes_; }
+  std::uint64_t changes() const { return structures_.changes(); }
+  void markSaved(std::uint64_t changes) { saved_ = std::max(saved_, changes); }
   // What was taken last could not be used: it is there to be taken again.
-  void giveBack() { untaken_ = map_ != nullptr; }
+  void giveBack();
   bool isOf(const std::shared_ptr<const Volume>& volume) const { return volume_ == volume; }
   // Since setCase() or the last call; a copy of the map then, without the wall, else null. Not
   // while a preview stands.
@@ -55,7 +57,7 @@ class StructureEditor : public QObject {
   // Such a copy, for a file: without rows that have no voxel either. Null without structures, or
   // memory for them.
   std::shared_ptr<const LabelMap> finished();
-  int wall() const { return wall_; }  // its label; 0: none was painted
+  bool hasAny() const { return structures_.first() != 0; }  // but the wall
 
   // The one that tools work on: its label; 0: none.
   int current() const { return current_; }
@@ -63,7 +65,7 @@ class StructureEditor : public QObject {
   // Refuses a name that another has or that is empty, in words.
   Status rename(int label, const QString& name);
   bool setColour(int label, const Vec3& colour);  // false: it may not change now
-  // A layer that was made of another (makeShell) goes back to that one.
+  // A layer that was made of another (structure_shaping.h) goes back to that one.
   void remove(int label);
 
   struct Preview {
@@ -88,15 +90,6 @@ class StructureEditor : public QObject {
   const std::optional<VoxelBox>& box() const { return box_; }
   std::optional<Vec3> boxSize_mm() const;  // along the grid's axes
 
-  // Skull and skin, as structures of those names; what had these names is replaced.
-  void makeSkull();
-  void makeSkin(double thickness_mm);
-  // The outermost layer of the current one becomes a structure of that name.
-  void makeShell(double thickness_mm, const QString& name);
-  void fillHoles();
-  void smooth(double radius_mm);
-  void keepPieceAt(const Vec3& patient_mm);
-
   // A stroke of the brush over the slices; makes a structure of that name where none is current.
   void beginStroke(const Vec3& patient_mm, const Brush& brush, const QString& name);
   // One of the wall: a row of its own in the list, which holds growing back, and which neither an
@@ -110,6 +103,30 @@ class StructureEditor : public QObject {
   std::optional<QString> redoText() const;
   void undo();
   void redo();
+
+  // --- For tools that work on the whole map (structure_shaping.h) ---
+  // Whether it may change now, which is said where it may not. A preview goes.
+  bool begin();
+  // On another thread. `take` gets what `work` made, on the window's, unless it failed, which is
+  // said, or the case is gone by then.
+  template <class Work, class Take>
+  void inBackground(Work work, Take take) {
+    using Made = std::invoke_result_t<Work&, const Progress&>;
+    work_.run(std::move(work), [this, take, own = map()](Made made) {
+      if (map() != own) return;
+      if (!made) return sayNotMade(made.error());
+      take(*std::move(made));
+    });
+  }
+  // As a step, or part of the last one.
+  void put(const QString& step, const Result<LabelEdit>& edit, bool joins = false);
+  // The label of the structure of that name, which is made where there is none; 0: there are too
+  // many, which is said. `like`: the tissue whose colour it takes where none is called as it is.
+  int addStructure(const std::string& name, const std::string& like = {});
+  // `wanted`, or with a number where another is called so.
+  std::string freeName(const QString& wanted) const;
+  const std::shared_ptr<const Volume>& volume() const { return volume_; }
+  EditedStructures& structures() { return structures_; }
 
   bool busy() const { return work_.busy(); }
   void cancel() { work_.cancel(); }
@@ -132,46 +149,21 @@ class StructureEditor : public QObject {
     bool any = false;
   };
   bool mayChange();
-  bool makeOwn();
-  const Structure* structure(int label) const;
+  void changedRows();
+  QString nameOf(int label) const;
   std::shared_ptr<LabelMap> withoutWall();
-  void touched();
-  Labels overWall() const;
   void growAnew();
-  // `like`: the tissue whose colour it takes where none is called as it is.
-  int addStructure(const std::string& name, const std::string& like = {});
-  std::string freeName(const QString& wanted) const;
-  std::string spareName(const std::string& base) const;
   void chooseAnother();
-  QString wordsIfThin(double thickness_mm) const;
-  void sayMade(const QString& more);
-  void put(const std::string& step, const Result<LabelEdit>& edit, bool joins = false);
-  void applied(const LabelEdit& edit, bool added);
-  void count(const LabelEdit& edit, bool added);
-  void countAll();
-  template <class Work, class Take>
-  void inBackground(Work work, Take take);
-  template <class Make>
-  void editInBackground(Make make, const QString& step);
+  void sayNotMade(const Error& error);
   void showGrown(const Growth& grown, const std::string& name, const Vec3& seed_mm);
   void stepped(const std::optional<VoxelBox>& box);  // of the history
-  // A mask of 0 and 1 as a structure of that name, which is made or replaced.
-  void putMask(const std::vector<std::uint8_t>& mask, const std::string& name,
-               const std::string& like);
 
   std::shared_ptr<const Volume> volume_;
   TissueSet tissues_;
-  std::shared_ptr<const LabelMap> given_;  // the case's, until something is changed
-  std::shared_ptr<LabelMap> map_;
-  std::array<double, 256> ml_{};
-  EditHistory history_;
+  EditedStructures structures_;
   int current_ = 0;
   std::optional<Preview> preview_;
-  LabelEdit preview_edit_;
-  bool preview_has_new_row_ = false;
   GrowOptions grown_with_;  // of the preview
-  int wall_ = 0;
-  std::map<int, int> shell_of_;  // by the layer's label: whose it is
   struct Regrow {
     Vec3 seed_mm{0.0};
     QString name;
@@ -180,9 +172,9 @@ class StructureEditor : public QObject {
   std::optional<VoxelBox> box_;
   std::optional<Stroke> stroke_;
   QString locked_;
-  bool edited_ = false, untaken_ = false;
-  std::uint64_t changes_ = 0;
-  BackgroundTask work_;  // last: joined before what it reads goes
+  std::uint64_t saved_ = 0;                 // after so many changes
+  std::optional<std::uint64_t> taken_ = 0;  // the same; none: it was given back
+  BackgroundTask work_;                     // last: joined before what it reads goes
 };
 
 }  // namespace trephine

@@ -1,25 +1,21 @@
-// The structures of the case: what there is, with mL; the tools that make and mend them; the way in
-// and out for those from elsewhere. It shows what the editor holds and tells it what to do; the
-// slices hold the tool that is chosen here.
+// The structures of the case: what there is (structure_list.h); the tools that make and mend them,
+// and what they say (structure_notices.h); the way in and out for those from elsewhere. The slices
+// hold the tool that is chosen here.
 #pragma once
 
 #include <QAction>
 #include <QCheckBox>
 #include <QComboBox>
-#include <QLabel>
-#include <QLineEdit>
 #include <QMenu>
-#include <QProgressBar>
 #include <QPushButton>
-#include <QStackedLayout>
 #include <QToolButton>
-#include <QTreeWidget>
 #include <algorithm>
 #include <array>
 
 #include "ui/common/number_field.h"
 #include "ui/structures/structure_editor.h"
-#include "ui/structures/structure_look_row.h"
+#include "ui/structures/structure_list.h"
+#include "ui/structures/structure_notices.h"
 #include "ui/views/view_tool.h"
 
 namespace trephine {
@@ -39,8 +35,8 @@ class StructurePanel : public QWidget {
   bool holds(const ViewTool& tool) const { return std::ranges::count(tools_, &tool) > 0; }
   void showTool(const ViewTool& tool);
   // How the 3-D view shows them.
-  void showLooks(const std::vector<SeenStructure>& seen);
-  void nextLook();  // of the chosen one: shown, ghosted, hidden
+  void showLooks(const std::vector<SeenStructure>& seen) { list_->showLooks(seen); }
+  void nextLook() { list_->nextLook(); }
   // What a click or a stroke of the chosen tool does.
   Brush brush(bool erase, int across) const;
   GrowOptions growing() const;
@@ -49,7 +45,7 @@ class StructurePanel : public QWidget {
   void stepRadius(int steps);
   void makeSkin();  // as thick as is set
   // What was said last; nothing: what the tool in hand does.
-  void say(const QString& words);
+  void say(const QString& words) { notices_->say(words); }
   void suitVoxels(const Vec3& spacing_mm);  // what a step does nothing without
   void offerWanted();  // the first that the exercise lacks, as the next one's name
 
@@ -67,31 +63,18 @@ class StructurePanel : public QWidget {
   void saveSurfaceWanted();    // of the current one
 
  private:
-  static constexpr int kNameColumn = 0, kMlColumn = 1, kLookColumn = 2;
-  static constexpr int kProgressSteps = 1000;
-
   void build();  // structure_panel_layout.cpp
   QLayout* buildTools();
   QLayout* buildShaping();
   QMenu* buildSaving();
-  void buildListMenu();
-  void buildBoxLine(QWidget* parent);
-  void showList();
+  void showOffered();
   void showState();
-  void showBox();
-  void showLooks();
-  void nextLook(int label);
-  std::optional<SeenStructure> seen(int label) const;
-  void rename(QTreeWidgetItem* item);
-  void chooseColour(int label);
   void regrow();
   QToolButton* button(const char* name, const QString& text, const QString& tip);
 
   StructureEditor& editor_;
-  QTreeWidget* list_;
-  StructureLookRow* look_;
-  QLabel* no_room_;
-  std::vector<SeenStructure> seen_;
+  StructureList* list_;
+  StructureNotices* notices_;
   QComboBox* name_;
   std::array<ViewTool*, 5> tools_;
   std::array<QToolButton*, 5> tool_buttons_;
@@ -101,16 +84,9 @@ class StructurePanel : public QWidget {
   QCheckBox* only_hu_;
   QToolButton *skull_button_, *skin_button_, *fill_, *smooth_button_, *shell_button_, *delete_,
       *undo_, *redo_;
-  QPushButton *take_, *leave_, *open_file_, *save_, *export_, *cancel_, *no_box_;
+  QPushButton *open_file_, *save_, *export_;
   QAction *surface_, *for_source_;
-  QWidget *preview_box_, *box_line_;
-  QLabel *preview_, *said_, *empty_, *box_;
-  QStackedLayout* listing_layout_;  // the list, or why there is none
-  QWidget* progress_box_;
-  QProgressBar* progress_;
   std::vector<std::string> wanted_;
-  bool listing_ = false;
-  QString hint_;  // what the tool in hand does
 };
 
 }  // namespace trephine

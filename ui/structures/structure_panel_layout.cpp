@@ -3,14 +3,13 @@
 #include <QFormLayout>
 #include <QGridLayout>
 #include <QHBoxLayout>
-#include <QHeaderView>
 #include <QMenu>
-#include <QStackedLayout>
 #include <algorithm>
 #include <functional>
 
-#include "ui/common/colours.h"
+#include "ui/common/setting_words.h"
 #include "ui/common/words.h"
+#include "ui/structures/structure_shaping.h"
 #include "ui/structures/structure_tool.h"
 
 namespace trephine {
@@ -18,15 +17,6 @@ namespace trephine {
 namespace {
 
 constexpr int kToolsInARow = 3;
-constexpr int kNoticeLines = 5;
-
-QLabel* words(const char* name, QWidget* parent) {
-  auto* label = new QLabel(parent);
-  label->setObjectName(name);
-  label->setWordWrap(true);
-  label->setTextFormat(Qt::PlainText);
-  return label;
-}
 
 DecimalField* millimetres(const char* name, double value, double low, double high,
                           QWidget* parent) {
@@ -42,74 +32,14 @@ DecimalField* millimetres(const char* name, double value, double low, double hig
 }  // namespace
 
 QToolButton* StructurePanel::button(const char* name, const QString& text, const QString& tip) {
-  auto* made = new QToolButton(this);
-  made->setObjectName(name);
-  made->setText(text);
-  made->setToolTip(tip);
-  made->setFocusPolicy(Qt::TabFocus);
+  QToolButton* made = settingButton(name, text, tip, this);
   made->setSizePolicy(QSizePolicy::Expanding, QSizePolicy::Fixed);
   return made;
 }
 
 void StructurePanel::build() {
-  list_ = new QTreeWidget(this);
-  list_->setObjectName("structureList");
-  list_->setColumnCount(3);
-  list_->setHeaderLabels({tr("Structure"), tr("mL"), tr("Look")});
-  list_->setRootIsDecorated(false);
-  list_->setUniformRowHeights(true);
-  list_->setEditTriggers(QAbstractItemView::EditKeyPressed | QAbstractItemView::DoubleClicked);
-  list_->header()->setStretchLastSection(false);
-  list_->header()->setSectionResizeMode(kNameColumn, QHeaderView::Stretch);
-  list_->header()->setSectionResizeMode(kMlColumn, QHeaderView::ResizeToContents);
-  list_->header()->setSectionResizeMode(kLookColumn, QHeaderView::ResizeToContents);
-  list_->setMinimumHeight(96);
-  list_->setSizePolicy(QSizePolicy::Expanding, QSizePolicy::Ignored);
-  list_->setToolTip(
-      tr("A double click or F2 renames, the right button offers more; V, or a click under Look, "
-         "shows, ghosts and hides it"));
-  buildListMenu();
-  look_ = new StructureLookRow(this);
-  no_room_ = words("structureNoRoom", this);
-  colours::setText(*no_room_, colours::kCaution);
-  empty_ = words("structuresEmpty", this);
-  empty_->setProperty("quiet", true);
-  empty_->setAlignment(Qt::AlignTop);
-  auto* listing = new QWidget(this);
-  listing->setSizePolicy(QSizePolicy::Expanding, QSizePolicy::Ignored);
-  listing->setMinimumHeight(96);
-  listing_layout_ = new QStackedLayout(listing);
-  listing_layout_->addWidget(list_);
-  listing_layout_->addWidget(empty_);
-
-  said_ = words("structureSaid", this);
-  preview_box_ = new QWidget(this);
-  preview_ = words("structurePreview", preview_box_);
-  take_ = new QPushButton(tr("&Take it"), preview_box_);
-  take_->setObjectName("takePreview");
-  take_->setToolTip(tr("It counts from now on (Return in a slice)"));
-  leave_ = new QPushButton(tr("&Leave it"), preview_box_);
-  leave_->setObjectName("leavePreview");
-  leave_->setToolTip(tr("It goes again (Esc in a slice)"));
-  auto* preview_layout = new QGridLayout(preview_box_);
-  preview_layout->setContentsMargins(0, 0, 0, 0);
-  preview_layout->addWidget(preview_, 0, 0, 1, 2);
-  preview_layout->addWidget(take_, 1, 0);
-  preview_layout->addWidget(leave_, 1, 1);
-
-  progress_box_ = new QWidget(this);
-  progress_ = new QProgressBar(progress_box_);
-  progress_->setObjectName("structureProgress");
-  progress_->setRange(0, kProgressSteps);
-  progress_->setTextVisible(false);
-  progress_->setMaximumHeight(14);
-  cancel_ = new QPushButton(tr("Cancel"), progress_box_);
-  cancel_->setObjectName("cancelStructure");
-  auto* progress_layout = new QHBoxLayout(progress_box_);
-  progress_layout->setContentsMargins(0, 0, 0, 0);
-  progress_layout->addWidget(progress_, 1);
-  progress_layout->addWidget(cancel_);
-
+  list_ = new StructureList(editor_, this);
+  notices_ = new StructureNotices(editor_, this);
   name_ = new QComboBox(this);
   name_->setObjectName("structureName");
   name_->setEditable(true);
@@ -143,79 +73,27 @@ void StructurePanel::build() {
   auto* called = new QFormLayout;
   called->addRow(tr("Next one"), name_);
 
-  // What comes and goes has room of its own, so that no button moves under the pointer.
-  auto* notices = new QWidget(this);
-  notices->setMinimumHeight(kNoticeLines * fontMetrics().lineSpacing() +
-                            take_->sizeHint().height());
-  auto* notice_layout = new QVBoxLayout(notices);
-  notice_layout->setContentsMargins(0, 0, 0, 0);
-  notice_layout->setSpacing(4);
-  buildBoxLine(notices);
-  for (QWidget* part : {preview_box_, progress_box_, static_cast<QWidget*>(said_), box_line_}) {
-    notice_layout->addWidget(part);
-  }
-  notice_layout->addStretch(1);
-  QSizePolicy keeps = look_->sizePolicy();
-  keeps.setRetainSizeWhenHidden(true);
-  look_->setSizePolicy(keeps);
-
   auto* layout = new QVBoxLayout(this);
   layout->setContentsMargins(10, 10, 10, 10);
   layout->setSpacing(8);
   // What grows takes room from the list alone, so that what lies below stays where it is.
-  layout->addWidget(listing, 1);
-  layout->addWidget(look_);
-  layout->addWidget(no_room_);
-  layout->addWidget(notices);
+  layout->addWidget(list_, 1);
+  layout->addWidget(notices_);
   layout->addLayout(steps);
   layout->addLayout(called);
   layout->addLayout(buildTools());
   layout->addLayout(buildShaping());
   layout->addLayout(files);
 
-  connect(list_, &QTreeWidget::currentItemChanged, this, [this](QTreeWidgetItem* item) {
-    if (!listing_ && item) editor_.setCurrent(item->data(kNameColumn, Qt::UserRole).toInt());
-  });
-  connect(list_, &QTreeWidget::itemChanged, this, [this](QTreeWidgetItem* item) {
-    if (!listing_) rename(item);
-  });
-  connect(list_, &QTreeWidget::itemClicked, this, [this](QTreeWidgetItem* item, int column) {
-    if (column == kLookColumn) nextLook(item->data(kNameColumn, Qt::UserRole).toInt());
-  });
-  connect(look_, &StructureLookRow::lookChosen, this,
-          [this](TissueLook look) { emit lookWanted(editor_.current(), look); });
-  connect(look_, &StructureLookRow::opacityChosen, this,
-          [this](double per_mm) { emit opacityWanted(editor_.current(), per_mm); });
-  connect(take_, &QPushButton::clicked, &editor_, &StructureEditor::takePreview);
-  connect(leave_, &QPushButton::clicked, &editor_, &StructureEditor::leavePreview);
-  for (QPushButton* decides : {take_, leave_}) {
-    connect(decides, &QPushButton::clicked, this, &StructurePanel::decided);
-  }
-  connect(cancel_, &QPushButton::clicked, &editor_, &StructureEditor::cancel);
+  connect(list_, &StructureList::lookWanted, this, &StructurePanel::lookWanted);
+  connect(list_, &StructureList::opacityWanted, this, &StructurePanel::opacityWanted);
+  connect(list_, &StructureList::colourChosen, this, &StructurePanel::colourChosen);
+  connect(list_, &StructureList::refused, this, &StructurePanel::say);
+  connect(notices_, &StructureNotices::decided, this, &StructurePanel::decided);
   connect(undo_, &QToolButton::clicked, &editor_, &StructureEditor::undo);
   connect(redo_, &QToolButton::clicked, &editor_, &StructureEditor::redo);
   connect(delete_, &QToolButton::clicked, this, [this] { editor_.remove(editor_.current()); });
   connect(open_file_, &QPushButton::clicked, this, &StructurePanel::openWanted);
-}
-
-void StructurePanel::buildListMenu() {
-  const auto add = [&](const char* name, const QString& text, const QKeySequence& key,
-                       std::function<void()> does) {
-    auto* action = new QAction(text, list_);
-    action->setObjectName(name);
-    action->setShortcut(key);
-    action->setShortcutContext(Qt::WidgetShortcut);
-    connect(action, &QAction::triggered, this, std::move(does));
-    list_->addAction(action);
-  };
-  list_->setContextMenuPolicy(Qt::ActionsContextMenu);
-  add("renameStructure", tr("&Rename"), {}, [this] {
-    if (QTreeWidgetItem* item = list_->currentItem()) list_->editItem(item, kNameColumn);
-  });
-  add("recolourStructure", tr("&Colour\u2026"), {}, [this] { chooseColour(editor_.current()); });
-  add("lookOfStructure", tr("Show, &ghost or hide in 3-D"), Qt::Key_V, [this] { nextLook(); });
-  add("deleteStructure", tr("&Delete"), Qt::Key_Delete,
-      [this] { editor_.remove(editor_.current()); });
 }
 
 QMenu* StructurePanel::buildSaving() {
@@ -241,18 +119,6 @@ QMenu* StructurePanel::buildSaving() {
                  tr("For a printer or a drawing program"), &StructurePanel::saveSurfaceWanted);
   for_source_->setEnabled(false);
   return menu;
-}
-
-void StructurePanel::buildBoxLine(QWidget* parent) {
-  box_line_ = new QWidget(parent);
-  box_ = words("growBox", box_line_);
-  no_box_ = new QPushButton(tr("No bo&x"), box_line_);
-  no_box_->setObjectName("noGrowBox");
-  auto* box_layout = new QHBoxLayout(box_line_);
-  box_layout->setContentsMargins(0, 0, 0, 0);
-  box_layout->addWidget(box_, 1);
-  box_layout->addWidget(no_box_);
-  connect(no_box_, &QPushButton::clicked, &editor_, &StructureEditor::leaveBox);
 }
 
 QLayout* StructurePanel::buildTools() {
@@ -354,18 +220,17 @@ QLayout* StructurePanel::buildShaping() {
     grid->addWidget(tool, row, 0);
     grid->addLayout(field->withReason(), row++, 1);
   }
-  connect(skull_button_, &QToolButton::clicked, &editor_, &StructureEditor::makeSkull);
+  connect(skull_button_, &QToolButton::clicked, this, [this] { makeSkull(editor_); });
   connect(skin_button_, &QToolButton::clicked, this, &StructurePanel::makeSkin);
-  connect(fill_, &QToolButton::clicked, &editor_, &StructureEditor::fillHoles);
+  connect(fill_, &QToolButton::clicked, this, [this] { fillHoles(editor_); });
   connect(smooth_button_, &QToolButton::clicked, this,
-          [this] { editor_.smooth(smooth_->wanted()); });
+          [this] { smooth(editor_, smooth_->wanted()); });
   connect(shell_button_, &QToolButton::clicked, this, [this] {
-    const std::shared_ptr<const LabelMap> map = editor_.map();
-    const Structure* of = map ? map->find(editor_.current()) : nullptr;
+    const Structure* of = editor_.structures().find(editor_.current());
     if (!of) return;
     const bool liver = sameName(of->name, "liver");
-    editor_.makeShell(shell_->wanted(),
-                      liver ? QStringLiteral("capsule") : tr("%1 shell").arg(toQt(of->name)));
+    makeShell(editor_, shell_->wanted(),
+              liver ? QStringLiteral("capsule") : tr("%1 shell").arg(toQt(of->name)));
   });
   return grid;
 }

@@ -8,6 +8,7 @@
 
 #include "qt_support.h"
 #include "ui/common/words.h"
+#include "ui/structures/structure_shaping.h"
 
 namespace trephine {
 namespace {
@@ -90,7 +91,7 @@ TEST_F(Editor, EveryStepIsUndoneAndDoneAgain) {
   stroke(middle_, middle_ + Vec3(10, 0, 0), true);
   const auto erased = editor_.map()->labels;
   EXPECT_NE(grown, erased);
-  editor_.fillHoles();
+  fillHoles(editor_);
   wait();
   const auto filled = editor_.map()->labels;
   EXPECT_EQ(filled, grown);
@@ -122,7 +123,7 @@ TEST_F(Editor, AShellOfTheChosenOneIsAStructureOfItsOwn) {
   wait();
   editor_.takePreview();
   const double before = ml("liver");
-  editor_.makeShell(1.0, "capsule");
+  makeShell(editor_, 1.0, "capsule");
   wait();
   EXPECT_GT(ml("capsule"), 3.0);
   EXPECT_NEAR(ml("capsule") + ml("liver"), before, 1e-6);
@@ -133,7 +134,7 @@ TEST_F(Editor, ALayerThatIsDeletedGoesBackToWhatItWasOf) {
   wait();
   editor_.takePreview();
   const double before = ml("liver");
-  editor_.makeShell(2.0, "capsule");
+  makeShell(editor_, 2.0, "capsule");
   wait();
   EXPECT_LT(ml("liver"), before - 3.0);
   EXPECT_TRUE(said_.contains("keeps")) << said_.toStdString();
@@ -318,14 +319,14 @@ TEST_F(Editor, WhatIsDeletedGivesItsNameAwayAndIsChosenNoMore) {
 }
 
 TEST_F(Editor, WhatWasSaidOfOneStepGoesWithTheNext) {
-  editor_.fillHoles();
+  fillHoles(editor_);
   stroke(middle_, middle_);
-  editor_.fillHoles();
+  fillHoles(editor_);
   wait();
   EXPECT_NE(said_.indexOf("Nothing was changed"), -1);
   stroke(middle_ + Vec3(10, 0, 0), middle_ + Vec3(10, 0, 0));
   EXPECT_EQ(said_, "");
-  editor_.makeShell(0.5, "shell");
+  makeShell(editor_, 0.5, "shell");
   wait();
   EXPECT_NE(said_.indexOf("one voxel thick"), -1) << said_.toStdString();
 }
