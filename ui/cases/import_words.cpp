@@ -19,10 +19,6 @@ QString tr(const char* text) {
   return QCoreApplication::translate("trephine", text);
 }
 
-bool refusesUnanswered(const Choice& choice) {
-  return !choice.options.empty() && choice.options.front() == "refuse";
-}
-
 QString sentence(QString text) {
   if (!text.isEmpty() && !text.endsWith('.') && !text.endsWith('?') && !text.endsWith('!')) {
     text += '.';
@@ -103,24 +99,6 @@ QString factsHtml(const SeriesReport& series) {
 
 }  // namespace
 
-SeriesState seriesState(const SeriesReport& series, const Answers& answers) {
-  if (series.verdict == Verdict::pass) return SeriesState::pass;
-  if (series.verdict == Verdict::repaired) return SeriesState::repaired;
-  bool asks = false, open = false;
-  for (const Choice& choice : series.choices) {
-    if (!refusesUnanswered(choice)) continue;
-    asks = true;
-    const auto answer = answers.find(choice.code);
-    if (answer == answers.end() || answer->second == choice.options.front()) open = true;
-  }
-  if (!asks) return SeriesState::refused;
-  return open ? SeriesState::asks : SeriesState::answered;
-}
-
-bool mayBeRead(SeriesState state) {
-  return state != SeriesState::asks && state != SeriesState::refused;
-}
-
 QString stateWord(SeriesState state) {
   switch (state) {
     case SeriesState::pass:
@@ -187,17 +165,6 @@ QString seriesLine(const SeriesReport& series) {
     parts << tr("%1 \u00d7 %2").arg(series.geometry.size[0]).arg(series.geometry.size[1]);
   }
   return parts.join(" \u00b7 ");
-}
-
-std::vector<Choice> newChoices(const SeriesReport& before, const SeriesReport& after,
-                               const Answers& answers) {
-  std::vector<Choice> found;
-  for (const Choice& choice : after.choices) {
-    const bool asked_before =
-        std::ranges::find(before.choices, choice.code, &Choice::code) != before.choices.end();
-    if (!asked_before && !answers.contains(choice.code)) found.push_back(choice);
-  }
-  return found;
 }
 
 QString slicesWords(const std::vector<std::string>& slices) {

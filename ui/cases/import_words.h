@@ -6,16 +6,10 @@
 #include <QString>
 
 #include "imaging/importer.h"
+#include "imaging/series_state.h"
 
 namespace trephine {
 
-// A series as the list shows it: its verdict, and whether questions stand between it and a volume.
-enum class SeriesState { pass, repaired, answered, asks, refused };
-
-// `answered`: refused as it is, but all that it asks has been answered. Whether that is enough is
-// for the reader to say.
-SeriesState seriesState(const SeriesReport& series, const Answers& answers);
-bool mayBeRead(SeriesState state);
 QString stateWord(SeriesState state);
 QColor stateColour(SeriesState state);
 // "Ready to use. Nothing had to be changed."
@@ -25,10 +19,6 @@ QString verdictSentence(const SeriesReport& series, const Answers& answers);
 QString seriesName(const SeriesReport& series);
 // "CT, 140 slices, 512 x 512"
 QString seriesLine(const SeriesReport& series);
-
-// Choices of `after` that nobody has answered and that were not there `before` the read.
-std::vector<Choice> newChoices(const SeriesReport& before, const SeriesReport& after,
-                               const Answers& answers);
 
 // "3.0, 4.0, 5.0 and 17 more"; empty for none.
 QString slicesWords(const std::vector<std::string>& slices);

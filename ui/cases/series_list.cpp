@@ -3,8 +3,6 @@
 #include <QPainter>
 #include <QStyledItemDelegate>
 #include <algorithm>
-#include <numeric>
-#include <tuple>
 
 #include "ui/cases/state_mark.h"
 #include "ui/common/colours.h"
@@ -20,12 +18,6 @@ constexpr int kPatientKey = Qt::UserRole + 3, kStudyKey = Qt::UserRole + 4;
 constexpr int kPatient = Qt::UserRole + 5, kStudy = Qt::UserRole + 6;
 constexpr int kStillFound = -1;  // a state: its scan goes on
 constexpr int kPicture = 72, kMargin = 8, kMark = 16;
-
-const Answers& answersOf(const std::map<std::string, Answers>& answers, const std::string& uid) {
-  static const Answers none;
-  const auto found = answers.find(uid);
-  return found == answers.end() ? none : found->second;
-}
 
 // Three lines beside the picture: name, line, state.
 class SeriesDelegate : public QStyledItemDelegate {
@@ -141,20 +133,6 @@ void fill(QListWidgetItem& item, const SeriesReport& series, const Answers& answ
 }
 
 }  // namespace
-
-std::vector<std::size_t> seriesOrder(const std::vector<SeriesReport>& series,
-                                     const std::map<std::string, Answers>& answers) {
-  std::vector<std::size_t> order(series.size());
-  std::iota(order.begin(), order.end(), std::size_t(0));
-  const auto rank = [&](std::size_t i) {
-    const SeriesReport& one = series[i];
-    const SeriesState state = seriesState(one, answersOf(answers, one.uid));
-    const int usable = mayBeRead(state) ? 0 : state == SeriesState::asks ? 1 : 2;
-    return std::tuple(usable, one.modality == "CT" ? 0 : 1, -one.slices);
-  };
-  std::ranges::stable_sort(order, {}, rank);
-  return order;
-}
 
 SeriesList::SeriesList(QWidget* parent) : QListWidget(parent) {
   setItemDelegate(new SeriesDelegate(this));

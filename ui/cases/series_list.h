@@ -41,9 +41,4 @@ class SeriesList : public QListWidget {
   void nameGroups();
 };
 
-// Positions in `series` as they are listed: what can be read, then what asks, then the rest; CT
-// first in each, and those with more slices before others.
-std::vector<std::size_t> seriesOrder(const std::vector<SeriesReport>& series,
-                                     const std::map<std::string, Answers>& answers);
-
 }  // namespace trephine

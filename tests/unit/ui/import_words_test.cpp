@@ -10,34 +10,12 @@
 namespace trephine {
 namespace {
 
-using test::askingSeries;
 using test::fakeSeries;
 
 class ImportWordsTest : public ::testing::Test {
  protected:
   QApplication& application_ = test::application();
 };
-
-TEST_F(ImportWordsTest, ARefusalThatAQuestionStandsForIsOpenUntilAnswered) {
-  const SeriesReport series = askingSeries("1");
-  EXPECT_EQ(seriesState(series, {}), SeriesState::asks);
-  EXPECT_EQ(seriesState(series, {{code::kMissingSlices, "refuse"}}), SeriesState::asks);
-  EXPECT_EQ(seriesState(series, {{code::kCouch, "remove"}}), SeriesState::asks);
-  EXPECT_EQ(seriesState(series, {{code::kMissingSlices, "fill"}}), SeriesState::answered);
-  EXPECT_EQ(seriesState(fakeSeries("2", Verdict::refused), {}), SeriesState::refused);
-  SeriesReport optional = fakeSeries("3", Verdict::refused);
-  optional.choices = {test::couch()};
-  EXPECT_EQ(seriesState(optional, {{code::kCouch, "remove"}}), SeriesState::refused)
-      << "no answer about the couch makes a volume of it";
-}
-
-TEST_F(ImportWordsTest, OnlyWhatIsUsableOrAnsweredMayBeRead) {
-  EXPECT_TRUE(mayBeRead(SeriesState::pass));
-  EXPECT_TRUE(mayBeRead(SeriesState::repaired));
-  EXPECT_TRUE(mayBeRead(SeriesState::answered));
-  EXPECT_FALSE(mayBeRead(SeriesState::asks));
-  EXPECT_FALSE(mayBeRead(SeriesState::refused));
-}
 
 TEST_F(ImportWordsTest, NoTwoStatesShareAWord) {
   QStringList words;
@@ -101,16 +79,6 @@ TEST_F(ImportWordsTest, WhatWasLeftOutOfTheFolderIsSaidWithItsReason) {
   EXPECT_TRUE(words.contains("12 files, 1 series")) << words.toStdString();
   EXPECT_TRUE(words.contains("2 left out: the file is empty"));
   EXPECT_FALSE(words.contains("Doe"));
-}
-
-TEST_F(ImportWordsTest, OnlyWhatIsNewAndUnansweredIsAskedAfterReading) {
-  const SeriesReport before = askingSeries("1");
-  SeriesReport after = before;
-  after.choices.push_back(test::couch());
-  const std::vector<Choice> asked = newChoices(before, after, {});
-  ASSERT_EQ(asked.size(), 1u);
-  EXPECT_EQ(asked[0].code.str(), "COUCH");
-  EXPECT_TRUE(newChoices(before, after, {{code::kCouch, "keep"}}).empty());
 }
 
 TEST(HuWindow, GoesFromBlackToWhiteOverItsWidth) {
