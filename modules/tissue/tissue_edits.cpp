@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 #include <optional>
 
 #include "base/tr.h"
@@ -79,6 +80,17 @@ std::vector<HuRange> freeHu(const TissueSet& set, HuRange span) {
   return free;
 }
 
+std::vector<HuRange> lostHu(const TissueSet& set, const TissueSet& declared) {
+  HuRange span{std::numeric_limits<int>::max(), std::numeric_limits<int>::lowest()};
+  for (const TissueSet* of : {&set, &declared}) {
+    for (const Tissue& tissue : of->tissues) {
+      if (!tissue.isAnywhere()) continue;
+      span = {std::min(span.low, tissue.hu_min), std::max(span.high, tissue.hu_max)};
+    }
+  }
+  return span.low <= span.high ? freeHu(set, span) : std::vector<HuRange>{};
+}
+
 std::vector<HuOverlap> overlapsOf(const TissueSet& set, std::size_t tissue, const Tissue& wanted) {
   std::vector<HuOverlap> overlaps;
   for (std::size_t i = 0; i < set.tissues.size(); ++i) {
@@ -113,6 +125,36 @@ TissueSet withThreshold(const TissueSet& set, std::size_t tissue, RangeEnd end, 
   }
   for (std::size_t i = 0; i < out.tissues.size(); ++i) {
     cite(out.tissues[i], set.tissues[i], declared);
+  }
+  return out;
+}
+
+TissueSet withRangesOf(const TissueSet& set, const TissueSet& ranges) {
+  TissueSet out = set;
+  for (std::size_t i = 0; i < out.tissues.size(); ++i) {
+    const Tissue& of = ranges.tissues[i];
+    out.tissues[i].hu_min = of.hu_min;
+    out.tissues[i].hu_max = of.hu_max;
+    out.tissues[i].hu_source = of.hu_source;
+  }
+  return out;
+}
+
+Tissue inStructure(const TissueSet& set, const Tissue& tissue, const std::string& structure,
+                   const TissueSet& declared) {
+  Tissue out = tissue;
+  out.structure = structure;
+  out.label.reset();
+  if (structure.empty()) out.shell.reset();
+  const Tissue* cited = declared.find(out.id);
+  if (cited && cited->structure == structure) out.shell = cited->shell;
+  const bool alone = std::ranges::none_of(set.tissues, [&](const Tissue& other) {
+    return other.id != out.id && other.structure == structure;
+  });
+  if (!structure.empty() && alone) {
+    out.hu_min = kRemovedHu + 1;
+    out.hu_max = kCtHu.high;
+    out.hu_source = "whatever HU, where the structure is";
   }
   return out;
 }

@@ -20,6 +20,10 @@ struct HuRange {
 // Of `span`, in rising order, the HU that no tissue without a label holds: free space there.
 std::vector<HuRange> freeHu(const TissueSet& set, HuRange span);
 
+// The HU without a tissue between the lowest and the highest that one of any place has, or has in
+// `declared`.
+std::vector<HuRange> lostHu(const TissueSet& set, const TissueSet& declared);
+
 // A range of HU that another tissue of the same place holds already.
 struct HuOverlap {
   std::size_t other = 0;  // of the set
@@ -36,6 +40,13 @@ enum class RangeEnd { low, high };
 // "tuned here", those that are as in `declared` cite its source.
 TissueSet withThreshold(const TissueSet& set, std::size_t tissue, RangeEnd end, int hu,
                         bool with_neighbour, const TissueSet& declared);
+
+// The set with the ranges of another of the same tissues, and where those come from.
+TissueSet withRangesOf(const TissueSet& set, const TissueSet& ranges);
+// The tissue restricted to a structure, or to none (empty). What stands in on a case without it is
+// as in `declared`. Alone in a structure it is all of it, whatever HU.
+Tissue inStructure(const TissueSet& set, const Tissue& tissue, const std::string& structure,
+                   const TissueSet& declared);
 
 // One more, of any voxel, first of the list: in the widest free range of what is no air, or, where
 // there is none, in the topmost 100 HU of the widest within kCtHu. Error: NO_ROOM.

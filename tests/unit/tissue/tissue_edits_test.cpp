@@ -34,6 +34,47 @@ TEST(FreeHu, ATissueOfALabelHoldsNothingWhereTheLabelIsNot) {
   EXPECT_EQ(freeHu(set, {0, 400}), (Ranges{{201, 400}}));
 }
 
+TEST(LostHu, LiesBetweenTheEndsThatTissuesHaveOrHad) {
+  const TissueSet declared{"", {tissue("soft", -200, 225), tissue("bone", 226, 3071)}};
+  const TissueSet set{"", {tissue("soft", -100, 225), tissue("bone", 300, 3071)}};
+  EXPECT_EQ(lostHu(set, declared), (Ranges{{-200, -101}, {226, 299}}));
+  EXPECT_EQ(lostHu(set, set), (Ranges{{226, 299}}));
+  const TissueSet labelled{"", {tissue("liver", 0, 100, 5)}};
+  EXPECT_EQ(lostHu(labelled, labelled), Ranges{}) << "nothing is of any place";
+}
+
+TEST(RangesOf, AnotherSetAreTakenAndNothingElse) {
+  TissueSet set{"", {tissue("soft", 0, 200)}}, other = set;
+  set.tissues[0].opacity = 0.7;
+  other.tissues[0].hu_max = 100;
+  other.tissues[0].hu_source = "a book";
+  const TissueSet out = withRangesOf(set, other);
+  EXPECT_EQ(out.tissues[0].hu_max, 100);
+  EXPECT_EQ(out.tissues[0].hu_source, "a book");
+  EXPECT_EQ(out.tissues[0].opacity, 0.7);
+}
+
+TEST(InStructure, ATissueThatIsAloneThereIsAllOfIt) {
+  TissueSet set{"", {tissue("liver", 0, 200, 5), tissue("vessel", 100, 300)}};
+  const Tissue alone = inStructure(set, set.tissues[0], "liver", {});
+  EXPECT_EQ(alone.structure, "liver");
+  EXPECT_FALSE(alone.label);
+  EXPECT_LT(alone.hu_min, -900);
+  EXPECT_EQ(alone.hu_max, kCtHu.high);
+  set.tissues[1].structure = "liver";
+  EXPECT_EQ(inStructure(set, set.tissues[0], "liver", {}).hu_max, 200);
+}
+
+TEST(InStructure, WhatStandsInGoesWithTheStructureAndComesBackWithIt) {
+  TissueSet declared{"", {tissue("capsule", 0, 200)}};
+  declared.tissues[0].structure = "capsule";
+  declared.tissues[0].shell = Tissue::Shell{"liver", 2.0};
+  const Tissue anywhere = inStructure(declared, declared.tissues[0], "", declared);
+  EXPECT_FALSE(anywhere.shell);
+  EXPECT_EQ(anywhere.hu_max, 200);
+  EXPECT_TRUE(inStructure(declared, anywhere, "capsule", declared).shell);
+}
+
 TEST(SameSet, SeesNumbersSourcesLabelsAndColours) {
   const TissueSet set{"", {tissue("soft", 0, 200)}};
   EXPECT_TRUE(TissueSet(set) == set);
