@@ -11,9 +11,9 @@
 #include <iterator>
 #include <utility>
 
-#include "ui/common/named_parts.h"
 #include "ui/common/colours.h"
 #include "ui/common/icons.h"
+#include "ui/common/making.h"
 #include "ui/common/placing.h"
 #include "ui/common/words.h"
 
@@ -68,13 +68,10 @@ CasesPage::CasesPage(QWidget* parent) : QWidget(parent) {
   cards_->setTextElideMode(Qt::ElideRight);
   cards_->installEventFilter(this);
   details_ = buildDetails();
-  auto* row = new QHBoxLayout;
-  row->setSpacing(10);
+  auto* row = tight(new QHBoxLayout, 10);
   row->addWidget(cards_, 1);
   row->addWidget(details_);
-  auto* layout = new QVBoxLayout(this);
-  layout->setContentsMargins(16, 12, 16, 12);
-  layout->setSpacing(10);
+  auto* layout = tight(new QVBoxLayout(this), 10, {16, 12, 16, 12});
   layout->addWidget(buildStrip());
   layout->addLayout(row, 1);
   connect(cards_, &QListWidget::currentItemChanged, this, &CasesPage::showChosen);
@@ -90,30 +87,20 @@ QWidget* CasesPage::buildStrip() {
   auto* strip = new QFrame;
   strip->setObjectName("nextStep");
   strip->setProperty("card", true);
-  strip_title_ = new QLabel;
-  strip_title_->setObjectName("nextStepTitle");
-  strip_title_->setProperty("heading", true);
-  strip_title_->setWordWrap(true);
-  strip_words_ = new QLabel;
-  strip_words_->setObjectName("caseLabel");
-  strip_words_->setTextFormat(Qt::PlainText);
-  strip_words_->setWordWrap(true);
+  strip_title_ = wrappedLabel("nextStepTitle", {"heading"});
+  strip_words_ = wrappedLabel("caseLabel");
   strip_train_ = namedButton("nextTrain", tr("&Train"), true);
   strip_prepare_ = namedButton("nextPrepare", tr("&Prepare"));
   strip_save_ = namedButton("saveCase", tr("&Save the case"), true);
   folder_ = namedButton("openFolder", tr("Open folder of &CT\u2026"));
   folder_->setIcon(symbolIcon(Symbol::open));
   series_ = namedButton("anotherSeries", tr("Use another se&ries\u2026"));
-  auto* words = new QVBoxLayout;
-  words->setSpacing(4);
+  auto* words = tight(new QVBoxLayout, 4);
   words->addWidget(strip_title_);
   words->addWidget(strip_words_);
-  auto* layout = new QHBoxLayout(strip);
-  layout->setContentsMargins(14, 10, 14, 10);
-  layout->setSpacing(8);
+  auto* layout = tight(new QHBoxLayout(strip), 8, {14, 10, 14, 10});
   layout->addLayout(words, 1);
-  auto* buttons = new QGridLayout;
-  buttons->setSpacing(6);
+  auto* buttons = tight(new QGridLayout, 6);
   buttons->addWidget(strip_save_, 0, 0);
   buttons->addWidget(strip_train_, 0, 1);
   buttons->addWidget(strip_prepare_, 0, 2);
@@ -131,19 +118,9 @@ QWidget* CasesPage::buildStrip() {
 QWidget* CasesPage::buildDetails() {
   picture_ = new QLabel;
   picture_->setAlignment(Qt::AlignCenter);
-  name_ = new QLabel;
-  name_->setObjectName("caseName");
-  name_->setProperty("title", true);
-  name_->setWordWrap(true);
-  about_ = new QLabel;
-  about_->setObjectName("caseAbout");
-  about_->setTextFormat(Qt::PlainText);
-  about_->setWordWrap(true);
-  done_ = new QLabel;
-  done_->setObjectName("caseExercises");
-  done_->setProperty("quiet", true);
-  done_->setTextFormat(Qt::PlainText);
-  done_->setWordWrap(true);
+  name_ = wrappedLabel("caseName", {"title"});
+  about_ = wrappedLabel("caseAbout");
+  done_ = wrappedLabel("caseExercises", {"quiet"});
   train_ = namedButton("trainOnCase", tr("T&rain on it"), true);
   prepare_ = namedButton("prepareCase", tr("Pr&epare it"));
   rename_ = namedButton("renameCase", tr("Re&name\u2026"));
@@ -151,17 +128,14 @@ QWidget* CasesPage::buildDetails() {
   delete_ = namedButton("deleteCase", tr("&Delete\u2026"));
   exercises_ = namedButton("caseRecordings", tr("Its e&xercises"));
   auto* page = new QWidget;
-  auto* layout = new QVBoxLayout(page);
-  layout->setContentsMargins(8, 0, 4, 0);
-  layout->setSpacing(8);
+  auto* layout = tight(new QVBoxLayout(page), 8, {8, 0, 4, 0});
   layout->addWidget(name_);
   layout->addWidget(picture_);
   layout->addWidget(about_);
   layout->addWidget(train_);
   layout->addWidget(prepare_);
   layout->addWidget(done_);
-  auto* more = new QGridLayout;
-  more->setSpacing(6);
+  auto* more = tight(new QGridLayout, 6);
   more->addWidget(exercises_, 0, 0);
   more->addWidget(report_, 0, 1);
   more->addWidget(rename_, 1, 0);

@@ -7,6 +7,7 @@
 #include <QRadioButton>
 #include <QVBoxLayout>
 
+#include "ui/common/making.h"
 #include "ui/common/words.h"
 
 namespace trephine {
@@ -36,8 +37,7 @@ class OptionLabel : public QLabel {
 }  // namespace
 
 ChoicePanel::ChoicePanel(QWidget* parent) : QWidget(parent) {
-  auto* layout = new QVBoxLayout(this);
-  layout->setContentsMargins(0, 0, 0, 0);
+  tight(new QVBoxLayout(this));
 }
 
 void ChoicePanel::ask(const std::vector<Choice>& choices, const Answers& answers) {

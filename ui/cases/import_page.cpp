@@ -1,12 +1,17 @@
 #include "ui/cases/import_page.h"
 
 #include <QDragEnterEvent>
+#include <QHBoxLayout>
 #include <QKeyEvent>
 #include <QMimeData>
+#include <QSplitter>
+#include <QVBoxLayout>
 #include <algorithm>
 
 #include "imaging/codes.h"
 #include "ui/cases/import_words.h"
+#include "ui/common/icons.h"
+#include "ui/common/making.h"
 #include "ui/common/placing.h"
 #include "ui/common/words.h"
 #include "volume/case_memory.h"
@@ -15,7 +20,7 @@ namespace trephine {
 
 namespace {
 
-const SeriesReport* findSeries(const std::vector<SeriesReport>& series, const std::string& uid) {
+auto findSeries(auto& series, const std::string& uid) {
   const auto found = std::ranges::find(series, uid, &SeriesReport::uid);
   return found == series.end() ? nullptr : &*found;
 }
@@ -26,12 +31,116 @@ bool isAsStored(const SeriesReport& series, const QImage& slice) {
          slice.height() == series.geometry.size[1];
 }
 
+constexpr int kListWidth = 300, kReportWidth = 360;
+
 }  // namespace
 
 ImportPage::ImportPage(ImportTask& task, QWidget* parent) : QWidget(parent), task_(task) {
   build();
   connectParts();
   showStep(Step::empty);
+}
+
+// --- How it is put together ---
+
+void ImportPage::build() {
+  setObjectName("importPage");
+  setAcceptDrops(true);
+  preview_ = new SlicePreview;
+  preview_->setObjectName("slicePreview");
+  right_ = new QStackedWidget;
+  series_ = new SeriesPage;
+  series_area_ = scrolled(series_, "seriesPage");
+  late_ = new LateQuestions;
+  late_area_ = scrolled(late_, "askingPage");
+  right_->addWidget(series_area_);
+  right_->addWidget(late_area_);
+
+  auto* columns = new QSplitter(Qt::Horizontal);
+  columns->addWidget(buildFolderColumn());
+  columns->addWidget(preview_);
+  columns->addWidget(right_);
+  columns->setChildrenCollapsible(false);
+  columns->setStretchFactor(0, 0);
+  columns->setStretchFactor(1, 1);
+  columns->setStretchFactor(2, 0);
+  columns->setSizes({kListWidth, 520, kReportWidth});
+
+  auto* layout = new QVBoxLayout(this);
+  layout->addWidget(columns, 1);
+  bar_ = new ImportBar(this);
+  layout->addWidget(bar_);
+}
+
+QWidget* ImportPage::buildFolderColumn() {
+  open_folder_ = namedButton("importFolder", tr("Open &folder\u2026"));
+  open_file_ = namedButton("importFile", tr("Open fi&le\u2026"));
+  open_folder_->setIcon(symbolIcon(Symbol::open));
+  auto* open_row = new QHBoxLayout;
+  open_row->addWidget(open_folder_);
+  open_row->addWidget(open_file_);
+  list_ = new SeriesList;
+  list_->setObjectName("seriesList");
+  folder_ = wrappedLabel("folderWords", {"quiet"});
+  auto* column = new QWidget;
+  auto* layout = tight(new QVBoxLayout(column));
+  layout->addLayout(open_row);
+  scan_on_ = namedButton("scanOn", tr("Look at &all files"));
+  scan_on_->setToolTip(tr("The search was ended early: look through the files that were left out"));
+  layout->addWidget(list_, 1);
+  layout->addWidget(scan_on_);
+  folder_->setAlignment(Qt::AlignTop);
+  auto* folder_area = scrolled(folder_, "folderArea");
+  folder_area->setMaximumHeight(6 * fontMetrics().lineSpacing());
+  layout->addWidget(folder_area);
+  return column;
+}
+
+void ImportPage::connectParts() {
+  connect(open_folder_, &QPushButton::clicked, this, &ImportPage::folderWanted);
+  connect(open_file_, &QPushButton::clicked, this, &ImportPage::fileWanted);
+  connect(list_, &SeriesList::seriesSelected, this, &ImportPage::seriesSelected);
+  connect(list_, &SeriesList::seriesActivated, this,
+          [this] { step_ == Step::scanning ? takeFound() : import(); });
+  connect(scan_on_, &QPushButton::clicked, this, [this] { task_.scan(task_.source()); });
+  connect(&task_, &ImportTask::found, this, [this](const std::vector<FoundSeries>& series) {
+    if (step_ != Step::scanning) return;
+    list_->showFound(series);
+    showImportButton();
+  });
+  connect(preview_, &SlicePreview::sliceWanted, this, &ImportPage::sliceWanted);
+  connect(&preview_->canvas(), &SliceCanvas::boxDrawn, this, &ImportPage::boxDrawn);
+  connect(&series_->size(), &SizePanel::changed, this, &ImportPage::showKept);
+  connect(&series_->size(), &SizePanel::changed, this, &ImportPage::showSelected);
+  connect(&series_->choices(), &ChoicePanel::answered, this, [this] {
+    for (const auto& [code, option] : series_->choices().answers()) answers()[code] = option;
+    showSelected();
+  });
+  connect(late_, &LateQuestions::answered, this,
+          [this] { bar_->setAnswered(late_->allAnswered()); });
+  connect(bar_, &ImportBar::foundTaken, this, &ImportPage::takeFound);
+  connect(bar_, &ImportBar::importWanted, this, &ImportPage::import);
+  connect(bar_, &ImportBar::openCaseWanted, this, &ImportPage::answered);
+  connect(bar_, &ImportBar::reportWanted, this, &ImportPage::reportWanted);
+  connect(bar_, &ImportBar::backWanted, this, &ImportPage::back);
+  connect(bar_, &ImportBar::closeWanted, this, &ImportPage::reject);
+  connect(bar_, &ImportBar::cancelWanted, &task_, &ImportTask::cancel);
+
+  connect(&task_, &ImportTask::scanBegan, this, [this] {
+    showStep(Step::scanning);
+    active_ = true;
+    emit opened();
+  });
+  connect(&task_, &ImportTask::progressed, bar_, &ImportBar::showProgress);
+  connect(&task_, &ImportTask::scanned, this, &ImportPage::scanned);
+  connect(&task_, &ImportTask::readDone, this, &ImportPage::readDone);
+  connect(&task_, &ImportTask::stopped, this, &ImportPage::stopped);
+  connect(&task_, &ImportTask::sliceReady, this, &ImportPage::showSlice);
+  connect(&task_, &ImportTask::thumbnailReady, list_, &SeriesList::setThumbnail);
+  connect(&task_, &ImportTask::pictureReady, this,
+          [this](const QString& uid, int slice, const QImage& picture) {
+            if (uid == toQt(list_->selectedUid())) series_->choices().setPicture(slice, picture);
+          });
 }
 
 const SeriesReport* ImportPage::selected() const {
@@ -41,8 +150,7 @@ const SeriesReport* ImportPage::selected() const {
 
 SeriesReport* ImportPage::before() {
   if (step_ == Step::scanning) return nullptr;
-  const auto found = std::ranges::find(before_, list_->selectedUid(), &SeriesReport::uid);
-  return found == before_.end() ? nullptr : &*found;
+  return findSeries(before_, list_->selectedUid());
 }
 
 // Of the window's own nothing is asked for again. 0: not known before it is read.
@@ -69,15 +177,6 @@ void ImportPage::open() {
   active_ = true;
   emit opened();
   list_->setFocus();
-}
-
-// The label maps that lie beside the CT of the folder; none is taken until it is chosen.
-void ImportPage::showLabelFiles() {
-  labels_->clear();
-  labels_->addItem(tr("None"));
-  for (const CtFolder::LabelFile& one : task_.labelFiles()) {
-    labels_->addItem(toQt(one.name), toQt(one.file));
-  }
 }
 
 // Enough was found: what is selected is wanted, and the scan comes to its end.
@@ -107,7 +206,7 @@ void ImportPage::scanned() {
 void ImportPage::showFolder() {
   folder_->setText(folderWords(task_.report()));
   showStep(Step::choosing);
-  showLabelFiles();
+  series_->showLabelFiles(task_.labelFiles());
   list_->showSeries(task_.report().series, answers_, task_.names());
   if (const std::optional<std::string>& best = task_.bestSeries()) {
     list_->select(*best);
@@ -130,12 +229,12 @@ void ImportPage::stopped() {
   // What could not be read may ask more now; what was chosen of it stays.
   if (const SeriesReport* now = selected()) {
     const GridGeometry grid = before()->geometry;
-    const VoxelBox box = size_->box();
-    const int reduction = size_->reduction();
+    const VoxelBox box = series_->size().box();
+    const int reduction = series_->size().reduction();
     *before() = *now;
     if (now->verdict != Verdict::refused) before()->geometry = grid;
     seriesSelected();
-    if (before()->geometry == grid) size_->restore(box, reduction);
+    if (before()->geometry == grid) series_->size().restore(box, reduction);
   } else {
     seriesSelected();
   }
@@ -154,49 +253,30 @@ void ImportPage::dropEvent(QDropEvent* event) {
 // Return goes on, Esc goes back, as the buttons do.
 void ImportPage::keyPressEvent(QKeyEvent* event) {
   const int key = event->key();
-  const bool asking = step_ == Step::asking;
-  if (key == Qt::Key_Escape) return asking ? back() : reject();
-  if (key == Qt::Key_Return || key == Qt::Key_Enter) {
-    return asking ? open_case_->click() : import_->click();
-  }
+  if (key == Qt::Key_Escape) return step_ == Step::asking ? back() : reject();
+  if (key == Qt::Key_Return || key == Qt::Key_Enter) return bar_->goOn();
   QWidget::keyPressEvent(event);
 }
 
 void ImportPage::say(const QString& text) {
-  if (task_.isWorking()) return;
-  status_->setText(text);
-  status_->show();
+  if (!task_.isWorking()) bar_->say(text);
 }
 
 void ImportPage::showStep(Step step) {
   step_ = step;
-  const bool working = step == Step::scanning || step == Step::reading;
   const bool choosing = step == Step::choosing;
   list_->setEnabled(choosing || step == Step::scanning);
-  take_found_->setVisible(step == Step::scanning);
   scan_on_->setVisible(choosing && std::ranges::any_of(task_.report().series, [](const auto& one) {
                          return std::ranges::find(one.findings, code::kScanStopped,
                                                   &Finding::code) != one.findings.end();
                        }));
-  for (QWidget* part : {static_cast<QWidget*>(open_folder_), static_cast<QWidget*>(open_file_),
-                        static_cast<QWidget*>(series_page_)}) {
-    part->setEnabled(choosing);
-  }
-  preview_->setEnabled(!working);
-  right_->setCurrentWidget(step == Step::asking ? asking_page_ : series_page_);
-  for (QWidget* part : {static_cast<QWidget*>(status_), static_cast<QWidget*>(progress_),
-                        static_cast<QWidget*>(cancel_)}) {
-    part->setVisible(working);
-  }
-  close_->setVisible(!working && step != Step::asking);
-  // Also while it cannot be used: what follows Cancel at its place is Close, never Import.
-  import_->setVisible(step != Step::asking);
-  report_->setVisible(choosing && task_.hasFolder());
-  back_->setVisible(step == Step::asking);
-  open_case_->setVisible(step == Step::asking);
+  open_folder_->setEnabled(choosing);
+  open_file_->setEnabled(choosing);
+  series_area_->setEnabled(choosing);
+  preview_->setEnabled(!isWorking(step));
+  right_->setCurrentWidget(step == Step::asking ? late_area_ : series_area_);
+  bar_->show(step, task_.hasFolder());
   if (step == Step::scanning) {
-    status_->setText(tr("Looking through the files"));
-    progress_->setValue(0);
     folder_->clear();
     list_->showSeries({}, {});
     found_taken_ = false;
@@ -208,23 +288,15 @@ void ImportPage::showStep(Step step) {
 
 void ImportPage::seriesSelected() {
   const SeriesReport* series = selected();
-  card_->setVisible(series);
-  labels_box_->setVisible(series && series->source == "DICOM" && series->modality == "CT" &&
-                          labels_->count() > 1 &&
-                          seriesState(*series, answers()) != SeriesState::refused);
-  size_box_->setVisible(series && seriesState(*series, answers()) != SeriesState::refused);
+  series_->show(series, before(), series ? answers() : Answers());
   if (!series) {
     const std::optional<Error>& error = task_.report().error;
-    choices_->ask({}, {});
     preview_->showNothing(step_ == Step::choosing && error
                               ? toQt(error->what + ". " + error->next + '.')
                               : QString());
     return showImportButton();
   }
-  const bool grid_known = before()->verdict != Verdict::refused;
-  size_->setGrid(grid_known ? before()->geometry : GridGeometry{});
-  choices_->ask(before()->choices, answers());
-  task_.wantPictures(list_->selectedUid(), choices_->slicesShown());
+  task_.wantPictures(list_->selectedUid(), series_->choices().slicesShown());
   showSelected();
   const GridGeometry& grid = before()->geometry;
   preview_->showStack(series->slices,
@@ -235,19 +307,20 @@ void ImportPage::seriesSelected() {
 void ImportPage::showSelected() {
   const SeriesReport* series = selected();
   if (!series) return;
-  card_->showSeries(*series, answers(), neededMb({{}, size_->crop(), size_->reduction(), {}}),
-                    task_.roomMb());
+  const SizePanel& size = series_->size();
+  series_->card().showSeries(*series, answers(), neededMb({{}, size.crop(), size.reduction(), {}}),
+                             task_.roomMb());
   listSelected();
   showImportButton();
 }
 
 void ImportPage::showImportButton() {
-  take_found_->setEnabled(step_ == Step::scanning && !found_taken_ && list_->currentItem());
+  bar_->setFoundEnough(step_ == Step::scanning && !found_taken_ && list_->currentItem());
   const SeriesReport* series = selected();
   const bool usable = series && mayBeRead(seriesState(*series, answers()));
-  const bool refused = size_->isRefused();
-  import_->setEnabled(step_ == Step::choosing && usable && !refused);
-  import_->setToolTip(!series   ? QString()
+  const bool refused = series_->size().isRefused();
+  bar_->setImportable(step_ == Step::choosing && usable && !refused,
+                      !series   ? QString()
                       : !usable ? verdictSentence(*series, answers())
                       : refused ? tr("Mend the number of the box that is refused")
                                 : QString());
@@ -281,14 +354,18 @@ void ImportPage::showKept() {
   const bool as_stored = grid_known && isAsStored(*series, canvas.image());
   const bool choosing = step_ == Step::choosing;
   canvas.setDrawable(choosing && as_stored);
-  size_note_->setText(
-      grid_known ? tr("The volume is straightened when it is read, so its box cannot be drawn on "
-                      "the slices as they are stored.")
-                 : tr("What your answers make of it can be cropped once it has been read."));
-  size_note_->setVisible(
-      series && (!grid_known || (size_->crop() && !as_stored && !canvas.image().isNull())));
-  if (!choosing || !as_stored || !size_->crop()) return canvas.setKept({});
-  const VoxelBox box = size_->box();
+  const std::optional<VoxelBox> crop = series_->size().crop();
+  QString note;
+  if (series && !grid_known) {
+    note = tr("What your answers make of it can be cropped once it has been read.");
+  } else if (crop && series && !as_stored && !canvas.image().isNull()) {
+    note =
+        tr("The volume is straightened when it is read, so its box cannot be drawn on the "
+           "slices as they are stored.");
+  }
+  series_->noteSize(note);
+  if (!choosing || !as_stored || !crop) return canvas.setKept({});
+  const VoxelBox box = series_->size().box();
   const bool slices_too = series->slices == series->geometry.size[2];
   const bool inside = preview_->index() >= box.low[2] && preview_->index() < box.high[2];
   canvas.setKept(slices_too && !inside ? QRect()
@@ -297,19 +374,19 @@ void ImportPage::showKept() {
 }
 
 void ImportPage::boxDrawn(const QRect& pixels) {
-  VoxelBox box = size_->box();
+  VoxelBox box = series_->size().box();
   box.low[0] = pixels.left();
   box.low[1] = pixels.top();
   box.high[0] = pixels.left() + pixels.width();
   box.high[1] = pixels.top() + pixels.height();
-  size_->setBox(box);
+  series_->size().setBox(box);
 }
 
 // --- Reading ---
 
 void ImportPage::import() {
-  if (!import_->isEnabled()) return;
-  request_ = {answers(), size_->crop(), size_->reduction(), {}};
+  if (!bar_->isImportable()) return;
+  request_ = {answers(), series_->size().crop(), series_->size().reduction(), {}};
   loss_told_ = false;
   showStep(Step::reading);
   task_.read(list_->selectedUid(), request_, neededMb(request_));
@@ -332,30 +409,22 @@ void ImportPage::readDone() {
 
 void ImportPage::ask(const SeriesReport& after, const std::vector<Choice>& questions) {
   const std::optional<Provenance>& provenance = task_.report().provenance;
-  loss_->setText(provenance && provenance->loss ? lossWords(*provenance->loss) : QString());
-  loss_->setVisible(!loss_->text().isEmpty());
+  late_->ask(provenance ? provenance->loss : std::nullopt, task_.couch().found, questions);
   loss_told_ = true;
-  couch_->setVisible(task_.couch().found);
-  face_->setVisible(std::ranges::find(questions, code::kFace, &Choice::code) != questions.end());
-  late_choices_->ask(questions, {});
   showStep(Step::asking);
-  open_case_->setEnabled(late_choices_->allAnswered());
+  bar_->setAnswered(late_->allAnswered());
   preview_->canvas().setKept({});
   preview_->canvas().setDrawable(false);
   preview_->showStack(after.geometry.size[2], after.geometry.direction);
-  if (auto* first = late_choices_->findChild<QAbstractButton*>()) {
-    first->setFocus();
-  } else {
-    open_case_->setFocus();
-  }
+  if (!late_->focusFirst()) bar_->focusOpenCase();
 }
 
 // All that was asked after reading has an answer: what is not as it was read is read again.
 void ImportPage::answered() {
-  if (!late_choices_->allAnswered()) return;
+  if (!late_->allAnswered()) return;
   bool as_read = true;
   const SeriesReport* after = selected();
-  for (const auto& [code, option] : late_choices_->answers()) {
+  for (const auto& [code, option] : late_->answers()) {
     answers()[code] = option;
     const auto choice = std::ranges::find(after->choices, code, &Choice::code);
     as_read &= choice != after->choices.end() && option == choice->options.front();
@@ -375,9 +444,7 @@ void ImportPage::openCase() {
   showStep(Step::choosing);
   active_ = false;
   emit closed();
-  const bool with_labels = series->source == "DICOM" && labels_->currentIndex() > 0;
-  emit caseRead(read,
-                with_labels ? toPath(labels_->currentData().toString()) : std::filesystem::path());
+  emit caseRead(read, series->source == "DICOM" ? series_->labelFile() : std::filesystem::path());
 }
 
 void ImportPage::back() {

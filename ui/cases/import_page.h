@@ -3,19 +3,17 @@
 // It shows what ImportTask knows and asks it for work; it decides nothing about images.
 #pragma once
 
-#include <QComboBox>
 #include <QLabel>
-#include <QProgressBar>
 #include <QPushButton>
 #include <QScrollArea>
 #include <QStackedWidget>
 #include <map>
 
 #include "case/case.h"
-#include "ui/cases/choice_panel.h"
-#include "ui/cases/report_card.h"
+#include "ui/cases/import_bar.h"
+#include "ui/cases/late_questions.h"
 #include "ui/cases/series_list.h"
-#include "ui/cases/size_panel.h"
+#include "ui/cases/series_page.h"
 #include "ui/views/slice_preview.h"
 #include "ui/work/import_task.h"
 
@@ -49,15 +47,10 @@ class ImportPage : public QWidget {
   void keyPressEvent(QKeyEvent* event) override;
 
  private:
-  // Empty: nothing scanned. Asking: read, and something is to be said or asked before it opens.
-  enum class Step { empty, scanning, choosing, reading, asking };
+  using Step = ImportStep;
 
-  // import_dialog_layout.cpp
   void build();
   QWidget* buildFolderColumn();
-  QWidget* buildSeriesPage();
-  QWidget* buildAskingPage();
-  QLayout* buildBottomRow();
   void connectParts();
 
   void showStep(Step step);
@@ -68,7 +61,6 @@ class ImportPage : public QWidget {
   void seriesSelected();
   void showSelected();
   void showImportButton();
-  void showLabelFiles();
   void takeFound();
   void showSlice(const QString& uid, int index, const Result<SlicePicture>& picture);
   void showKept();
@@ -100,17 +92,11 @@ class ImportPage : public QWidget {
   QLabel* folder_;
   SlicePreview* preview_;
   QStackedWidget* right_;
-  QScrollArea *series_page_, *asking_page_;
-  ReportCard* card_;
-  ChoicePanel *choices_, *late_choices_;
-  SizePanel* size_;
-  QWidget *size_box_, *labels_box_;
-  QComboBox* labels_;
-  QLabel *size_note_, *loss_, *couch_, *face_;
-  QLabel* status_;
-  QProgressBar* progress_;
-  QPushButton *open_folder_, *open_file_, *scan_on_, *report_, *cancel_, *close_, *back_, *import_,
-      *take_found_, *open_case_;
+  QScrollArea *series_area_, *late_area_;
+  SeriesPage* series_;
+  LateQuestions* late_;
+  ImportBar* bar_;
+  QPushButton *open_folder_, *open_file_, *scan_on_;
 };
 
 }  // namespace trephine

@@ -5,6 +5,7 @@
 #include "ui/cases/import_words.h"
 #include "ui/cases/state_mark.h"
 #include "ui/common/colours.h"
+#include "ui/common/making.h"
 
 namespace trephine {
 
@@ -33,8 +34,7 @@ ReportCard::ReportCard(QWidget* questions, QWidget* parent) : QWidget(parent) {
     label->setTextInteractionFlags(Qt::TextSelectableByMouse);
   }
 
-  auto* layout = new QGridLayout(this);
-  layout->setContentsMargins(0, 0, 0, 0);
+  auto* layout = tight(new QGridLayout(this));
   layout->setColumnStretch(1, 1);
   layout->addWidget(mark_, 0, 0);
   layout->addWidget(word_, 0, 1);

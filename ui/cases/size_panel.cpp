@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "ui/cases/import_words.h"
+#include "ui/common/making.h"
 #include "volume/reduce.h"
 
 namespace trephine {
@@ -24,8 +25,7 @@ SizePanel::SizePanel(QWidget* parent) : QWidget(parent) {
   resolution_row->addStretch(1);
 
   box_rows_ = new QWidget(this);
-  auto* rows = new QGridLayout(box_rows_);
-  rows->setContentsMargins(0, 0, 0, 0);
+  auto* rows = tight(new QGridLayout(box_rows_));
   rows->setColumnStretch(1, 1);
   rows->setColumnStretch(3, 1);
   const QString axes[] = {tr("Columns"), tr("Rows"), tr("Slices")};
@@ -48,17 +48,12 @@ SizePanel::SizePanel(QWidget* parent) : QWidget(parent) {
     rows->addWidget(new QLabel(tr("to"), this), axis, 2);
     rows->addLayout(to_[i]->withReason(), axis, 3);
   }
-  reset_ = new QPushButton(tr("&Take all of it"), this);
-  reset_->setObjectName("cropReset");
-  outcome_ = new QLabel(this);
-  outcome_->setObjectName("sizeOutcome");
-  outcome_->setWordWrap(true);
-  outcome_->setProperty("quiet", true);
+  reset_ = namedButton("cropReset", tr("&Take all of it"), false, this);
+  outcome_ = wrappedLabel("sizeOutcome", {"quiet"});
   rows->addWidget(outcome_, 3, 0, 1, 3);
   rows->addWidget(reset_, 3, 3);
 
-  auto* layout = new QVBoxLayout(this);
-  layout->setContentsMargins(0, 0, 0, 0);
+  auto* layout = tight(new QVBoxLayout(this));
   layout->addLayout(resolution_row);
   layout->addWidget(box_rows_);
 

@@ -66,8 +66,7 @@ struct FieldEditor::Numbers : Part {
   Numbers(FieldEditor& of, const QString& name, QVBoxLayout& column) : Part(of, name) {
     const FieldKind kind = of.field_.kind;
     const bool three = kind == FieldKind::three_numbers || kind == FieldKind::direction;
-    auto* beside = new QHBoxLayout;
-    beside->setSpacing(3);
+    auto* beside = tight(new QHBoxLayout, 3);
     for (int part = 0; part < (three ? 3 : 1); ++part) {
       const char* const parts[] = {"X", "Y", "Z"};
       beside->addLayout(add(three ? name + parts[part] : name, three, part), 1);

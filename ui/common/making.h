@@ -2,7 +2,9 @@
 #pragma once
 
 #include <QBoxLayout>
-#include <QWidget>
+#include <QLabel>
+#include <QProgressBar>
+#include <QPushButton>
 #include <initializer_list>
 
 namespace trephine {
@@ -29,12 +31,42 @@ Label* wrapped(Label* label) {
   return label;
 }
 
-// Without margins; `spacing` in pixels, negative: the style's.
+// Without margins, or with these alone; `spacing` in pixels, negative: the style's.
 template <class Layout>
-Layout* tight(Layout* layout, int spacing = -1) {
-  layout->setContentsMargins(0, 0, 0, 0);
+Layout* tight(Layout* layout, int spacing = -1, const QMargins& margins = {}) {
+  layout->setContentsMargins(margins);
   if (spacing >= 0) layout->setSpacing(spacing);
   return layout;
+}
+
+// A button that Enter elsewhere in a dialog leaves alone.
+inline QPushButton* namedButton(const char* name, const QString& text, bool primary = false,
+                                QWidget* parent = nullptr) {
+  auto* button = named(new QPushButton(text, parent), name);
+  button->setAutoDefault(false);
+  if (primary) looking(button, {"primary"});
+  return button;
+}
+
+// Words that a part fills in.
+inline QLabel* namedLabel(const char* name, Looks looks = {}) {
+  return named(new QLabel, name, looks);
+}
+
+// The same over several lines, as plain text: whatever they hold.
+inline QLabel* wrappedLabel(const char* name, Looks looks = {}) {
+  QLabel* label = wrapped(namedLabel(name, looks));
+  label->setTextFormat(Qt::PlainText);
+  return label;
+}
+
+// How far something is, as a thin bar of so many steps.
+inline QProgressBar* thinProgress(const char* name, int steps) {
+  auto* bar = named(new QProgressBar, name);
+  bar->setRange(0, steps);
+  bar->setTextVisible(false);
+  bar->setMaximumHeight(14);
+  return bar;
 }
 
 // One after the other.

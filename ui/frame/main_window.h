@@ -111,7 +111,7 @@ class MainWindow : public QMainWindow {
   Rail* rail_;
   QStackedWidget* pages_;
   QWidget *left_, *below_, *right_;  // each holds one part a workspace
-  QSplitter* columns_;  // the views and what is beside them
+  QSplitter* columns_;               // the views and what is beside them
   QToolBar* bar_;
   QAction *picture_, *volume_, *look_, *left_panel_, *right_panel_, *full_screen_;
   StatusLine* status_;

@@ -3,6 +3,7 @@
 #include <QSignalBlocker>
 #include <algorithm>
 
+#include "ui/common/making.h"
 #include "ui/common/setting_words.h"
 #include "ui/common/words.h"
 
@@ -74,8 +75,7 @@ QWidget* OutlineForm::buildButtons() {
     if (here_) takeOff(here_->points_mm.size() - 1);
   });
   auto* row = new QWidget(fields());
-  auto* buttons = new QHBoxLayout(row);
-  buttons->setContentsMargins(0, 0, 0, 0);
+  auto* buttons = tight(new QHBoxLayout(row));
   for (QToolButton* button : {draw_, back_, clear_}) buttons->addWidget(button);
   buttons->addStretch(1);
   return row;

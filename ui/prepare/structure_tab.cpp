@@ -52,10 +52,12 @@ StructureTab::StructureTab(Workstation& workstation, Messages& messages, WorkGua
   connect(view_, &ViewWidget::nothingThere, this, [this] {
     structures_.say(tr("Nothing solid is seen there: ghosts are passed through."));
   });
-  connect(&structures_, &StructurePanel::lookWanted, &picture_, &TissuePicture::setLook);
-  connect(&structures_, &StructurePanel::opacityWanted, &picture_, &TissuePicture::setOpacity);
-  connect(&structures_, &StructurePanel::colourChosen, &picture_, &TissuePicture::setColour);
-  connect(&structures_, &StructurePanel::decided, this, [this] { view_->setFocus(); });
+  StructureList* list = &structures_.list();
+  connect(list, &StructureList::lookWanted, &picture_, &TissuePicture::setLook);
+  connect(list, &StructureList::opacityWanted, &picture_, &TissuePicture::setOpacity);
+  connect(list, &StructureList::colourChosen, &picture_, &TissuePicture::setColour);
+  connect(&structures_.notices(), &StructureNotices::decided, view_,
+          qOverload<>(&QWidget::setFocus));
   connect(&editor_, &StructureEditor::changed, this, [this](const VoxelBox& box) {
     if (views_->mirror().labels() == editor_.map()) views_->labelsChanged(box);
     settled_.start();
@@ -261,7 +263,7 @@ bool StructureTab::key(int key) {
       structures_.makeSkin();
       break;
     case Qt::Key_V:
-      structures_.nextLook();
+      structures_.list().nextLook();
       break;
     case Qt::Key_BracketLeft:
     case Qt::Key_BracketRight:

@@ -48,7 +48,7 @@ void TissuePicture::show() {
     views_->setTissues(set, looks);
   }
   SeenTissues seen = withStructures(set, looks, rows, structure_looks_);
-  structures_.showLooks(seen.structures);
+  structures_.list().showLooks(seen.structures);
   if (seen_ && seen_->tissues == seen.tissues && seen_->looks == seen.looks) return;
   seen_ = std::move(seen);
   view_->setTissues(seen_->tissues, seen_->looks);

@@ -93,7 +93,7 @@ void TissueTab::showHistory(bool serve) {
   const ExerciseHistory& edits = workstation_.edits();
   const QString undo = edits.canUndo() ? editWords(edits.undoWhat()) : QString();
   const QString redo = edits.canRedo() ? editWords(edits.redoWhat()) : QString();
-  tissues_.showHistory(undo, redo);
+  tissues_.sets().showHistory(undo, redo);
   if (!serve) return;
   undo_.setEnabled(!undo.isEmpty());
   redo_.setEnabled(!redo.isEmpty());
@@ -106,16 +106,17 @@ void TissueTab::showHistory(bool serve) {
 // --- Sets ---
 
 void TissueTab::connectSets() {
-  connect(&tissues_, &TissuePanel::newSetWanted, this, &TissueTab::newSet);
-  connect(&tissues_, &TissuePanel::duplicateWanted, this, &TissueTab::duplicateSet);
-  connect(&tissues_, &TissuePanel::importWanted, this, &TissueTab::askForSet);
-  connect(&tissues_, &TissuePanel::exportWanted, this, &TissueTab::askToExportSet);
-  connect(&tissues_, &TissuePanel::revertWanted, this, &TissueTab::revertSet);
-  connect(&tissues_, &TissuePanel::setWanted, this, &TissueTab::useSet);
-  connect(&tissues_, &TissuePanel::undoWanted, this, [this] { workstation_.undoEdit(); });
-  connect(&tissues_, &TissuePanel::redoWanted, this, [this] { workstation_.redoEdit(); });
-  connect(&tissues_, &TissuePanel::setsWanted, this,
-          [this] { tissues_.setSets(setsOfWorkstation()); });
+  TissueSetRow* sets = &tissues_.sets();
+  connect(sets, &TissueSetRow::newSetWanted, this, &TissueTab::newSet);
+  connect(sets, &TissueSetRow::duplicateWanted, this, &TissueTab::duplicateSet);
+  connect(sets, &TissueSetRow::importWanted, this, &TissueTab::askForSet);
+  connect(sets, &TissueSetRow::exportWanted, this, &TissueTab::askToExportSet);
+  connect(sets, &TissueSetRow::revertWanted, this, &TissueTab::revertSet);
+  connect(sets, &TissueSetRow::setWanted, this, &TissueTab::useSet);
+  connect(sets, &TissueSetRow::undoWanted, this, [this] { workstation_.undoEdit(); });
+  connect(sets, &TissueSetRow::redoWanted, this, [this] { workstation_.redoEdit(); });
+  connect(sets, &TissueSetRow::setsWanted, this,
+          [this, sets] { sets->setSets(setsOfWorkstation()); });
 }
 
 // The product's, then a person's own, each by name.

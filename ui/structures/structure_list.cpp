@@ -7,7 +7,7 @@
 #include <functional>
 
 #include "ui/common/colours.h"
-#include "ui/common/named_parts.h"
+#include "ui/common/making.h"
 #include "ui/common/words.h"
 
 namespace trephine {
@@ -38,10 +38,9 @@ StructureList::StructureList(StructureEditor& editor, QWidget* parent)
   QSizePolicy keeps = look_->sizePolicy();
   keeps.setRetainSizeWhenHidden(true);
   look_->setSizePolicy(keeps);
-  no_room_ = wrappedLabel("structureNoRoom", this);
+  no_room_ = wrappedLabel("structureNoRoom");
   colours::setText(*no_room_, colours::kCaution);
-  empty_ = wrappedLabel("structuresEmpty", this);
-  empty_->setProperty("quiet", true);
+  empty_ = wrappedLabel("structuresEmpty", {"quiet"});
   empty_->setAlignment(Qt::AlignTop);
   auto* listing = new QWidget(this);
   listing->setSizePolicy(QSizePolicy::Expanding, QSizePolicy::Ignored);
@@ -49,9 +48,7 @@ StructureList::StructureList(StructureEditor& editor, QWidget* parent)
   listing_ = new QStackedLayout(listing);
   listing_->addWidget(list_);
   listing_->addWidget(empty_);
-  auto* layout = new QVBoxLayout(this);
-  layout->setContentsMargins(0, 0, 0, 0);
-  layout->setSpacing(8);
+  auto* layout = tight(new QVBoxLayout(this), 8);
   layout->addWidget(listing, 1);
   layout->addWidget(look_);
   layout->addWidget(no_room_);
@@ -206,10 +203,6 @@ void StructureList::showLooks() {
                         .arg(kMaxTissues)
                         .arg(names));
   no_room_->setVisible(!without.isEmpty());
-}
-
-void StructureList::nextLook() {
-  nextLook(editor_.current());
 }
 
 void StructureList::nextLook(int label) {

@@ -20,7 +20,7 @@ class StructureList : public QWidget {
 
   // How the 3-D view shows them.
   void showLooks(const std::vector<SeenStructure>& seen);
-  void nextLook();  // of the chosen one: shown, ghosted, hidden
+  void nextLook() { nextLook(editor_.current()); }  // shown, ghosted, hidden
 
  signals:
   void lookWanted(int label, trephine::TissueLook look);

@@ -4,7 +4,7 @@
 #include <QSignalBlocker>
 #include <cmath>
 
-#include "ui/tissue/tissue_panel.h"
+#include "ui/common/making.h"
 
 namespace trephine {
 
@@ -27,8 +27,7 @@ StructureLookRow::StructureLookRow(QWidget* parent)
   opacity_->setRange(1, kSteps);  // hidden is another choice
   opacity_->setPageStep(kSteps / 10);
   number_->setMinimumWidth(fontMetrics().horizontalAdvance("0.00 /mm"));
-  auto* layout = new QHBoxLayout(this);
-  layout->setContentsMargins(0, 0, 0, 0);
+  auto* layout = tight(new QHBoxLayout(this));
   layout->addWidget(new QLabel(tr("Look"), this));
   layout->addWidget(look_);
   layout->addWidget(opacity_, 1);

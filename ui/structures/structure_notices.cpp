@@ -5,7 +5,7 @@
 #include <QVBoxLayout>
 
 #include "ui/common/colours.h"
-#include "ui/common/named_parts.h"
+#include "ui/common/making.h"
 
 namespace trephine {
 
@@ -15,14 +15,12 @@ constexpr int kProgressSteps = 1000;
 }  // namespace
 
 StructureNotices::StructureNotices(StructureEditor& editor, QWidget* parent)
-    : QWidget(parent), editor_(editor), said_(wrappedLabel("structureSaid", this)) {
+    : QWidget(parent), editor_(editor), said_(wrappedLabel("structureSaid")) {
   preview_box_ = buildPreview();
   progress_box_ = buildProgress();
   box_line_ = buildBoxLine();
   setMinimumHeight(kLines * fontMetrics().lineSpacing() + take_->sizeHint().height());
-  auto* layout = new QVBoxLayout(this);
-  layout->setContentsMargins(0, 0, 0, 0);
-  layout->setSpacing(4);
+  auto* layout = tight(new QVBoxLayout(this), 4);
   for (QWidget* part : {preview_box_, progress_box_, static_cast<QWidget*>(said_), box_line_}) {
     layout->addWidget(part);
   }
@@ -42,13 +40,12 @@ StructureNotices::StructureNotices(StructureEditor& editor, QWidget* parent)
 
 QWidget* StructureNotices::buildPreview() {
   auto* box = new QWidget(this);
-  preview_ = wrappedLabel("structurePreview", box);
+  preview_ = wrappedLabel("structurePreview");
   take_ = namedButton("takePreview", tr("&Take it"), false, box);
   take_->setToolTip(tr("It counts from now on (Return in a slice)"));
   auto* leave = namedButton("leavePreview", tr("&Leave it"), false, box);
   leave->setToolTip(tr("It goes again (Esc in a slice)"));
-  auto* layout = new QGridLayout(box);
-  layout->setContentsMargins(0, 0, 0, 0);
+  auto* layout = tight(new QGridLayout(box));
   layout->addWidget(preview_, 0, 0, 1, 2);
   layout->addWidget(take_, 1, 0);
   layout->addWidget(leave, 1, 1);
@@ -62,14 +59,9 @@ QWidget* StructureNotices::buildPreview() {
 
 QWidget* StructureNotices::buildProgress() {
   auto* box = new QWidget(this);
-  progress_ = new QProgressBar(box);
-  progress_->setObjectName("structureProgress");
-  progress_->setRange(0, kProgressSteps);
-  progress_->setTextVisible(false);
-  progress_->setMaximumHeight(14);
+  progress_ = thinProgress("structureProgress", kProgressSteps);
   auto* cancel = namedButton("cancelStructure", tr("Cancel"), false, box);
-  auto* layout = new QHBoxLayout(box);
-  layout->setContentsMargins(0, 0, 0, 0);
+  auto* layout = tight(new QHBoxLayout(box));
   layout->addWidget(progress_, 1);
   layout->addWidget(cancel);
   connect(cancel, &QPushButton::clicked, &editor_, &StructureEditor::cancel);
@@ -78,10 +70,9 @@ QWidget* StructureNotices::buildProgress() {
 
 QWidget* StructureNotices::buildBoxLine() {
   auto* line = new QWidget(this);
-  box_ = wrappedLabel("growBox", line);
+  box_ = wrappedLabel("growBox");
   auto* none = namedButton("noGrowBox", tr("No bo&x"), false, line);
-  auto* layout = new QHBoxLayout(line);
-  layout->setContentsMargins(0, 0, 0, 0);
+  auto* layout = tight(new QHBoxLayout(line));
   layout->addWidget(box_, 1);
   layout->addWidget(none);
   connect(none, &QPushButton::clicked, &editor_, &StructureEditor::leaveBox);

@@ -23,7 +23,7 @@ class StructureNotices : public QWidget {
   void setHint(const QString& hint);
 
  signals:
-  void decided();  // about a preview
+  void decided();  // about a preview: the keys go back to the views
 
  private:
   QWidget* buildPreview();

@@ -34,9 +34,8 @@ class StructurePanel : public QWidget {
   const std::array<ViewTool*, 5>& tools() const { return tools_; }
   bool holds(const ViewTool& tool) const { return std::ranges::count(tools_, &tool) > 0; }
   void showTool(const ViewTool& tool);
-  // How the 3-D view shows them.
-  void showLooks(const std::vector<SeenStructure>& seen) { list_->showLooks(seen); }
-  void nextLook() { list_->nextLook(); }
+  StructureList& list() { return *list_; }
+  StructureNotices& notices() { return *notices_; }
   // What a click or a stroke of the chosen tool does.
   Brush brush(bool erase, int across) const;
   GrowOptions growing() const;
@@ -44,7 +43,6 @@ class StructurePanel : public QWidget {
   double brushRadius_mm() const { return radius_->wanted(); }
   void stepRadius(int steps);
   void makeSkin();  // as thick as is set
-  // What was said last; nothing: what the tool in hand does.
   void say(const QString& words) { notices_->say(words); }
   void suitVoxels(const Vec3& spacing_mm);  // what a step does nothing without
   void offerWanted();  // the first that the exercise lacks, as the next one's name
@@ -52,10 +50,6 @@ class StructurePanel : public QWidget {
  signals:
   void toolChosen(trephine::ViewTool* tool);  // null: put down
   void brushChanged();
-  void lookWanted(int label, trephine::TissueLook look);
-  void colourChosen(int label, const trephine::Vec3& colour);
-  void decided();  // about a preview: the keys go back to the views
-  void opacityWanted(int label, double per_mm);
   void openWanted();
   void saveWanted();           // as a label map
   void saveDicomWanted();      // with the CT, under new UIDs
@@ -63,13 +57,14 @@ class StructurePanel : public QWidget {
   void saveSurfaceWanted();    // of the current one
 
  private:
-  void build();  // structure_panel_layout.cpp
+  void build();
   QLayout* buildTools();
   QLayout* buildShaping();
   QMenu* buildSaving();
   void showOffered();
   void showState();
   void regrow();
+  std::optional<HuSpan> onlyHu() const;
   QToolButton* button(const char* name, const QString& text, const QString& tip);
 
   StructureEditor& editor_;

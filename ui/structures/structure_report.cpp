@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "ui/common/making.h"
 #include "ui/common/words.h"
 
 namespace trephine {
@@ -73,10 +74,7 @@ StructureReport::StructureReport(const Case& of, QWidget* parent) : QDialog(pare
 
 void StructureReport::build() {
   setWindowTitle(tr("Structures that were found"));
-  said_ = new QLabel(this);
-  said_->setObjectName("structureReportSaid");
-  said_->setWordWrap(true);
-  said_->setTextFormat(Qt::PlainText);
+  said_ = wrappedLabel("structureReportSaid");
   said_->setTextInteractionFlags(Qt::TextSelectableByMouse);
   list_ = new QTreeWidget(this);
   list_->setObjectName("structureReportList");

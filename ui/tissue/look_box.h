@@ -2,6 +2,7 @@
 #pragma once
 
 #include <QComboBox>
+#include <cmath>
 #include <functional>
 
 #include "tissue/tissue_look.h"
@@ -28,5 +29,14 @@ class LookBox : public QComboBox {
  private:
   bool icon_alone_ = false;
 };
+
+// A slider of opacity is finer where tissues are nearly clear: position 0 to 1 against opacity per
+// mm.
+inline double opacityAtSlider(double position) {
+  return position * position;
+}
+inline double sliderAtOpacity(double opacity) {
+  return std::sqrt(opacity);
+}
 
 }  // namespace trephine

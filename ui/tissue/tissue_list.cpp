@@ -6,42 +6,29 @@
 #include <QPainterPath>
 #include <QVBoxLayout>
 #include <algorithm>
-#include <cmath>
+#include <iterator>
 
 #include "ui/common/colours.h"
+#include "ui/common/making.h"
+#include "ui/common/setting_words.h"
 #include "ui/common/words.h"
 
 namespace trephine {
 
 namespace {
 
-QString presetWords(ViewPreset preset) {
-  switch (preset) {
-    case ViewPreset::bone:
-      return TissueList::tr("Bone");
-    case ViewPreset::skin:
-      return TissueList::tr("Skin");
-    case ViewPreset::soft_tissue:
-      return TissueList::tr("Soft tissue");
-    case ViewPreset::liver:
-      return TissueList::tr("Liver");
-  }
-  return {};
-}
-
-const char* presetName(ViewPreset preset) {
-  switch (preset) {
-    case ViewPreset::bone:
-      return "presetBone";
-    case ViewPreset::skin:
-      return "presetSkin";
-    case ViewPreset::soft_tissue:
-      return "presetSoftTissue";
-    case ViewPreset::liver:
-      return "presetLiver";
-  }
-  return "";
-}
+struct PresetButton {
+  ViewPreset preset;
+  const char *name, *words;
+};
+constexpr PresetButton kPresetButtons[] = {
+    {ViewPreset::bone, "presetBone", QT_TRANSLATE_NOOP("trephine::TissueList", "Bone")},
+    {ViewPreset::skin, "presetSkin", QT_TRANSLATE_NOOP("trephine::TissueList", "Skin")},
+    {ViewPreset::soft_tissue, "presetSoftTissue",
+     QT_TRANSLATE_NOOP("trephine::TissueList", "Soft tissue")},
+    {ViewPreset::liver, "presetLiver", QT_TRANSLATE_NOOP("trephine::TissueList", "Liver")},
+};
+static_assert(std::size(kPresetButtons) == kViewPresets.size());
 
 }  // namespace
 
@@ -74,22 +61,14 @@ TissueList::TissueList(QWidget* parent) : QWidget(parent) {
   list_->setSizePolicy(QSizePolicy::Ignored, QSizePolicy::Fixed);
   list_->setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
   list_->setSpacing(1);
-  const auto button = [this](const char* name, const QString& text, const QString& tip) {
-    auto* made = new QToolButton(this);
-    made->setObjectName(name);
-    made->setText(text);
-    made->setToolTip(tip);
-    made->setFocusPolicy(Qt::TabFocus);
-    return made;
-  };
-  add_ = button("addTissue", tr("Add a tissue"), tr("One more, in HU that have none"));
-  remove_ = button("removeTissue", tr("Remove it"), tr("The chosen tissue goes from the set"));
+  add_ = settingButton("addTissue", tr("Add a tissue"), tr("One more, in HU that have none"), this);
+  remove_ = settingButton("removeTissue", tr("Remove it"),
+                          tr("The chosen tissue goes from the set"), this);
   auto* below = new QHBoxLayout;
   below->addWidget(add_);
   below->addWidget(remove_);
   below->addStretch(1);
-  auto* layout = new QVBoxLayout(this);
-  layout->setContentsMargins(0, 0, 0, 0);
+  auto* layout = tight(new QVBoxLayout(this));
   layout->addLayout(buildPresets());
   layout->addWidget(list_);
   layout->addLayout(below);
@@ -105,15 +84,14 @@ QLayout* TissueList::buildPresets() {
   grid->setSpacing(4);
   presets_title_ = new QLabel(tr("View"), this);
   grid->addWidget(presets_title_, 0, 0);
-  for (const ViewPreset preset : kViewPresets) {
-    auto* button = new QToolButton(this);
-    button->setObjectName(presetName(preset));
-    button->setText(presetWords(preset));
+  for (const auto& [preset, name, words] : kPresetButtons) {
+    auto* button = settingButton(
+        name, tr(words), tr("A start for the choices below; what is felt and cut stays as it is"),
+        this);
     button->setAccessibleName(tr("View preset: %1").arg(button->text()));
-    button->setToolTip(tr("A start for the choices below; what is felt and cut stays as it is"));
     button->setFocusPolicy(Qt::StrongFocus);
     button->hide();
-    connect(button, &QToolButton::clicked, this, [this, preset] {
+    connect(button, &QToolButton::clicked, this, [this, preset = preset] {
       if (const auto looks = presetLooks(tissues_, preset)) lookChosen(*looks);
     });
     const int place = int(presets_.size());
@@ -153,8 +131,7 @@ void TissueList::lookChosen(const TissueLooks& looks) {
 void TissueList::addItem() {
   list_->addItem(QString());
   auto* beside = new QWidget;
-  auto* layout = new QHBoxLayout(beside);
-  layout->setContentsMargins(0, 0, 0, 0);
+  auto* layout = tight(new QHBoxLayout(beside));
   layout->addStretch(1);
   auto* box = new LookBox(beside);
   box->setIconAlone();
@@ -205,7 +182,7 @@ void TissueList::showItems() {
     const TissueLook look = lookOf(tissue, looks_);
     look_boxes_[std::size_t(i)]->show(tissue, look);
     // As finely as the slider: where tissues are nearly clear.
-    const double share = look == TissueLook::hidden ? 0.0 : std::sqrt(tissue.opacity);
+    const double share = look == TissueLook::hidden ? 0.0 : sliderAtOpacity(tissue.opacity);
     item.setIcon(tissueSwatch(colours::of(tissue.colour), share));
     const QString where =
         !tissue.structure.empty() ? tr(", in %1").arg(shownName(tissue.structure))

@@ -7,6 +7,7 @@
 
 #include "base/utf8.h"
 #include "tissue/tissue_edits.h"
+#include "ui/common/making.h"
 #include "ui/common/translations.h"
 #include "ui/common/words.h"
 
@@ -77,12 +78,10 @@ void TissueMechanics::addNumber(const TissueNumber& row) {
           [this, number] { sourceEntered(number); });
   numbers_.push_back(number);
 
-  auto* below = new QHBoxLayout;
-  below->setSpacing(6);
+  auto* below = tight(new QHBoxLayout, 6);
   below->addWidget(number.source, 1);
   below->addWidget(number.bar, 1);
-  auto* rows = new QVBoxLayout;
-  rows->setSpacing(0);
+  auto* rows = tight(new QVBoxLayout, 0);
   rows->addLayout(number.box->withReason());
   rows->addLayout(below);
   static_cast<QFormLayout*>(layout())->addRow(fromRoom(row.label), rows);
@@ -143,6 +142,24 @@ void TissueMechanics::showOutcome() {
   solid_->setItemText(kStops, tr("is stopped until it is cut"));
   solid_->setItemText(kGoesIn, tr("goes in"));
   solid_->setCurrentIndex(!tissue_.solid ? kByStiffness : *tissue_.solid ? kStops : kGoesIn);
+}
+
+QString TissueMechanics::feltWords() const {
+  if (!arms_) return {};
+  QStringList lines;
+  const auto line = [&](const QString& what, const QString& unit, double demanded, double most) {
+    if (demanded <= most) return;
+    const QString words =
+        isBounded() ? tr("%1: the exercise's laws together demand %2 %4, these arms show at most "
+                         "%3 %4, and that is felt.")
+                    : tr("%1: the exercise's laws together demand %2 %4, and nothing bounds it "
+                         "under this controller: above %3 %4 these arms may shake.");
+    lines << words.arg(what).arg(demanded, 0, 'f', 0).arg(most, 0, 'f', 0).arg(unit);
+  };
+  const Impedance demanded = demanded_(tissue_);
+  line(tr("Damping"), tr("N\u00b7s/m"), demanded.damping, arms_->most.b_max);
+  line(tr("Stiffness"), tr("N/m"), demanded.stiffness, arms_->most.k_max);
+  return lines.join('\n');
 }
 
 void TissueMechanics::entered(const Number& n) {

@@ -30,6 +30,10 @@ class TissueMechanics : public QWidget {
   void setLimits(const std::optional<ArmsLimit>& arms, DemandedOf demanded,
                  const std::vector<LawKind>& laws, RemovalKind removal, ControllerKind in_force);
 
+  // What all laws together demand beyond what these arms show, in lines; empty: nothing.
+  QString feltWords() const;
+  bool isBounded() const { return in_force_ == ControllerKind::bounded; }
+
   // A person wants this; `what` is the number's key. The tissue is as it was where it is refused.
   std::function<Status(const Tissue& wanted, const char* what)> wanted;
 

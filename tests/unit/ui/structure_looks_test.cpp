@@ -29,7 +29,7 @@ class StructureLooksTest : public testing::Test {
     showLooks();
   }
   void showLooks() {
-    panel_.showLooks(withStructures({}, {}, editor_.map()->structures, chosen_).structures);
+    panel_.list().showLooks(withStructures({}, {}, editor_.map()->structures, chosen_).structures);
   }
   QTreeWidget* list() { return panel_.findChild<QTreeWidget*>("structureList"); }
   QString look(int row) { return list()->topLevelItem(row)->text(2); }
@@ -63,14 +63,14 @@ TEST_F(StructureLooksTest, WhatHasNoRoomIsSaidInWordsUntilOthersAreHidden) {
 
 TEST_F(StructureLooksTest, AClickUnderIn3dAndTheChoiceBelowAskForAnotherLook) {
   show(2);
-  QSignalSpy wanted(&panel_, &StructurePanel::lookWanted);
+  QSignalSpy wanted(&panel_.list(), &StructureList::lookWanted);
   emit list()->itemClicked(list()->topLevelItem(1), 2);
   ASSERT_EQ(wanted.count(), 1);
   EXPECT_EQ(wanted[0][0].toInt(), 2);
   EXPECT_EQ(wanted[0][1].value<TissueLook>(), TissueLook::ghosted);
-  panel_.nextLook();  // the first is the chosen one
+  panel_.list().nextLook();  // the first is the chosen one
   EXPECT_EQ(wanted[1][0].toInt(), 1);
-  QSignalSpy opacity(&panel_, &StructurePanel::opacityWanted);
+  QSignalSpy opacity(&panel_.list(), &StructureList::opacityWanted);
   panel_.findChild<QSlider*>("structureOpacity")->setValue(50);
   ASSERT_EQ(opacity.count(), 1);
   EXPECT_NEAR(opacity[0][1].toDouble(), 0.25, 1e-9);
