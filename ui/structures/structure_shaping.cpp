@@ -40,10 +40,17 @@ QString wordsIfThin(const StructureEditor& editor, double thickness_mm) {
                    .arg(voxel_mm, 0, 'f', 1);
 }
 
+// Whether one was current. A preview may have been it, which goes: none is left then, and the edit
+// says so.
+bool beginOnCurrent(StructureEditor& editor) {
+  const bool any = editor.current() != 0;
+  return editor.begin() && any;
+}
+
 // What `make` makes of the current one's map and label.
 template <class Make>
 void mend(StructureEditor& editor, const QString& step, Make make) {
-  if (!editor.begin() || editor.current() == 0) return;
+  if (!beginOnCurrent(editor)) return;
   const int of = editor.current();
   editor.inBackground(
       [map = editor.map(), of, make](const Progress& progress) { return make(*map, of, progress); },
@@ -71,7 +78,7 @@ void makeSkin(StructureEditor& editor, double thickness_mm) {
 }
 
 void makeShell(StructureEditor& editor, double thickness_mm, const QString& name) {
-  if (!editor.begin() || editor.current() == 0) return;
+  if (!beginOnCurrent(editor)) return;
   const int of = editor.current();
   const int into = editor.addStructure(editor.freeName(name));
   if (into == 0) return;

@@ -55,6 +55,10 @@ std::vector<ToolMark> marksOf(const std::vector<ToolView>& tools, const ShownSli
 
 }  // namespace
 
+QColor colourOf(SliceAxis axis) {
+  return factsOf(axis).colour;
+}
+
 QPointF ShownSlice::at(const Vec3& patient_mm) const {
   const Vec3 voxel = toVoxel(stack, patient_mm);
   return inBox(target, {stack.size[0], stack.size[1]}, {voxel.x + 0.5, voxel.y + 0.5});
@@ -75,7 +79,7 @@ void paintCross(QPainter& painter, const ShownSlice& on, const Vec3& point_mm) {
   const QPointF at = on.at(point_mm);
   const QRectF box = on.target & QRectF(QPointF(), on.widget);
   const auto line = [&](SliceAxis of, const QPointF& from, const QPointF& to) {
-    QColor colour = factsOf(of).colour;
+    QColor colour = colourOf(of);
     colour.setAlpha(190);
     painter.setPen(colour);
     painter.drawLine(from, to);

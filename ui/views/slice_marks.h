@@ -29,6 +29,9 @@ struct ShownSlice {
   bool holds(const Measure& measure) const;
 };
 
+// Of a view's name, and of its slices as lines in the other two.
+QColor colourOf(SliceAxis axis);
+
 // Where the other two views' slices cut this one; open around the common point.
 void paintCross(QPainter& painter, const ShownSlice& on, const Vec3& point_mm);
 void paintTools(QPainter& painter, const ShownSlice& on, const std::vector<ToolView>& tools);

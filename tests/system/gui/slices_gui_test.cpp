@@ -17,6 +17,7 @@
 #include "shells.h"
 #include "ui/common/settings.h"
 #include "ui/common/words.h"
+#include "ui/views/slice_marks.h"
 #include "volume/volume_files.h"
 
 using namespace trephine;

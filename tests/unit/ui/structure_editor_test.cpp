@@ -318,6 +318,16 @@ TEST_F(Editor, WhatIsDeletedGivesItsNameAwayAndIsChosenNoMore) {
   EXPECT_NE(editor_.map()->find(first)->name, editor_.map()->find(second)->name);
 }
 
+TEST_F(Editor, ShapingAPreviewAloneIsRefusedInWordsAsItGoes) {
+  editor_.growAt(middle_, "liver");
+  wait();
+  ASSERT_TRUE(editor_.preview());
+  fillHoles(editor_);
+  wait();
+  EXPECT_FALSE(editor_.preview());
+  EXPECT_EQ(failed_, "NO_STRUCTURE");
+}
+
 TEST_F(Editor, WhatWasSaidOfOneStepGoesWithTheNext) {
   fillHoles(editor_);
   stroke(middle_, middle_);
