@@ -470,7 +470,7 @@ Result<LabelEdit> smoothEdit(const LabelMap& map, int label, double radius_mm, c
     const VoxelBox box = widened(*tight, voxelsIn(3.0 * sigma_mm, map.geometry), map.geometry.size);
     const Index3 size = sizeOf(box);
     const double bytes = double(size[0]) * size[1] * size[2];
-    if (Status enough = enoughMemory(4.0 * bytes / (1 << 20), "Smoothing", ""); !enough) {
+    if (Status enough = enoughMemory(4.0 * bytes / (1 << 20), tr("Smoothing"), ""); !enough) {
       return enough.error();
     }
     progress.at(0.0, "smoothing");

@@ -24,12 +24,6 @@ QSize TraceView::minimumSizeHint() const {
   return {120, sizeHint().height()};
 }
 
-void TraceView::setLimits(double low, double high) {
-  low_ = low;
-  high_ = high;
-  update();
-}
-
 void TraceView::add(double time_s, double value, double demanded) {
   if (!samples_.empty() && time_s < samples_.back().time_s) samples_.clear();
   two_ = two_ || demanded != value;

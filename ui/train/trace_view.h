@@ -19,10 +19,10 @@ class TraceView : public QWidget {
   TraceView(const QString& title, const QString& unit, double low, double high,
             QWidget* parent = nullptr);
 
-  void setColour(const QColor& colour) { colour_ = colour; }
-  void setLimits(double low, double high);
-  // At a time that does not fall; what is older than ten seconds goes. Of an earlier time than the
-  // last one the trace begins anew.
+  void setColour(const QColor& colour) { colour_ = colour; }  // from the next value on
+  // `time_s` of the session; finite numbers. An earlier time than the last begins the trace anew.
+  // What is older than ten seconds goes, in blocks of 256 values. The second line is drawn once a
+  // `demanded` was not the value.
   void add(double time_s, double value) { add(time_s, value, value); }
   void add(double time_s, double value, double demanded);
   void clear();

@@ -8,12 +8,13 @@
 
 namespace trephine {
 
-// Seed paper, eq. 1: f = -b v, b the damping of the tissue touched [N s/m]. Over the points of a
-// tool: f_i = -w_i b_i (v + omega x r_i).
+// f = -b v on the arm, b the damping of the tissue touched [N s/m] (the seed paper, eq. 1). Over
+// the points of a tool f_i = -w_i b_i (v + omega x r_i), with the torque r_i x f_i about the tip:
+// w_i the point's share of the tool, v the tip's velocity, r_i the lever from the tip. Patient
+// axes, SI. Members: haptics/laws.h.
 struct ViscousLaw {
-  static constexpr LawWords kWords{
-      "viscous", trLater("Viscous"),
-      trLater("Tissue resists speed: f = -b v, the seed paper's puncture and cutting.")};
+  static constexpr LawWords kWords{"viscous", trLater("Viscous"),
+                                   trLater("Tissue resists speed: f = -b v.")};
   static constexpr std::array kNumbers{&TickNumbers::damping_Ns_per_m};
 
   explicit ViscousLaw(std::size_t /*points*/ = 1) {}

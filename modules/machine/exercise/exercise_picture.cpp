@@ -1,6 +1,7 @@
 #include "machine/exercise/exercise_picture.h"
 
 #include "base/memory.h"
+#include "base/tr.h"
 #include "machine/common/exercise_view.h"
 #include "volume/case_memory.h"
 
@@ -13,7 +14,8 @@ constexpr int kWidth = 1280, kHeight = 800;
 Status writeExercisePicture(Session& session, const std::shared_ptr<const Volume>& whole,
                             const std::filesystem::path& file) {
   const double needed_mb = shownMb(session.grid().geometry().voxelCount());
-  if (Status enough = enoughMemory(needed_mb, "A picture", file.string()); !enough) return enough;
+  if (Status enough = enoughMemory(needed_mb, tr("A picture"), file.string()); !enough)
+    return enough;
   Result<std::unique_ptr<SceneRenderer>> made = SceneRenderer::offscreen(kWidth, kHeight);
   if (!made) return made.error();
   SceneRenderer& renderer = **made;
