@@ -9,7 +9,7 @@
 
 namespace trephine {
 
-// Resident memory now and at its peak.
+// Resident memory now and at its peak; 0 where /proc cannot be read.
 double residentMb();
 double peakResidentMb();
 
@@ -24,19 +24,22 @@ double availableMemoryMb();
 std::optional<double> controlGroupMemoryMb(const std::filesystem::path& membership,
                                            const std::filesystem::path& mounted);
 
-// Of that, what one program may take: some is left to everything else.
+// availableMemoryMb() less 64 MB, which are left to everything else.
 double usableMemoryMb();
 
 // Whether that much can be taken. To be asked before it is: beyond a control group's limit no
-// allocation fails, the process is killed. `what` needs it ("Reading the series"), `where` as in an
-// Error. Error: OUT_OF_MEMORY, with both figures.
+// allocation fails, the process is killed. `what` needs it: the sentence's subject, translated by
+// the caller (tr("Reading the series")). `where` is an Error's: a file, field or part. Nothing is
+// reserved: two threads may both be told yes. Error: OUT_OF_MEMORY, with both figures.
 Status enoughMemory(double needed_mb, const std::string& what, const std::string& where,
                     double usable_mb = usableMemoryMb());
-// Of what is read whole before it can be cropped.
+// The same with other advice: of what is read whole before it can be cropped, so that cropping does
+// not help.
 Status enoughToRead(double needed_mb, const std::string& what, const std::string& where,
                     double usable_mb = usableMemoryMb());
 
-// The same of an allocation that failed: "There is not enough memory " + `what` ("for the case").
+// OUT_OF_MEMORY of an allocation that failed: "There is not enough memory " + `what`, translated by
+// the caller and unlike enoughMemory()'s not a subject: tr("for the case"), tr("to save the case").
 Error outOfMemory(const std::string& what, const std::string& where);
 
 }  // namespace trephine

@@ -3,12 +3,13 @@
 //   template <class Self, class Archive>
 //   static void visitState(Self& self, Archive& archive) { archive(self.one_, self.other_); }
 //
-// It names every member that the type leaves behind and reads later. What follows from those it
-// makes anew at its end, where `Archive::kReads`. A type without members needs none.
+// It names every member that one call leaves for a later one, and none that is written anew before
+// it is read. After them, where `Archive::kReads`, it computes anew what follows from them. A type
+// without members needs none.
 //
 // The bytes are those of this machine (little-endian, IEEE 754) and of one version: they go to
-// another process, not to another release. No threads, no exceptions; it allocates, so it is not
-// for the tick.
+// another process of the same release. An archive is for one thread; bad bytes are said by ok(),
+// not thrown; it allocates, so it is not for the haptic tick.
 #pragma once
 
 #include <array>
@@ -36,7 +37,8 @@ concept Scalar = std::is_arithmetic_v<T> || std::is_enum_v<T>;
 }  // namespace detail
 
 // What writing and reading have in common; `To` is the one that does it. Of each value:
-//   scalars, Vec3, Quat, Pose, arrays, optionals: their parts;
+//   scalars, Vec3, Quat, Pose, arrays, optionals: their parts; an enumeration is not checked for
+//   its range: within() does that;
 //   vectors: as many as there are, which on reading must be as many as there are already;
 //   variants: what they hold, which on reading must be what they hold already.
 template <class To>
@@ -136,8 +138,8 @@ class StateWriter : public StateVisitor<StateWriter> {
   void within(const T& value, std::int64_t /*low*/, std::int64_t /*end*/) {
     scalar(value);
   }
-  // The first `count` of `values`, however many they are; a reader must have room for them, and
-  // gets their number.
+  // The first `count` of `values`, which has as many at least; a reader must have room for them,
+  // and gets their number.
   template <class T>
   void firstOf(const std::vector<T>& values, const std::size_t& count) {
     scalar(count);
@@ -155,8 +157,9 @@ class StateWriter : public StateVisitor<StateWriter> {
   std::vector<std::byte> bytes_;
 };
 
-// After bytes that do not fit ok() is false, and what was read is worth nothing: it is in range as
-// far as the visited types say, but not to be used.
+// The caller asks ok() and atEnd() at the end. Where one is false the object is partly overwritten,
+// each member in range as far as the visited types say: it may be destroyed or read anew, but not
+// used.
 class StateReader : public StateVisitor<StateReader> {
  public:
   static constexpr bool kReads = true;
@@ -212,12 +215,13 @@ class StateReader : public StateVisitor<StateReader> {
   bool ok_ = true;
 };
 
-// A state with a head: what it is of (`kind`, at most 8 letters), its version, its length and its
-// hash.
+// A state with a head: what it is of (`kind`; what is beyond 8 letters is cut), its version, its
+// length and its SHA-256, which finds damage and not forgery. `version` is the kind's own number:
+// raise it when any visitState() below names other members or another order.
 std::vector<std::byte> sealedState(std::string_view kind, std::uint32_t version,
                                    const StateWriter& state);
-// The state in it. Errors: BAD_STATE for what is none of this kind, of another version, shorter or
-// longer than it says, or not as it was written.
+// The state in it: the span lies in `sealed`. Errors: BAD_STATE for what is none of this kind, of
+// another version, shorter or longer than it says, or not as it was written.
 Result<std::span<const std::byte>> openedState(std::string_view kind, std::uint32_t version,
                                                std::span<const std::byte> sealed);
 

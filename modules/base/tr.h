@@ -1,6 +1,7 @@
-// Sentences that a person reads, in that person's language. A room writes each as an English
-// sentence with a place for every argument, which is the key of its translation; the window's
-// translation files hold them in the context "trephine". Any thread; not for the tick.
+// Sentences that a person reads, in that person's language. A room (a folder of modules/) writes
+// each as an English sentence, a literal, with a place for every argument; that is the key of its
+// translation; the window's translation files hold them in the context "trephine". Any thread but
+// the haptic one: it allocates.
 #pragma once
 
 #include <concepts>
@@ -31,7 +32,8 @@ class TrArg {
 
 // `source` in the language that was set, with the arguments in their places: {} one after another,
 // or {0}, {1} by number, since another language may want another order. {{ and }} stand for braces.
-// A translation whose places are not those of the source is not used.
+// A translation in which a place has no argument or a brace stands alone is not used; English of
+// which that is so is shown as it stands, braces and all. An argument without a place is left out.
 std::string trWith(const char* source, std::initializer_list<TrArg> args);
 
 template <class... Args>
@@ -40,8 +42,8 @@ std::string tr(const char* source, const Args&... args) {
 }
 
 // The same for a sentence that says a number of things: `one` where `count` is 1, else `many`,
-// whose translation has as many forms as the language does. {} or {0} is the count, {1} the first
-// of `args`.
+// which is the key of the translation in all its forms. The count is {0}, the first of trCount()'s
+// `args` is {1}; {} counts from the count on.
 std::string trCountWith(std::uint64_t count, const char* one, const char* many,
                         std::initializer_list<TrArg> args);
 
@@ -55,8 +57,9 @@ constexpr const char* trLater(const char* source) {
   return source;
 }
 
-// Gives the translation of a source sentence, or the sentence itself; in the form for `count`
-// things where the sentence has several.
+// Gives the translation of a source sentence (of trCount(): of `many`), or the sentence itself; in
+// its form for `count` things. Above 1,000,000 `count` is 1,000,000 and the number's last six
+// digits, by which forms go.
 using Translator = std::string (*)(const char* source, std::optional<int> count);
 
 // Called once, before other threads begin; English holds until then.

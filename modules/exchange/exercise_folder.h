@@ -26,11 +26,13 @@ Json toJson(const ExercisePart& part);
 
 struct Exercise;
 
-// An exercise that is made on this workstation: the exercise and the files that it names, in a
-// folder of its own, in the place of what is there: files that are not of the exercise stay. Its
-// case and label map stay where they are and are named from there, within `storage` relatively. The
-// same exercise, read and saved again, gives the same bytes. The exercise's file. Errors: those of
-// readExercise (what it names is not there, a number out of range), CANNOT_WRITE, CANCELLED.
+// Saves an exercise of this workstation in `folder`, whole or not at all: scene.json and copies of
+// the files that it names. Of an exercise that is there, its own files go; what a person has put
+// beside them stays, under another name ("-kept") where the name is needed. The case and the label
+// map are not copied: they are named by a relative path where they lie within `storage`, else by
+// the whole path. The same exercise, read and saved again, gives the same bytes. Returns the path
+// of scene.json. Errors: those of readExercise (what it names is not there, a number out of range),
+// CANNOT_WRITE, CANCELLED.
 Result<std::filesystem::path> saveExercise(const Exercise& exercise,
                                            const std::filesystem::path& folder,
                                            const std::filesystem::path& storage,
@@ -39,7 +41,8 @@ Result<std::filesystem::path> saveExercise(const Exercise& exercise,
 // The exercises below `storage`/exercises: their exercise files, in the order of their folders'
 // names.
 std::vector<std::filesystem::path> exercisesIn(const std::filesystem::path& storage);
-// A folder there that is free, called after the exercise.
+// A folder there that is free, called after the letters and digits of `name`. It is not made: two
+// callers may get the same.
 std::filesystem::path freshExercise(const std::filesystem::path& storage, const std::string& name);
 
 struct ExportedExercise {
@@ -47,20 +50,23 @@ struct ExportedExercise {
   std::vector<ExercisePart> parts;  // the exercise first
 };
 
-// Writes the folder, whole or not at all. The case is read as `run` reads it and written as a
-// volume and a label map; `case_source`, also a folder of the library, instead of the exercise's
-// own where it is not empty. Errors: those of readExercise, readCase and of writing; CANNOT_WRITE
-// where `folder` is there and not empty; CANCELLED. `hide` as of withLabels() (session/case.h).
+// Writes `folder`, whole or not at all. The case is read by readCase() (case/case.h) and written as
+// a volume and a label map. `case_source`, where it is not empty, stands for the exercise's own:
+// what readCase() takes, or a case's folder in the library. `hide` as of withLabels()
+// (case/case.h): without it names of structures that tell who the patient is stay; hideNamesOf
+// (library/name_words.h) hides them. Errors: those of readExercise, readCase and of writing;
+// CANNOT_WRITE where `folder` is there and not empty; CANCELLED.
 Result<ExportedExercise> exportExercise(const std::filesystem::path& exercise,
                                         const std::string& case_source,
                                         const std::filesystem::path& folder,
                                         const Progress& progress = Progress(),
                                         const NameHider& hide = {});
 
-// What of a folder is not there or not what was exported, by its path in the folder.
+// What of a folder is missing or is not what was exported, by its path in the folder; files that
+// the list does not name are not looked at.
 struct ExerciseCheck {
-  std::vector<ExercisePart> parts;  // as the folder lists them
-  std::string exercise;             // its path in the folder
+  std::vector<ExercisePart> parts;  // as exercise.json lists them, sha256 in small hex digits
+  std::string exercise;             // its path in the folder: always scene.json
   std::vector<std::string> missing, changed;
   bool verified() const { return missing.empty() && changed.empty(); }
 };
@@ -73,12 +79,12 @@ struct ImportedExercise {
   std::filesystem::path exercise;  // in the storage, for `run`; empty where it was not verified
   ExerciseCheck check;
 };
-// Copies a verified folder to `storage`/exercises, whole or not at all; what is
-// there already in the same words is taken as it is. Case, structures and script are read to their
-// end from the copy, which holds nothing but the parts. Nothing is kept of one that is not verified
-// or cannot be read. Errors: those of checkExercise, readExercise, readCase and withLabels;
-// BAD_FIELD where a file of it names one outside of the folder, or nothing names a part;
-// CANNOT_WRITE, also where the disk has no room for the parts, of which then none is read;
+// Copies a verified folder to `storage`/exercises, whole or not at all; where an exercise with the
+// same list of parts is there already, whole, that one is returned. Case, structures and script are
+// read to their end from the copy, which holds nothing but the parts. Nothing is kept of one that
+// is not verified or cannot be read. Errors: those of checkExercise, readExercise, readCase and
+// withLabels; BAD_FIELD where a file of it names one outside of the folder, or nothing names a
+// part; CANNOT_WRITE, also where the disk has no room for the parts: then no part is read;
 // CANCELLED.
 Result<ImportedExercise> importExercise(const std::filesystem::path& folder,
                                         const std::filesystem::path& storage,

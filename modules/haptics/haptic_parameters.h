@@ -1,5 +1,6 @@
-// What the core is made of: arms, laws, tissues. Checked as a whole before the loop's first tick
-// (HapticLoop::startDevices), so that no tick checks it again.
+// What HapticCore is made of, which computes the ticks without devices: arms, laws, tissues.
+// Checked as a whole before the loop's first tick (HapticLoop::startDevices), so that no tick
+// checks it again.
 #pragma once
 
 #include <string>
@@ -16,11 +17,13 @@
 
 namespace trephine {
 
-constexpr std::size_t kMostTools = 4;  // of an arm
+// Of an arm, with the one in hand: three other_tools at most.
+constexpr std::size_t kMostTools = 4;
 
 struct ArmParameters {
   Tool tool;  // in hand at first
   WorkspaceMap map;
+  // The most that is sent to the arm, by length, at the device; to be set: 0.001 to 1000.
   double max_force_N = 0.0;
   ArmDynamics dynamics;
   std::vector<Tool> other_tools{};  // it may be given these: numbers 1 and on, `tool` is 0
@@ -29,19 +32,24 @@ struct ArmParameters {
 struct HapticParameters {
   double period_s = 0.001;
   std::vector<ArmParameters> arms;  // at most kMaxArms
+  // Each acts on every arm, and their forces add up (laws.h: acts()); empty: no force.
   std::vector<LawKind> laws;
-  ForceAt force_at = ForceAt::tip;
-  RemovalKind removal = RemovalKind::work;
-  ControllerKind controller = ControllerKind::bounded;
+  ForceAt force_at = ForceAt::tip;                      // law_input.h
+  RemovalKind removal = RemovalKind::work;              // removal.h
+  ControllerKind controller = ControllerKind::bounded;  // controllers.h
   TissueTable tissues;
-  std::size_t journal_voxels = 8'000'000;  // in memory, 8 bytes each; the rest in a file
-  std::size_t journal_strokes = 65'536;
-  std::size_t journal_seconds = 86'400;  // to which one can rewind
-  double stroke_gap_s = 0.3;             // this long out of tissue ends a stroke
+  // Of the journal of cuts (volume/carve_journal.h), by which they are undone: in memory, 8 bytes
+  // each; the rest in a file.
+  std::size_t journal_voxels = 8'000'000;
+  std::size_t journal_strokes = 65'536;  // once so many have begun, nothing more is cut
+  // Of the session's beginning, to each of which one can rewind; to none after them.
+  std::size_t journal_seconds = 86'400;
+  double stroke_gap_s = 0.3;  // this long out of tissue ends a stroke
 };
 
-// Errors: IMPOSSIBLE_NUMBER of an arm's dynamics, map or limit, of the period, or of a tissue;
-// TOO_MANY_ARMS, TOO_MANY_TOOLS.
+// Errors: IMPOSSIBLE_NUMBER of an arm's dynamics, map or max_force_N, of the period, or of a
+// tissue; TOO_MANY_ARMS (kMaxArms, base/limits.h), TOO_MANY_TOOLS. The tools' own numbers (tool.h)
+// and those of the journal are not looked at.
 Status validate(const HapticParameters& parameters);
 
 }  // namespace trephine

@@ -1,5 +1,6 @@
 // OpenXR's functions, from the system's loader, which is opened when a headset is first wanted: a
-// machine without it runs as before. After Qt's headers: some use names that Xlib defines.
+// machine without it runs as before. Include it after Qt's headers: it brings Xlib's macros, of
+// which only the three below are taken back.
 #pragma once
 
 #include "base/result.h"
@@ -16,7 +17,7 @@
 
 namespace trephine {
 
-// OpenXR's structures say of themselves what they are.
+// A structure of OpenXR with its `type` set and all else zero.
 template <class T>
 T typed(XrStructureType type) {
   T of{};
@@ -25,9 +26,11 @@ T typed(XrStructureType type) {
 }
 
 struct OpenXr {
-  // Once loaded it stays. Error: NO_LOADER.
+  // Any thread. Once loaded it stays for good; where the loader is missing it is looked for again
+  // at every call. Copy it for an instance's own functions. Error: NO_LOADER.
   static Result<const OpenXr*> load();
-  // The functions of an instance that was created. False where its runtime lacks one.
+  // Gets the functions of an instance that was created. False where its runtime lacks one: that and
+  // all below it are null, so ask before calling destroyInstance.
   bool loadFor(XrInstance instance);
 
   PFN_xrGetInstanceProcAddr getInstanceProcAddr = nullptr;

@@ -14,7 +14,8 @@ struct Axis {
   std::string unit;   // "ms"; empty: none
   bool logarithmic = false;
   double low = 0.0, high = 1.0;  // low < high; decades (log10 of values) where logarithmic
-  // Two values or more to stand ticks at, where all have room; else round ones.
+  // Two values or more, ascending, to stand ticks at. If one lies off the axis, or two stand too
+  // close, ticks stand at round values instead. Values, not decades, on a logarithmic axis too.
   std::vector<double> at = {};
 
   // As low and high: the value, or its decades; on a logarithmic axis 0 and less lie at -infinity.
@@ -33,16 +34,18 @@ struct Ticks {
   std::string title;        // with the unit that the texts are in: "Force [mN]"
 };
 
-// Round numbers, at most as close as `room`, a share of the axis. On a linear axis the unit takes
-// the prefix that keeps them short (mN, kN/m), or a power of ten where it takes none (10^6 voxels
-// with a raised 6); on a logarithmic one it stays.
+// Ticks at round values, neighbours at least `room` apart: a share of the axis above 0, which the
+// caller takes from the width of his texts. There may be none. On a linear axis the unit takes the
+// prefix that keeps the numbers short (mN, kN/m), or a power of ten in Unicode's raised digits
+// where it takes none; on a logarithmic one it stays.
 Ticks ticksOf(const Axis& axis, double room);
 
-// 1, 2 or 5 times a power of ten: the least that is not below `least`.
+// 1, 2 or 5 times a power of ten: the smallest that is not below `least`, which is above 0.
 double roundStep(double least);
 
 // `unit` made larger by 10^exponent (a multiple of 3) with a prefix of the SI: "N/m" by 10^3 is
-// "kN/m", "ms" by 10^-3 is "us" with a Greek mu; empty where it takes none ("%", "kg", "mm^3").
+// "kN/m", "ms" by 10^-3 is "us" with the micro sign (U+00B5); empty where it takes none ("%", "kg",
+// "mm^3").
 std::string prefixed(const std::string& unit, int exponent);
 
 }  // namespace trephine::plot

@@ -29,14 +29,16 @@ inline constexpr std::array<std::pair<std::string_view, TissueLook>, 3> kTissueL
 using TissueLooks = std::map<std::string, TissueLook>;
 TissueLook lookOf(const Tissue& tissue, const TissueLooks& looks);
 
-// Of a tissue that looks show or ghost and whose own opacity is 0: enough to see its surface.
+// Opacity [0, 1] per mm of a tissue that looks show or ghost and whose own opacity is 0: enough to
+// see its surface.
 constexpr double kSeenOpacity = 0.9;
 
 // The set with the opacities that these looks leave: 0 where hidden, at least kSeenOpacity instead
-// of 0 where not. A ghost keeps its opacity: how it is drawn is the renderer's.
+// of 0 where not. A ghost keeps its opacity: the renderer is told the looks as well, and calls this
+// itself.
 TissueSet asSeen(TissueSet tissues, const TissueLooks& looks);
 
-// Where to start from, in the terms of a set.
+// Looks to start from, for the tissues of a set.
 enum class ViewPreset : std::uint8_t { bone, skin, soft_tissue, liver };
 inline constexpr std::array kViewPresets{ViewPreset::bone, ViewPreset::skin,
                                          ViewPreset::soft_tissue, ViewPreset::liver};
@@ -46,8 +48,9 @@ inline constexpr std::array kViewPresets{ViewPreset::bone, ViewPreset::skin,
 // - skin: skin, and behind it what the set shows;
 // - soft tissue: what the set shows, through a ghost of the bone;
 // - liver: the liver with its vessels, through a ghost of the bone.
-// Nothing where the set has no tissue that the preset is about; by ids, as the shipped sets name
-// them.
+// Nothing where the set lacks what the preset is about: bone; skin or scalp; a visible tissue other
+// than bone; liver. Tissues are known by these ids and by capsule, vessel and gallbladder (of the
+// liver); any other is "other".
 std::optional<TissueLooks> presetLooks(const TissueSet& tissues, ViewPreset preset);
 
 }  // namespace trephine

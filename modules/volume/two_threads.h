@@ -1,4 +1,5 @@
-// A loop over slices or blocks on two threads: as many as the smallest machine has cores.
+// A loop over slices or blocks on two threads, as the smallest computer that this is for has two
+// cores.
 #pragma once
 
 #include <atomic>
@@ -7,8 +8,10 @@
 
 namespace trephine {
 
-// Calls work(n) once for each n below `count`, on this thread and one more. `work` must not throw,
-// and what it writes must not depend on the order of the calls.
+// Calls work(n) once for each n from 0 to below `count`, two at the same time, on this thread and
+// one more, and returns when all are done. `work` must not throw (for what may run out of memory
+// there is onTwoThreadsOrThrow(), structures/voxel_runs.h), its calls must share nothing that they
+// write, and what they write must not depend on their order.
 template <class Work>
 void onTwoThreads(int count, const Work& work) {
   std::atomic<int> next{0};

@@ -20,12 +20,16 @@ class SeriesPage : public QWidget {
  public:
   explicit SeriesPage(QWidget* parent = nullptr);
 
-  // Another one, or none (null); `before` it was read it had these questions and this grid.
+  // Shows another series, or none (null). `before` is its report from the scan, before its voxels
+  // were read, and never null with a series: its questions are asked and its grid is cropped.
+  // `answers` are those given so far. Nothing is kept of the three. Call showLabelFiles() first:
+  // show() decides whether that choice is seen. QWidget::show() is hidden by this.
   void show(const SeriesReport* series, const SeriesReport* before, const Answers& answers);
-  // The label maps that lie beside the CT; none is taken until it is chosen.
+  // Offers the label maps beside the CT, for all series of the folder; "None" is chosen. No signal:
+  // ask labelFile() when the CT is read.
   void showLabelFiles(const std::vector<CtFolder::LabelFile>& files);
   std::filesystem::path labelFile() const;  // empty: none
-  // Why the box cannot be drawn; empty: it can.
+  // Why the crop box cannot be drawn on the slices of the preview; empty: it can.
   void noteSize(const QString& words);
 
   ReportCard& card() { return *card_; }

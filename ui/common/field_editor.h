@@ -26,11 +26,13 @@ class FieldEditor : public QWidget {
   // A person wants this value.
   std::function<void(const FieldValue& wanted)> entered;
 
-  // What is being typed stays, unless the value is of another owner.
+  // A text of one line that is being typed stays, unless `same_owner` is false; lines that have the
+  // focus stay in any case; a number that is being typed or refused goes.
   void show(const FieldValue& value, bool same_owner = true);
   // A number was typed that is out of its range, which it says.
   bool isRefused() const;
-  // What is being typed counts as entered.
+  // A text of one line that is being typed counts as entered. Numbers and lines do so when the
+  // focus leaves them: WorkGuards::takeTyped().
   void takeTyped();
   // What a reference may name: the words on the screen, and the name. Shown with the next show().
   using Offers = std::vector<std::pair<QString, std::string>>;

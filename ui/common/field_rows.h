@@ -13,20 +13,25 @@
 
 namespace trephine {
 
+// `fields` outlives it, it outlives its editors, and it is neither copied nor moved. GUI thread.
 template <class Owner>
 class FieldRows {
  public:
-  // Editors are called `prefix` and the row's key. Rows of one key are one field.
+  // Editors are called `prefix` and the row's key. Rows of one key are one field, of one member,
+  // which some owners have by one row and some by another (FieldOnlyIf).
   FieldRows(FieldsOf<Owner> fields, QFormLayout& form, QWidget* parent, const QString& prefix)
       : form_(form) {
     for (const FieldOf<Owner>& field : fields) addRow(field, parent, prefix);
   }
 
-  // A person wants this; `key` is the field's.
+  // A person wants this owner: a copy with one field changed. Who takes it calls show() with it;
+  // who does not call it refuses it, and the field goes back (a text stays to be mended). `key` is
+  // the field's.
   std::function<void(const Owner& wanted, const char* key)> entered;
 
-  // Fields that the owner does not have are not shown. What is being typed stays, unless it is of
-  // another owner.
+  // Fields that the owner does not have are not shown. A text of one line that is being typed
+  // stays, unless `same_owner` is false; lines that have the focus stay in any case; a number that
+  // is being typed or refused goes.
   void show(const Owner& owner, bool same_owner = true) {
     owner_ = owner;
     for (const Row& row : rows_) {
@@ -36,23 +41,25 @@ class FieldRows {
       form_.setRowVisible(row.editor, visible_ && has);
     }
   }
+  // Whether a number stands there that is out of its range, which its field says itself.
   bool anyRefused() const {
     return std::ranges::any_of(rows_, [](const Row& row) { return row.editor->isRefused(); });
   }
-  // What is being typed counts as entered.
+  // A text of one line that is being typed counts as entered. Numbers and lines do so when the
+  // focus leaves them: WorkGuards::takeTyped().
   void takeTyped() {
     for (const Row& row : rows_) row.editor->takeTyped();
   }
-  // Of all of them.
+  // Shows or hides all of them; those that the owner lacks stay hidden.
   void setVisible(bool visible) {
     visible_ = visible;
     show(Owner(owner_));
   }
-  // They stay where they are, for nothing that could be changed.
+  // False: they stay in sight, greyed.
   void setEnabled(bool enabled) {
     for (const Row& row : rows_) row.editor->setEnabled(enabled);
   }
-  // Of a field that is there.
+  // The editor of a field; there must be a row of that key.
   FieldEditor& operator[](std::string_view key) const {
     return *std::ranges::find(rows_, key, [](const Row& row) {
               return std::string_view(row.fields.front()->row.key);

@@ -18,15 +18,21 @@ class StructureList : public QWidget {
   // The editor outlives it.
   explicit StructureList(StructureEditor& editor, QWidget* parent = nullptr);
 
-  // How the 3-D view shows them.
+  // How the 3-D view shows them; it is copied. One that is not among them has no look and takes
+  // none.
   void showLooks(const std::vector<SeenStructure>& seen);
-  void nextLook() { nextLook(editor_.current()); }  // shown, ghosted, hidden
+  // The look after the present one (shown, ghosted, hidden) is asked for, for the structure chosen
+  // in the editor; nothing where none is, or the view has no room for it.
+  void nextLook() { nextLook(editor_.current()); }
 
  signals:
+  // By a person, of a structure's label. Looks and opacities are wishes: nothing changes here until
+  // showLooks().
   void lookWanted(int label, trephine::TissueLook look);
-  void opacityWanted(int label, double per_mm);
+  void opacityWanted(int label, double per_mm);  // [0, 1] per mm of depth
+  // Red, green, blue, 0 to 1; the editor has it already.
   void colourChosen(int label, const trephine::Vec3& colour);
-  void refused(const QString& words);  // a name
+  void refused(const QString& words);  // why a name was not taken, in sentences
 
  private:
   void buildList();
@@ -41,6 +47,7 @@ class StructureList : public QWidget {
   StructureEditor& editor_;
   QTreeWidget* list_;
   StructureLookRow* look_;
+  // What the 3-D view tells no more apart (SeenStructure::has_room); that there is none.
   QLabel *no_room_, *empty_;
   QStackedLayout* listing_;  // the list, or why there is none
   std::vector<SeenStructure> seen_;

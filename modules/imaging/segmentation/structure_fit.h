@@ -19,8 +19,8 @@ namespace trephine {
 // One structure of it, as it lies on the CT.
 struct StructureCard {
   std::string name;
-  int label = 0;
-  Vec3 colour{1.0};
+  int label = 0;                 // in StructureFit::map
+  Vec3 colour{1.0};              // red, green, blue, 0 to 1
   std::size_t voxels = 0;        // of the CT
   double ml = 0.0;               // on the CT's grid
   double ml_in_file = 0.0;       // on its own, before overlaps were settled
@@ -34,20 +34,21 @@ struct StructureFit {
   LabelMap map;  // on the CT's grid, with the names
   std::string format;
   std::vector<StructureCard> structures;  // in the file's order
-  // The part of the CT that the file's grid covers: of its volume, and along i, j, k the CT's
+  // The part of the CT that the file's grid covers: of the CT's volume, and along i, j, k the CT's
   // voxels [low, high).
   double covers_percent = 0.0;
   VoxelBox covers;
   bool resampled = false;  // its grid is not the CT's or a part of it
-  // Those that share voxels in the file, in the order in which they have them: the first wins.
+  // Structures that share voxels in the file; of two, the one that stands first here has them.
   std::vector<std::string> overlapping{};
-  bool fractional = false;  // voxels were shares, of which a threshold took some
-  std::vector<Finding> findings;
+  // Shares of voxels were given, and a threshold (StructureRequest) chose: the importer sets it.
+  bool fractional = false;
+  std::vector<Finding> findings;  // notices, of all of it
   std::vector<Choice> choices;  // what only a person can answer, answered or not
 };
 
-// HU that a structure of this name, or of this tissue, can have in its middle; none where the name
-// says nothing.
+// Between which HU the median of a structure lies that is called so, by an English word of its
+// name, else of its tissue; none where neither says anything.
 struct HuOfKind {
   const char* kind;
   double low, high;
@@ -56,11 +57,14 @@ std::optional<HuOfKind> huOfKind(const std::string& name, const std::string& tis
 
 // Puts the segmentation on the CT's grid by its place in the patient. `answers` to the choices:
 // OVERLAP (smaller, first, last, or an order of one's own as "order:vessel,liver",
-// overlap_order.h), HU_NOT_TISSUE (refuse, keep), NO_AFFINE (of a file of the CT's size that says
-// nothing of its place: refuse, ct for voxel by voxel, keep). `ask_all`: an open choice whose first option is
-// to refuse is an Error of its code, else it is taken as "keep" and said. `open`: the choice that
-// the Error is of, where nobody has answered it; else it is left as it is. Errors: LABELS_ELSEWHERE,
-// HALF_OUTSIDE, MIRRORED, EMPTY_SEGMENTATION, BAD_CHOICE, CANCELLED, OUT_OF_MEMORY.
+// overlap_order.h), HU_NOT_TISSUE (refuse, keep), MIRRORED (refuse, keep), NO_AFFINE (of a file of
+// the CT's size that says nothing of its place: refuse, keep for where it says, ct for voxel by
+// voxel). What nobody has answered: OVERLAP is taken as smaller; MIRRORED is an Error of its code;
+// the other two are Errors of their codes with `ask_all`, and without it they are taken by their
+// last option (keep, ct) and said in findings. `open` gets the choice that such an Error is of,
+// else it is left alone. Other errors: LABELS_ELSEWHERE (no voxel on the CT), HALF_OUTSIDE (of one
+// structure half or more lies over a voxel beyond the CT), EMPTY_SEGMENTATION, BAD_CHOICE,
+// CANCELLED, OUT_OF_MEMORY.
 Result<StructureFit> fitStructures(Segmentation segmentation, const Volume& ct,
                                    const Answers& answers = {}, bool ask_all = true,
                                    const Progress& progress = Progress(),
