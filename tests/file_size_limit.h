@@ -1,3 +1,4 @@
+// A full disk.
 #pragma once
 
 #include <sys/resource.h>

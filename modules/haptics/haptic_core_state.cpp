@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::string_view kStateKind = "core";
 // Goes up with every change of what any visitState() below the core names, or of its order.
-constexpr std::uint32_t kStateVersion = 2;
+constexpr std::uint32_t kStateVersion = 3;
 
 Error badState(const std::string& what) {
   return {code::kBadState, what, tr("the state `{}`", kStateKind),
@@ -29,6 +29,7 @@ void HapticCore::visitParameters(Archive& archive) const {
     archive.same(geometry.origin_mm[axis]);
   }
   archive.same(parameters_.period_s);
+  archive.same(parameters_.stroke_gap_s);
   archive.same(parameters_.force_at);
   archive.same(parameters_.removal);
   archive.same(parameters_.laws.size());
@@ -37,15 +38,25 @@ void HapticCore::visitParameters(Archive& archive) const {
   for (std::size_t i = 0; i < arms_.size(); ++i) {
     const ArmParameters& arm = parameters_.arms[i];
     archive.same(arm.max_force_N);
+    archive.same(arm.map.motion_scale);
+    archive.same(arm.map.force_scale);
     archive.same(arm.dynamics.apparent_mass_kg);
     archive.same(arm.dynamics.encoder_step_m);
+    archive.same(arm.dynamics.peak_force_N);
     archive.same(arm.dynamics.delay_s);
+    archive.same(arm.dynamics.continuous_force_N);
+    archive.same(arm.dynamics.thermal_s);
     archive.same(arms_[i].tools.size());
     for (const ArmTool& tool : arms_[i].tools) {
-      archive.same(tool.made.made_from.kind);
-      archive.same(tool.made.made_from.motor_W);
-      archive.same(tool.made.points_m.size());
-      archive.same(tool.made.radius_m);
+      const ToolDescription& made_from = tool.made.made_from;  // all that follows is made from it
+      archive.same(made_from.kind);
+      archive.same(made_from.length_mm);
+      archive.same(made_from.points);
+      archive.same(made_from.radius_mm);
+      archive.same(made_from.shaft_points);
+      archive.same(made_from.shape);
+      archive.same(made_from.head_mm);
+      archive.same(made_from.motor_W);
     }
   }
 }

@@ -103,7 +103,7 @@ struct CarveVolume::Parts {
   bool sent = false;   // VTK's texture holds the copy, but for `boxes`
   bool drawn = false;  // VTK sends all once more when it draws for the first time
   std::optional<CutMarks> marks_of_all;
-  bool leap_map_stale = true;  // to be made anew
+  bool empty_space_stale = true;  // to be made anew
   bool leaps_stale = true;     // to be sent
   LabelSender sender;          // of the labels
   bool kind_stale = true;      // the texture is to be made anew, with or without labels
@@ -116,9 +116,9 @@ struct CarveVolume::Parts {
   void sendLeaps(vtkRenderer& renderer) {
     const Index3& n = bricks.size();
     const bool by_label = rowCount() > 1;
-    const bool anew = kind_stale || !leaps->GetHandle() || (leap_map_stale && !by_label);
+    const bool anew = kind_stale || !leaps->GetHandle() || (empty_space_stale && !by_label);
     if (anew && by_label) sender.start(labels);
-    if (leap_map_stale) {
+    if (empty_space_stale) {
       std::vector<std::uint32_t> rows;
       if (by_label) rows = sender.bricks().rows(label_rows);
       empty_space_distance =
@@ -141,11 +141,11 @@ struct CarveVolume::Parts {
       // VTK takes a pointer to what it only reads.
       leaps->Create3DFromRaw(unsigned(n[0]), unsigned(n[1]), unsigned(n[2]), 1, VTK_UNSIGNED_CHAR,
                              const_cast<std::uint8_t*>(distances));
-    } else if (anew || leap_map_stale || leaps_stale) {
+    } else if (anew || empty_space_stale || leaps_stale) {
       sendBox(*leaps, distances, n, {{0, 0, 0}, n}, by_label ? copy->geometry.size[2] : 0);
     }
     if (by_label && (anew || rows_stale)) sendRows();
-    leap_map_stale = leaps_stale = kind_stale = rows_stale = false;
+    empty_space_stale = leaps_stale = kind_stale = rows_stale = false;
     leaps->Activate();
   }
 
@@ -171,8 +171,8 @@ struct CarveVolume::Parts {
       of.low[axis] = box.low[axis] / kLeapEdge;
       of.high[axis] = std::min(bricks.size()[axis], (box.high[axis] - 1) / kLeapEdge + 1);
     }
-    if (leap_map_stale || voxelCount(of) > kMany) {
-      leap_map_stale = true;
+    if (empty_space_stale || voxelCount(of) > kMany) {
+      empty_space_stale = true;
       return;
     }
     for (int k = of.low[2]; k < of.high[2]; ++k) {
@@ -216,7 +216,7 @@ struct CarveVolume::Parts {
     setMark();
     visible.clear();
     for (std::size_t row = 0; row < count; ++row) visible.push_back(visibleIntervals(looks[row]));
-    leap_map_stale = true;
+    empty_space_stale = true;
     buildShader();
   }
 
@@ -423,7 +423,7 @@ void CarveVolume::sendChanges(vtkRenderer& renderer) {
   vtkTextureObject* texture = p.sent ? p.mapper->texture() : nullptr;
   for (const VoxelBox& box : boxes) {
     if (const std::optional<BrickBox> bricks = p.bricks.update(*p.copy, box)) {
-      if (!p.leap_map_stale) p.empty_space_distance.update(p.bricks, *bricks);
+      if (!p.empty_space_stale) p.empty_space_distance.update(p.bricks, *bricks);
       p.leaps_stale = true;
     }
     if (!texture) continue;
@@ -448,7 +448,7 @@ void CarveVolume::scan(vtkRenderer& renderer) {
   Parts& p = *parts_;
   if (!p.copy) return;
   p.bricks = BrickRanges(*p.copy);
-  p.leap_map_stale = true;
+  p.empty_space_stale = true;
   p.sendLeaps(renderer);
 }
 

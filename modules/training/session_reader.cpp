@@ -126,7 +126,7 @@ Result<GridGeometry> readGeometry(JsonReader reader) {
   return g;
 }
 
-// A recording's exercise may be older than the rule that texts are single lines.
+// Version 8 was also written before texts had to be single lines.
 void makePlainLines(Json& json) {
   if (json.is_string()) json = cleanUtf8(json.get_ref<const std::string&>());
   if (!json.is_structured()) return;

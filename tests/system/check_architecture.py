@@ -394,6 +394,8 @@ VIOLATIONS = [
      "does not depend on 'volume'"),
     ("an exercise that knows the open case", "modules/exercise/rig.h", '#include "case/case.h"\n',
      "does not depend on 'case'"),
+    ("a case that knows a session", "modules/case/case.h", '#include "session/session.h"\n',
+     "does not depend on 'session'"),
     ("a desk that knows its window", "modules/desk/desk.h", '#include "ui/work/workstation.h"\n',
      "does not depend on 'ui'"),
     ("a case of the library that knows the desk", "modules/library/stored_case.cpp",

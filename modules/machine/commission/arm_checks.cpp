@@ -47,7 +47,7 @@ std::vector<CommissionCheck> both(Fitness verdict, const Error& why) {
 
 }  // namespace
 
-std::vector<CommissionCheck> judgedArms(const std::vector<ArmAnswered>& arms) {
+std::vector<CommissionCheck> judgedArms(const std::vector<ArmReadings>& arms) {
   const std::string hold = tr("Commission again, and hold each arm lightly by its tip meanwhile");
   const std::string stiller =
       tr("Commission again, and hold each arm more lightly and as still as you can");
@@ -57,7 +57,7 @@ std::vector<CommissionCheck> judgedArms(const std::vector<ArmAnswered>& arms) {
   double most_steps = 0.0, least = 1.0;
   bool all_heard = true, all_pushed = true, all_sure = true;
   for (std::size_t i = 0; i < arms.size(); ++i) {
-    const ArmAnswered& arm = arms[i];
+    const ArmReadings& arm = arms[i];
     const std::string name = (i == 0 ? "" : "; ") + std::to_string(i + 1) + ", " + arm.model + ": ";
     const bool done = arm.phase == MotorEncoderCheck::Phase::done;
     const std::string why = arm.phase == MotorEncoderCheck::Phase::untouched ? tr("nobody held it")
@@ -138,7 +138,7 @@ std::vector<CommissionCheck> tryArms(double patience_s, const Progress& progress
     }
     now_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
   }
-  std::vector<ArmAnswered> answered;
+  std::vector<ArmReadings> answered;
   const TriedArms& tried = trial->state();
   for (std::size_t i = 0; i < trial->size(); ++i) {
     answered.push_back({here.arms[i].model, trial->capabilities(i).encoder_step_m, tried[i].answer,

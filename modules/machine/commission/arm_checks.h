@@ -13,7 +13,7 @@ namespace trephine {
 // The file of its --out folder in which trephine-lab tells what its tried arms answered.
 inline constexpr const char* kArmsAnswer = "arms.json";
 
-struct ArmAnswered {
+struct ArmReadings {
   std::string model;
   double step_m = 0.0;
   MotorEncoderCheck::Phase phase = MotorEncoderCheck::Phase::off;
@@ -22,7 +22,7 @@ struct ArmAnswered {
   MotorEncoderCheck::Response response;
 };
 // `arm_encoders` and `arm_forces`, of the worst. Pure.
-std::vector<CommissionCheck> judgedArms(const std::vector<ArmAnswered>& arms);
+std::vector<CommissionCheck> judgedArms(const std::vector<ArmReadings>& arms);
 
 // `arms`, without opening any.
 CommissionCheck countArms();

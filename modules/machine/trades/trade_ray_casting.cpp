@@ -24,7 +24,7 @@ TradeRows tradeRayCasting(const TradesOptions& options, const Progress& progress
   }
   RaySettingOptions of;
   of.size = options.ray_picture;
-  of.truth_step = options.ray_truth_step;
+  of.truth_step = options.reference_step;
   const auto figures = measureRaySettings(settings, of, progress);
   std::vector<TradeRow> rows;
   if (!figures &&

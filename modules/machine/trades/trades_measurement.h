@@ -69,7 +69,7 @@ struct TradesOptions {
   // Voxels, 0.1 to 8; none: the rays are left out.
   std::vector<double> ray_distances{0.25, 0.5, 0.75, 1.0, 2.0};
   std::array<int, 2> ray_picture{800, 600};
-  int ray_truth_step = 3;  // pixels
+  int reference_step = 3;  // pixels
 };
 
 struct TradesMeasurement {

@@ -571,9 +571,25 @@ TEST(CoreStateValue, RefusesWhatIsNotItsOwnAndStaysAsItWas) {
   Moment uncut = moment;
   uncut.volume = run.volume();
   EXPECT_TRUE(refused(*placed(run.parameters, uncut), bytes));
-  HapticParameters others = run.parameters;
-  others.period_s *= 2.0;
-  EXPECT_TRUE(refused(*placed(others, moment), bytes));
+  using Change = void (*)(HapticParameters&);
+  constexpr Change kChanges[] = {
+      [](HapticParameters& p) { p.period_s *= 2.0; },
+      [](HapticParameters& p) { p.stroke_gap_s *= 2.0; },
+      [](HapticParameters& p) { p.arms[0].max_force_N *= 0.5; },
+      [](HapticParameters& p) { p.arms[0].map.motion_scale *= 2.0; },
+      [](HapticParameters& p) { p.arms[0].map.force_scale *= 0.5; },
+      [](HapticParameters& p) { p.arms[0].dynamics.apparent_mass_kg *= 2.0; },
+      [](HapticParameters& p) { p.arms[0].dynamics.peak_force_N *= 0.5; },
+      [](HapticParameters& p) { p.arms[0].dynamics.continuous_force_N *= 0.5; },
+      [](HapticParameters& p) { p.arms[0].dynamics.thermal_s += 60.0; },
+      [](HapticParameters& p) { p.arms[0].tool.made_from.length_mm += 1.0; },
+      [](HapticParameters& p) { p.arms[0].tool.made_from.head_mm += 1.0; },
+  };
+  for (std::size_t n = 0; n < std::size(kChanges); ++n) {
+    HapticParameters others = run.parameters;
+    kChanges[n](others);
+    EXPECT_TRUE(refused(*placed(others, moment), bytes)) << "change " << n;
+  }
   EXPECT_TRUE(fresh->core.load(bytes)) << "as it was";
 }
 

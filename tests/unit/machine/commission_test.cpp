@@ -163,14 +163,14 @@ TEST(Commissioning, ThePageNamesEachCheckItsLimitAndTheNextStepInPlainWords) {
   EXPECT_NE(toText(now, {}).find("Real-time priority"), std::string::npos);
 }
 
-ArmAnswered held(double noise_m, double least, double weakest = 0.4, double error = 0.005) {
+ArmReadings held(double noise_m, double least, double weakest = 0.4, double error = 0.005) {
   return {"an arm", 5.5e-5, MotorEncoderCheck::Phase::done,
           noise_m,  true,   {least, Vec3(0.0, 1.0, 0.0), weakest, error}};
 }
 
 TEST(ArmChecks, TheWorstArmCountsAndEachIsNamed) {
   using Checks = std::vector<CommissionCheck>;
-  const ArmAnswered well = held(2e-5, 0.4);
+  const ArmReadings well = held(2e-5, 0.4);
   const Checks good = judgedArms({well, well});
   EXPECT_EQ(good[0].verdict, Fitness::pass);
   EXPECT_EQ(good[1].verdict, Fitness::pass);
@@ -197,7 +197,7 @@ TEST(ArmChecks, WhatPushesDoNotTellForSureNeitherFailsNorPasses) {
 }
 
 TEST(ArmChecks, AnArmThatNobodyHeldIsNotPassed) {
-  ArmAnswered untouched{"an arm", 5.5e-5, MotorEncoderCheck::Phase::untouched, 0.0, false, {}};
+  ArmReadings untouched{"an arm", 5.5e-5, MotorEncoderCheck::Phase::untouched, 0.0, false, {}};
   const auto checks = judgedArms({held(2e-5, 0.5), untouched});
   for (const CommissionCheck& check : checks) {
     EXPECT_EQ(check.verdict, Fitness::warn) << check.name;
@@ -207,7 +207,7 @@ TEST(ArmChecks, AnArmThatNobodyHeldIsNotPassed) {
   }
   // One that is reversed is said all the same.
   EXPECT_EQ(judgedArms({held(2e-5, -0.5), untouched})[1].verdict, Fitness::fail);
-  ArmAnswered scatters = held(2e-3, 0.0);
+  ArmReadings scatters = held(2e-3, 0.0);
   scatters.pushed = false;
   const auto bad = judgedArms({scatters});
   EXPECT_EQ(bad[0].verdict, Fitness::fail);

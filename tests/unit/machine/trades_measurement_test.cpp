@@ -44,7 +44,7 @@ TradesOptions small() {
   options.stroke_s = 1.0;
   options.ray_distances = {0.5, 2.0};
   options.ray_picture = {96, 80};
-  options.ray_truth_step = 12;
+  options.reference_step = 12;
   return options;
 }
 
