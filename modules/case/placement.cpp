@@ -20,13 +20,13 @@ constexpr double kReadShare = 0.9;  // of the work of opening; the rest is findi
 std::optional<Warning> anatomyWarning(const Exercise& exercise,
                                       const std::optional<Anatomy>& anatomy) {
   if (!anatomy || anatomy->region == BodyRegion::not_sure) return {};
-  const std::string shown = bodyRegionName(anatomy->region);
   if (exercise.anatomy != exerciseAnatomy(anatomy->region)) {
     const bool known = exercise.anatomy == "cranium" || exercise.anatomy == "abdomen";
     if (!known) return {};
     return Warning{code::kOtherAnatomy,
-                   tr("The case shows {}{}, and the exercise is for the {}",
-                      shown == "head" ? "a " : "an ", shown, exercise.anatomy)};
+                   anatomy->region == BodyRegion::head
+                       ? tr("The case shows a head, and the exercise is for the abdomen")
+                       : tr("The case shows an abdomen, and the exercise is for the cranium")};
   }
   if (anatomy->region == BodyRegion::head && !anatomy->vault) {
     return Warning{

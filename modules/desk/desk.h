@@ -295,7 +295,7 @@ class Desk {
   void takeBack();
   void tellTissues();
   void applyController(ControllerKind kind);
-  Status notLocked(Lock lock, const std::string& what) const;
+  Status notLocked(Lock lock) const;
 
   void saveOnceStill(WaitingSave save);
 

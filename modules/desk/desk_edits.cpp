@@ -47,10 +47,21 @@ void Desk::takeBack() {
   say(DeskChange::controller);
 }
 
-Status Desk::notLocked(Lock lock, const std::string& what) const {
+Status Desk::notLocked(Lock lock) const {
   if (!isLocked(lock)) return {};
-  return Error{code::kLocked, tr("{} locked on this workstation or by this exercise", what), "",
-               unlocking(policy_)};
+  std::string what;
+  switch (lock) {
+    case Lock::controller:
+      what = tr("The controller is locked on this workstation or by this exercise");
+      break;
+    case Lock::tissues:
+      what = tr("The tissues are locked on this workstation or by this exercise");
+      break;
+    case Lock::rate:
+      what = tr("The rate is locked on this workstation or by this exercise");
+      break;
+  }
+  return Error{code::kLocked, what, "", unlocking(policy_)};
 }
 
 // --- Edits ---
@@ -64,7 +75,7 @@ void Desk::refreshPlaced() {
 Status Desk::mayEdit(const Exercise& wanted) const {
   const TissueSet& wanted_tissues = tissuesInForce(wanted, isElsewhere());
   if (wanted_tissues != tissues()) {
-    if (Status may = notLocked(Lock::tissues, tr("The tissues are")); !may) return may;
+    if (Status may = notLocked(Lock::tissues); !may) return may;
   }
   const auto id = &Tissue::id;
   if (heldSession() && !std::ranges::equal(wanted_tissues.tissues, tissues().tissues, {}, id, id)) {
@@ -72,10 +83,10 @@ Status Desk::mayEdit(const Exercise& wanted) const {
                  tr("Stop it before tissues are added or removed")};
   }
   if (wanted.controller != exercise_->controller) {
-    if (Status may = notLocked(Lock::controller, tr("The controller is")); !may) return may;
+    if (Status may = notLocked(Lock::controller); !may) return may;
   }
   if (wanted.rate_hz != exercise_->rate_hz) {
-    if (Status may = notLocked(Lock::rate, tr("The rate is")); !may) return may;
+    if (Status may = notLocked(Lock::rate); !may) return may;
   }
   const Exercise live = withLiveOf(wanted, *exercise_, isElsewhere());
   if (live == *exercise_) return {};
@@ -235,7 +246,7 @@ void Desk::noteController(ControllerKind in_force) {
 void Desk::setController(ControllerKind kind) {
   if (!exercise_) return;
   if (kind != exercise_->controller) {
-    if (Status may = notLocked(Lock::controller, tr("The controller is")); !may) {
+    if (Status may = notLocked(Lock::controller); !may) {
       fail(may.error());
       return say(DeskChange::controller);
     }

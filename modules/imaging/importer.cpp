@@ -472,7 +472,7 @@ Result<Volume> CtFolder::read(const std::string& uid, const ImportRequest& reque
   assignVerdict(source->series);
   series.geometry = volume->geometry;
 
-  progress.at(0.95, "Checking");
+  progress.at(0.95, tr("Checking"));
   const auto hash_start = Clock::now();
   series.volume_sha256 = volumeSha256(*volume);
   report.seconds.hash = secondsSince(hash_start);
@@ -487,7 +487,7 @@ Result<Volume> CtFolder::read(const std::string& uid, const ImportRequest& reque
   report.chosen = series.uid;
   report.error.reset();
   report.peak_rss_mb = std::max(peakResidentMb(), report.start_rss_mb);  // read at other moments
-  progress.at(1.0, "Done");
+  progress.at(1.0, tr("Done"));
   return volume;
 }
 

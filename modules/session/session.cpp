@@ -295,7 +295,8 @@ void Session::leaveBehind(std::size_t held, bool watchdog_ended) {
   if (loop_->silenceIsPending()) add({tick, EventKind::silenced, -1, 0, {}});
   for (std::size_t arm : stuck.arms) {
     add({tick, EventKind::fault, std::int32_t(arm), kFaultStuck, {}});
-    names += (names.empty() ? "'" : tr(" and '")) + exercise_.arms[arm].name + "'";
+    const std::string name = "'" + exercise_.arms[arm].name + "'";
+    names = names.empty() ? name : tr("{} and {}", names, name);
   }
   const bool pedal = stuck.arms.empty();
   const std::string plugin =
@@ -317,7 +318,7 @@ Status Session::freewheel(double seconds, const Progress& progress) {
   if (Status started = startStepped(seconds); !started) return started;
   for (std::uint64_t ticks = 1; !finished() && !progress.cancelled(); ticks = drainTicks()) {
     advance(double(ticks) / exercise_.rate_hz);
-    progress.at(double(loop_->ticks()) / double(last_tick_), "Running");
+    progress.at(double(loop_->ticks()) / double(last_tick_), tr("Running"));
   }
   const bool cancelled = !finished();
   Status ended = stop();

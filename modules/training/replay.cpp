@@ -376,8 +376,9 @@ Result<ReplayResult> replay(const SessionReader& recording, const Volume& volume
   constexpr std::uint64_t kLook = 4096;  // ticks
   for (bool more = true; more;) {
     if (session.ticks() % kLook == 0) {
-      progress.at(double(session.ticks()) / double(std::max<std::uint64_t>(1, recording.tickCount())),
-                  "Replaying");
+      progress.at(
+          double(session.ticks()) / double(std::max<std::uint64_t>(1, recording.tickCount())),
+          tr("Replaying"));
       if (progress.cancelled())
         return Error{code::kCancelled, tr("The replay was cancelled"), "", ""};
     }

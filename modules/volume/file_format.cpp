@@ -8,13 +8,13 @@
 #include <cerrno>
 #include <charconv>
 #include <cmath>
-#include <cstdio>
 #include <fstream>
 #include <limits>
 #include <system_error>
 
 #include "base/codes.h"
 #include "base/descriptor.h"
+#include "base/formatted.h"
 #include "base/tr.h"
 #include "volume/codes.h"
 
@@ -98,9 +98,8 @@ Status checkGeometry(const GridGeometry& geometry, const fs::path& file) {
   for (int axis = 0; axis < 3; ++axis) {
     const double spacing = geometry.spacing_mm[axis];
     if (!(spacing >= kSmallestVoxel_mm && spacing <= kLargestVoxel_mm)) {
-      char words[64];
-      std::snprintf(words, sizeof words, "A voxel size of %g mm is not possible", spacing);
-      return badGeometry(words, file);
+      return badGeometry(tr("A voxel size of {} mm is not possible", formatted("%g", spacing)),
+                         file);
     }
     const double length = glm::length(d[axis]), dot = glm::dot(d[axis], d[(axis + 1) % 3]);
     // Also false for anything not finite.

@@ -231,7 +231,7 @@ Status writeCtSeries(const Volume& volume, const CtSeriesText& text, const fs::p
     }
   }
   fs::remove_all(unfinished, error);
-  progress.at(1.0, "Done");
+  progress.at(1.0, tr("Done"));
   return {};
 }
 

@@ -325,7 +325,7 @@ Result<DicomSegmentation> read(const fs::path& file, double threshold, const Pro
     }
     out.format = "DICOM label map";
     out.named = std::ranges::any_of(out.segments, [](const auto& s) { return !s.name.empty(); });
-    progress.at(1.0, "Done");
+    progress.at(1.0, tr("Done"));
     return result;
   }
   for (const SegHeader::Segment& segment : header.segments) {
@@ -352,7 +352,7 @@ Result<DicomSegmentation> read(const fs::path& file, double threshold, const Pro
   auto filled = layers.take();
   if (!filled) return filled.error();
   out.layers = std::move(filled).value();
-  progress.at(1.0, "Done");
+  progress.at(1.0, tr("Done"));
   return result;
 }
 

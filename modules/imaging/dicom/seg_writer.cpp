@@ -468,7 +468,7 @@ Result<WrittenStructures> write(const Volume& ct, const LabelMap& map, const fs:
     if (done) done = putInPlace(unfinished.path(), names, folder);
   }
   if (!done) return giveUp(done.error());
-  progress.at(1.0, "Done");
+  progress.at(1.0, tr("Done"));
   return written;
 }
 

@@ -101,7 +101,7 @@ class Unpacker {
     while (true) {
       if (progress_.cancelled()) return cancelled();
       const double share = double(archive_filter_bytes(in.get(), -1)) / (double(packed) + 1.0);
-      progress_.at(from + (to - from) * std::clamp(share, 0.0, 1.0), "Unpacking");
+      progress_.at(from + (to - from) * std::clamp(share, 0.0, 1.0), tr("Unpacking"));
       archive_entry* entry = nullptr;
       const int next = archive_read_next_header(in.get(), &entry);
       if (next < ARCHIVE_WARN || next == ARCHIVE_RETRY) return reason.empty() ? kDamaged : reason;

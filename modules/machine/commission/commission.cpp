@@ -153,7 +153,7 @@ Status Run::trades() {
 }
 
 Status Run::drawing() {
-  progress_.at(0.5, "Pictures");
+  progress_.at(0.5, tr("Pictures"));
   const char* const kDrawn[] = {"screen",     "opengl",           "volume_edge",
                                 "frame_time", "removal_to_pixel", "hand_to_tool"};
   if (const Status display = probeDisplay(); !display) {
@@ -177,7 +177,7 @@ Status Run::drawing() {
   checks.push_back(judged("volume_edge", largestVolumeEdge(), "", options_.largest_edge));
   renderer->reset();
   Result<std::vector<RenderSubject>> subjects =
-      renderSubjects("", Progress(progress_, 0.5, 0.58, "Pictures"));
+      renderSubjects("", Progress(progress_, 0.5, 0.58, tr("Pictures")));
   if (!subjects) return subjects.error();
   const auto turned = measureTurning(subjects->front(), options,
                                      Progress(progress_, 0.58, 0.72, tr("A camera that turns")));
