@@ -193,7 +193,7 @@ void TrainWorkspace::unlessItDoesNotFit(WorkGuards::Next go_on) {
                        : lacks    ? tr("Make the structure in the slices first, or go on as it is.")
                        : no_place ? tr("Click where it is to enter (I) first, or go on as it is.")
                                   : tr("Choose an exercise that fits, or go on as it is.");
-  QMessageBox* question = ask(messages_.window(), "misfitQuestion", words.join('\n'), next,
+  QMessageBox* question = ask(messages_.window(), "fitQuestion", words.join('\n'), next,
                               tr("&Go on as it is"), [this, go_on] {
                                 warned_ = true;
                                 go_on();

@@ -123,7 +123,7 @@ class StructuresGuiTest : public test::WindowTest {
 
   void anExerciseThatNeedsALiverAsksAndLeadsToMakingIt() {
     window_->findChild<QAction*>("start")->trigger();
-    auto* question = window_->findChild<QMessageBox*>("misfitQuestion");
+    auto* question = window_->findChild<QMessageBox*>("fitQuestion");
     QVERIFY(question);
     QVERIFY2(question->text().contains("liver"), qPrintable(question->text()));
     QVERIFY(workstation().phase() == Workstation::Phase::ready);
@@ -232,7 +232,7 @@ class StructuresGuiTest : public test::WindowTest {
     ++clicks_;
     QVERIFY(started.count() == 1 || started.wait(kLong_ms));
     computing_ms_ += clock.elapsed();
-    QVERIFY(!window_->findChild<QMessageBox*>("misfitQuestion"));
+    QVERIFY(!window_->findChild<QMessageBox*>("fitQuestion"));
     const Placement& of = *workstation().placed();
     QVERIFY(of.warnings.empty());
     QVERIFY(of.labels->find("capsule"));

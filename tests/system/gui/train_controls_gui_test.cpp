@@ -332,7 +332,7 @@ class TrainControlsGuiTest : public test::TrainTest {
     openExercise(file);
     QVERIFY(workstation().exercise()->anatomy == "abdomen");
     find<QAction>("start")->trigger();
-    answer("misfitQuestion", "changeExercise");
+    answer("fitQuestion", "changeExercise");
     QTRY_VERIFY_WITH_TIMEOUT(workstation().exercise()->anatomy == "cranium", kLong_ms);
     QVERIFY(workstation().phase() != Workstation::Phase::running);
   }
