@@ -26,6 +26,8 @@ class Translations(unittest.TestCase):
         of = {c.find("name").text: {m.find("source").text for m in c.findall("message")}
               for c in found.getroot()}
         self.assertIn("The file is not valid JSON: {}", of["trephine"])
+        self.assertIn("Another structure is called '{}'", of["trephine"])  # an error of the window
+        self.assertIn("Size of te&xt", of["trephine"])  # a row of a table of the window
         self.assertIn("trephine::MainWindow", of)
         self.assertGreater(len(of["trephine"]), 1000)
         own = [name for name in of if name.startswith("trephine::")]

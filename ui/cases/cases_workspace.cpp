@@ -7,6 +7,7 @@
 
 #include "base/codes.h"
 #include "base/file.h"
+#include "base/tr.h"
 #include "exercise/exercise.h"
 #include "library/codes.h"
 #include "library/stored_case.h"
@@ -36,7 +37,8 @@ class PageAlone : public QTextBrowser {
 };
 
 Error stillChanging() {
-  return {code::kBusy, "The change before is still being written", "", "Try again in a moment"};
+  return {code::kBusy, trephine::tr("The change before is still being written"), "",
+          trephine::tr("Try again in a moment")};
 }
 
 }  // namespace
@@ -352,9 +354,9 @@ void CasesWorkspace::showReport(const CaseEntry& entry) {
   const Result<std::string> page =
       readWholeFile(entry.record.folder / case_folders::kReportPage, kMostBytes);
   if (!page) {
-    return messages_.report({page.error().code, "The case's report cannot be read",
+    return messages_.report({page.error().code, trephine::tr("The case's report cannot be read"),
                              (entry.record.folder / case_folders::kReportPage).string(),
-                             "The case can be used without it"});
+                             trephine::tr("The case can be used without it")});
   }
   auto* dialog = new QDialog(messages_.window());
   dialog->setObjectName("reportDialog");

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "base/field.h"
+#include "base/tr.h"
 #include "headset/stereo_screen.h"
 #include "ui/common/colours.h"
 #include "ui/common/settings.h"
@@ -39,42 +40,50 @@ struct Preferences {
   double eyes_mm = 63.0, screen_mm = 600.0;
 };
 
+// A preference on its form; of a number with its step and decimals there, and the unit that it is
+// shown in.
+constexpr FieldRow preferenceRow(const char* key, const Range& range, const char* label,
+                                 double step = 0.0, int decimals = -1, const char* shown_unit = "",
+                                 double shown_per = 1.0) {
+  return {key, range, Given::may_be, "", label, "", "", step, decimals, shown_unit, shown_per};
+}
+
 inline constexpr FieldOf<Preferences> kWorkFields[] = {
-    {{"language", {}, Given::may_be, "", "&Language"},
+    {preferenceRow("language", {}, trLater("&Language")),
      oneOf<&Preferences::language, kLanguages>()},
-    {{"theme", {}, Given::may_be, "", "&Theme"}, oneOf<&Preferences::theme, kThemes>()},
-    {{"text_percent", {80, 200, "%"}, Given::may_be, "", "Size of te&xt", "", "", 10.0},
+    {preferenceRow("theme", {}, trLater("&Theme")), oneOf<&Preferences::theme, kThemes>()},
+    {preferenceRow("text_percent", {80, 200, "%"}, trLater("Size of te&xt"), 10.0),
      &Preferences::text_percent},
-    {{"arms/most_N", {0.5, 40, "N"}, Given::may_be, "", "An arm &gives at most", "", "", 0.5, 1},
+    {preferenceRow("arms/most_N", {0.5, 40, "N"}, trLater("An arm &gives at most"), 0.5, 1),
      &Preferences::arms_most_N},
-    {{"hands/main", {}, Given::may_be, "", "The mouse &begins with the"},
+    {preferenceRow("hands/main", {}, trLater("The mouse &begins with the")),
      oneOf<&Preferences::main_hand, kMainHands>()},
-    {{"mouse/push_step_N", {0.05, 1, "N"}, Given::may_be, "", "One notch of the &wheel pushes by",
-      "", "", 0.05, 2},
+    {preferenceRow("mouse/push_step_N", {0.05, 1, "N"},
+                   trLater("One notch of the &wheel pushes by"), 0.05, 2),
      &Preferences::push_step_N},
-    {{"keys/step_mm", {0.1, 5, "mm"}, Given::may_be, "", "An &arrow key moves by", "", "", 0.5, 1},
+    {preferenceRow("keys/step_mm", {0.1, 5, "mm"}, trLater("An &arrow key moves by"), 0.5, 1),
      &Preferences::key_step_mm},
 };
 inline constexpr FieldOf<Preferences> kHeadsetFields[] = {
-    {{"headset/ahead_m", {0.2, 2, "m"}, Given::may_be, "",
-      "The patient is so far &ahead of the eyes", "", "", 5.0, 0, "cm", 100.0},
+    {preferenceRow("headset/ahead_m", {0.2, 2, "m"},
+                   trLater("The patient is so far &ahead of the eyes"), 5.0, 0, "cm", 100.0),
      &Preferences::headset_ahead_m},
-    {{"headset/below_m", {0, 1, "m"}, Given::may_be, "", "and so far &below them", "", "", 5.0, 0,
-      "cm", 100.0},
+    {preferenceRow("headset/below_m", {0, 1, "m"}, trLater("and so far &below them"), 5.0, 0, "cm",
+                   100.0),
      &Preferences::headset_below_m},
-    {{"headset/scale", {0.25, 8}, Given::may_be, "", "Of the size in &life", "", "", 25.0, 0, "%",
-      100.0},
+    {preferenceRow("headset/scale", {0.25, 8}, trLater("Of the size in &life"), 25.0, 0, "%",
+                   100.0),
      &Preferences::headset_scale},
-    {{"headset/mirror", {}, Given::may_be, "", "The &window shows what the left eye sees"},
+    {preferenceRow("headset/mirror", {}, trLater("The &window shows what the left eye sees")),
      &Preferences::headset_mirror},
 };
 inline constexpr FieldOf<Preferences> kScreenFields[] = {
-    {{"stereo/packing", {}, Given::may_be, "", "&Pictures"},
+    {preferenceRow("stereo/packing", {}, trLater("&Pictures")),
      oneOf<&Preferences::packing, kPackings>()},
-    {{"stereo/eyes_mm", {40, 80, "mm"}, Given::may_be, "", "The &eyes are apart by", "", "", 1.0, 1},
+    {preferenceRow("stereo/eyes_mm", {40, 80, "mm"}, trLater("The &eyes are apart by"), 1.0, 1),
      &Preferences::eyes_mm},
-    {{"stereo/screen_mm", {100, 20000, "mm"}, Given::may_be, "", "The screen is &distant by", "",
-      "", 10.0, 0, "cm", 0.1},
+    {preferenceRow("stereo/screen_mm", {100, 20000, "mm"}, trLater("The screen is &distant by"),
+                   10.0, 0, "cm", 0.1),
      &Preferences::screen_mm},
 };
 

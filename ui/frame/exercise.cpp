@@ -7,6 +7,7 @@
 
 #include "base/codes.h"
 #include "base/file.h"
+#include "base/tr.h"
 #include "device/codes.h"
 #include "exercise/arms_file.h"
 #include "ui/codes.h"
@@ -36,8 +37,8 @@ Result<ExerciseOutcome> runExercise(const ExerciseOptions& options, const Progre
   if (Status may = checkExercise(options.policy, *exercise, options.exercise); !may)
     return may.error();
   if (exercise->operator_file.empty()) {
-    return Error{code::kNoOperator, "The scene has no script to play", options.exercise.string(),
-                 "Name one under 'operator' in the scene"};
+    return Error{code::kNoOperator, trephine::tr("The scene has no script to play"),
+                 options.exercise.string(), trephine::tr("Name one under 'operator' in the scene")};
   }
   Result<OperatorScript> script = readOperatorScript(exercise->operator_file, *exercise);
   if (!script) return script.error();
@@ -112,12 +113,12 @@ Result<ExerciseOutcome> runExercise(const ExerciseOptions& options, const Progre
   window.open(options.exercise);
   if (!failure) loop.exec();
   if (timed) timed->setWatcher({});
-  const Error cancelled{code::kCancelled, "The exercise was cancelled", "", ""};
+  const Error cancelled{code::kCancelled, trephine::tr("The exercise was cancelled"), "", ""};
   if (step != Step::ending && progress.cancelled()) return cancelled;
   if (step != Step::ending && failure) return *failure;
   if (step != Step::ending) {
-    return Error{code::kStopped, "The window was closed before the exercise ended", "",
-                 "Start it again"};
+    return Error{code::kStopped, trephine::tr("The window was closed before the exercise ended"),
+                 "", trephine::tr("Start it again")};
   }
   if (failure) outcome.failure = failure;
   if (progress.cancelled()) {

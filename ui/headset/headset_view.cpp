@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/codes.h"
+#include "base/tr.h"
 #include "ui/common/actions.h"
 #include "ui/common/preferences.h"
 #include "ui/common/words.h"
@@ -93,8 +94,8 @@ void HeadsetView::start() {
     QMetaObject::invokeMethod(this, &HeadsetView::serve, Qt::QueuedConnection);
   };
   Result<std::unique_ptr<Headset>> started =
-      Error{code::kNoOpengl, "The 3-D view has not drawn anything yet", "",
-            "Open a case, and wait until it is shown"};
+      Error{code::kNoOpengl, trephine::tr("The 3-D view has not drawn anything yet"), "",
+            trephine::tr("Open a case, and wait until it is shown")};
   if (view.context() && view.canDraw().ok()) {
     started = Headset::start(*view.context(), HeadsetOptions{}, wake);
   }

@@ -7,6 +7,7 @@
 #include <QTimer>
 
 #include "base/codes.h"
+#include "base/tr.h"
 #include "ui/codes.h"
 #include "ui/common/actions.h"
 #include "ui/common/preferences.h"
@@ -78,18 +79,20 @@ void StereoView::toggle(bool on) {
 
 Status StereoView::start() {
   if (!view_.context() || !view_.canDraw()) {
-    return Error{code::kNoOpengl, "The 3-D view has not drawn anything yet", "",
-                 "Open a case, and wait until it is shown"};
+    return Error{code::kNoOpengl, trephine::tr("The 3-D view has not drawn anything yet"), "",
+                 trephine::tr("Open a case, and wait until it is shown")};
   }
   screen_ = chosenScreen(window_);
   if (!screen_) {
     const QString name = read(settings::kStereoScreen);
     return name.isEmpty()
-               ? Error{code::kNoScreen, "This computer has one screen only", "",
-                       "Connect another, or choose this one under View, Headset and screens"}
-               : Error{code::kNoScreen, "The chosen screen is not connected",
-                       "screen " + name.toStdString(),
-                       "Connect it, or choose another under View, Headset and screens"};
+               ? Error{code::kNoScreen, trephine::tr("This computer has one screen only"), "",
+                       trephine::tr(
+                           "Connect another, or choose this one under View, Headset and screens")}
+               : Error{
+                     code::kNoScreen, trephine::tr("The chosen screen is not connected"),
+                     trephine::tr("screen {}", name.toStdString()),
+                     trephine::tr("Connect it, or choose another under View, Headset and screens")};
   }
   if (Status read = readSettings(); !read) return read;
   screen_window_ = std::make_unique<StereoWindow>(&window_);
@@ -117,7 +120,7 @@ Status StereoView::readSettings() {
     Result<LensProfile> lens = readLensProfile(toPath(file));
     if (!lens) {
       Error error = lens.error();
-      error.what = "The lens before each eye cannot be used: " + error.what;
+      error.what = trephine::tr("The lens before each eye cannot be used: {}", error.what);
       return error;
     }
     lens_ = *lens;

@@ -10,6 +10,7 @@
 #include "base/locked_folder.h"
 #include "base/log.h"
 #include "base/system.h"
+#include "base/tr.h"
 #include "machine/codes.h"
 #include "machine/ticks/law_costs.h"
 #include "machine/trades/recommended.h"
@@ -138,7 +139,7 @@ void ArmsTab::measureTrades() {
         const Result<LockedFolder> out =
             LockedFolder::make(*temporary, ".trephine-trades-", *temporary);
         if (!out) return out.error();
-        progress.at(0.0, "Measuring, some minutes");
+        progress.at(0.0, trephine::tr("Measuring, some minutes"));
         constexpr double kLongest_s = 1200.0;
         const Result<ChildRun> run =
             runChild({{labProgram().string(), "trades", "--out", out->path().string(), "--json"},
@@ -148,8 +149,9 @@ void ArmsTab::measureTrades() {
                      progress);
         if (!run) return run.error();
         if (run->exit_code != 0) {
-          return Error{code::kNotMeasured, "The measurement did not come to its end",
-                       "trephine-lab", "Run 'trephine-lab trades --out DIR' to see why"};
+          return Error{code::kNotMeasured, trephine::tr("The measurement did not come to its end"),
+                       "trephine-lab",
+                       trephine::tr("Run 'trephine-lab trades --out DIR' to see why")};
         }
         if (Status made = makeFolder(to); !made) return made;
         for (const char* file : {"trades.json", "recommended.json"}) {

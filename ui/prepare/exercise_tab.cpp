@@ -6,6 +6,7 @@
 
 #include "base/file.h"
 #include "base/json.h"
+#include "base/tr.h"
 #include "exchange/exercise_folder.h"
 #include "library/case_folders.h"
 #include "library/name_words.h"
@@ -27,10 +28,17 @@ std::string list(const std::vector<std::string>& files) {
 
 // Why nothing was imported, part by part.
 Error notVerified(const ExerciseCheck& check) {
-  std::string what = "The exercise is not as it was exported";
-  if (!check.missing.empty()) what += "; missing: " + list(check.missing);
-  if (!check.changed.empty()) what += "; changed: " + list(check.changed);
-  return {code::kNotVerified, what, "the folder", "Export it anew, or copy the whole folder again"};
+  const std::string missing = list(check.missing), changed = list(check.changed);
+  const std::string what =
+      missing.empty() && changed.empty() ? trephine::tr("The exercise is not as it was exported")
+      : changed.empty()
+          ? trephine::tr("The exercise is not as it was exported; missing: {}", missing)
+      : missing.empty()
+          ? trephine::tr("The exercise is not as it was exported; changed: {}", changed)
+          : trephine::tr("The exercise is not as it was exported; missing: {}; changed: {}",
+                         missing, changed);
+  return {code::kNotVerified, what, trephine::tr("the folder"),
+          trephine::tr("Export it anew, or copy the whole folder again")};
 }
 
 }  // namespace
@@ -158,8 +166,9 @@ std::optional<Exercise> ExerciseTab::exerciseToSave() {
   exercise.tissues_elsewhere = made.tissues_elsewhere;
   if (of.built_in) return exercise;
   if (of.stored.empty()) {
-    messages_.report({code::kCaseNotSaved, "The case of the exercise is not in the library", "",
-                      "Save the case first (Cases), or import it again where it was deleted"});
+    messages_.report(
+        {code::kCaseNotSaved, trephine::tr("The case of the exercise is not in the library"), "",
+         trephine::tr("Save the case first (Cases), or import it again where it was deleted")});
     return {};
   }
   const std::filesystem::path folder = storage_ / "cases" / of.stored;

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "base/codes.h"
+#include "base/tr.h"
 #include "library/stored_case.h"
 #include "training/replay.h"
 #include "ui/codes.h"
@@ -24,8 +25,8 @@ Result<Case> recordedCase(const ListedRecording& recording, CaseLibrary& library
     if (!stored) return stored.error();
     return std::move(stored->of);
   }
-  return Error{code::kMissingCase, "The case that it was done on is not kept here", "",
-               "Open that case, to replay it"};
+  return Error{code::kMissingCase, trephine::tr("The case that it was done on is not kept here"),
+               "", trephine::tr("Open that case, to replay it")};
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "base/codes.h"
+#include "base/tr.h"
 #include "library/codes.h"
 #include "structures/grow_box.h"
 #include "ui/common/words.h"
@@ -121,13 +122,14 @@ void StructureEditor::setCurrent(int label) {
 Status StructureEditor::rename(int label, const QString& name) {
   const std::string wanted = structureName(name.toStdString());
   if (wanted.empty()) {
-    return Error{code::kBadName, "A structure needs a name", "", "Type one"};
+    return Error{code::kBadName, trephine::tr("A structure needs a name"), "",
+                 trephine::tr("Type one")};
   }
   if (!mayChange() || !structures_.find(label)) return {};
   if (!structures_.rename(tr("Rename").toStdString(), label, wanted)) {
     return Error{code::kBadName,
-                 "Another structure is called '" + structures_.find(wanted)->name + "'", "",
-                 "Choose another name"};
+                 trephine::tr("Another structure is called '{}'", structures_.find(wanted)->name),
+                 "", trephine::tr("Choose another name")};
   }
   changedRows();
   return {};

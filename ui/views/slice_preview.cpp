@@ -47,7 +47,8 @@ SlicePreview::SlicePreview(QWidget* parent) : QWidget(parent) {
   slider_->setAccessibleName(tr("Slice"));
   slider_->setPageStep(kPageOfSlices);
   position_ = named(new QLabel(this), "slicePosition");
-  position_->setMinimumWidth(fontMetrics().horizontalAdvance("Slice 0000 of 0000"));
+  position_->setMinimumWidth(
+      fontMetrics().horizontalAdvance(tr("Slice %1 of %2").arg("0000", "0000")));
   position_->setAlignment(Qt::AlignRight | Qt::AlignVCenter);
   auto* slider_row = new QHBoxLayout;
   slider_row->addWidget(slider_, 1);

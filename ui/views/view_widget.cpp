@@ -9,6 +9,7 @@
 #include <cmath>
 #include <utility>
 
+#include "base/tr.h"
 #include "imaging/codes.h"
 #include "ui/common/colours.h"
 #include "ui/common/event_loop.h"
@@ -338,8 +339,8 @@ void ViewWidget::setOutline(const std::vector<Vec3>& points_mm, bool closed, dou
 
 Result<Picture> ViewWidget::picture() {
   if (!context() || !renderer_.hasVolume()) {
-    return Error{code::kNoPicture, "There is nothing to take a picture of", "3-D view",
-                 "Open a case first"};
+    return Error{code::kNoPicture, trephine::tr("There is nothing to take a picture of"),
+                 trephine::tr("3-D view"), trephine::tr("Open a case first")};
   }
   makeCurrent();
   renderer_.setLines({});  // handles are none of the picture
@@ -347,8 +348,9 @@ Result<Picture> ViewWidget::picture() {
   doneCurrent();
   update();  // the picture was drawn with VTK's state, the window's frame is still the old one
   if (picture.rgb.empty()) {
-    return Error{code::kNoPicture, "The picture could not be read from the graphics card",
-                 "3-D view", "Try again, or with a smaller window"};
+    return Error{code::kNoPicture,
+                 trephine::tr("The picture could not be read from the graphics card"),
+                 trephine::tr("3-D view"), trephine::tr("Try again, or with a smaller window")};
   }
   return picture;
 }

@@ -18,6 +18,7 @@
 
 #include "base/codes.h"
 #include "base/result.h"
+#include "base/tr.h"
 #include "exercise/landmark.h"
 #include "ui/views/tool_in_3d.h"
 #include "ui/views/workspace_box.h"
@@ -119,8 +120,9 @@ class ViewWidget : public QOpenGLWidget {
 
   SceneRenderer renderer_;
   GridGeometry shown_;
-  Status drawing_{Error{code::kNoOpengl, "The view has no OpenGL to draw with", "3-D view",
-                        "Install the graphics driver and start again"}};
+  Status drawing_{Error{code::kNoOpengl, trephine::tr("The view has no OpenGL to draw with"),
+                        trephine::tr("3-D view"),
+                        trephine::tr("Install the graphics driver and start again")}};
   std::string gl_description_;
   QLabel* hint_;
   QLabel* level_;

@@ -3,6 +3,7 @@
 #include <QDir>
 #include <QStandardPaths>
 
+#include "base/tr.h"
 #include "exchange/exercise_folder.h"
 #include "library/codes.h"
 #include "library/stored_case.h"
@@ -69,9 +70,9 @@ void AppContext::openExercise(const std::filesystem::path& file, Place then) {
   workstation_.openExercise(file, [library = library_, id](const Progress& progress) {
     Result<StoredCase> stored = storedCase(*library, id, progress);
     if (!stored && stored.error().code == code::kNoSuchCase) {
-      return Result<StoredCase>(
-          Error{code::kNoSuchCase, "The case of this exercise is not on this workstation", "",
-                "Import the exercise with its case, or choose another case for it"});
+      return Result<StoredCase>(Error{
+          code::kNoSuchCase, trephine::tr("The case of this exercise is not on this workstation"),
+          "", trephine::tr("Import the exercise with its case, or choose another case for it")});
     }
     if (stored) {  // the exercise's own are felt
       stored->tissues.reset();

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "base/codes.h"
+#include "base/tr.h"
 #include "imaging/codes.h"
 #include "ui/common/words.h"
 #include "ui/views/slice_image.h"
@@ -106,9 +107,10 @@ void ImportTask::read(const std::string& uid, const ImportRequest& request, doub
   begin([this, uid, request, needed_mb] {
     task_.run(
         [folder = folder_, source = source_, uid, request, needed_mb,
-         opening = tr("Opening the case and practising on it").toStdString(),
          room_mb = roomMb()](const Progress& progress) -> Result<ReadSeries> {
-          if (Status enough = enoughMemory(needed_mb, opening, "", room_mb); !enough) {
+          if (Status enough = enoughMemory(
+                  needed_mb, trephine::tr("Opening the case and practising on it"), "", room_mb);
+              !enough) {
             return enough.error();
           }
           Result<Volume> volume = folder->read(uid, request, progress);
