@@ -70,6 +70,23 @@ Provenance provenanceOf(const SeriesReport& series, const ImportRequest& request
   return provenance;
 }
 
+// Slices of it may be among what could not be unpacked.
+void addNotWhole(const UnpackedArchives& unpacked, Series& series) {
+  for (const auto& archive : unpacked.not_whole) {
+    const bool from_it = std::ranges::any_of(series.slices, [&](const DicomHeader& slice) {
+      return slice.file.parent_path() == archive.folder;
+    });
+    if (!from_it) continue;
+    return keepFinding(
+        series,
+        {code::kArchiveNotWhole,
+         Severity::refusal,
+         tr("It comes from {}: some of its slices may not be there", archive.why),
+         {},
+         tr("Copy or download the archive again, or unpack it by hand and import the folder")});
+  }
+}
+
 Status roomToRead(const SeriesReport& series, const ImportRequest& request) {
   return enoughToRead(readingMb(series, request), tr("Reading the series"), "",
                       request.most_memory_mb.value_or(usableMemoryMb()));

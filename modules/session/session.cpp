@@ -414,7 +414,7 @@ Status Session::setTissues(const TissueSet& wanted) {
   return {};
 }
 
-const LoopState& Session::state() {
+LoopState Session::state() {
   loop_->state().refresh();
   return loop_->state().value();
 }

@@ -159,7 +159,7 @@ class Session : public SessionView {
   bool changeTool(std::size_t arm, std::size_t tool);
 
   // The newest state of the loop. Owner thread.
-  const LoopState& state() override;
+  LoopState state() override;
   // The strokes that began so far, as far as they are known: within 50 ms.
   std::vector<StrokeBegin> strokes() const;
   // Of a session for poking: its last pokes, as far as they are known: within 50 ms.

@@ -248,7 +248,7 @@ const Exercise& ReplayedSession::exercise() const {
   return run_->exercise;
 }
 
-const LoopState& ReplayedSession::state() {
+LoopState ReplayedSession::state() {
   return run_->state;
 }
 

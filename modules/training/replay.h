@@ -43,7 +43,7 @@ class ReplayedSession : public SessionView {
   ~ReplayedSession() override;
 
   const Exercise& exercise() const override;
-  const LoopState& state() override;
+  LoopState state() override;
   Grid& grid() override;
 
   // Does the next tick; `sink` takes what it came to, or is null. False at the end, and where this

@@ -14,8 +14,8 @@ class SessionView {
   // As it began on its case: tissues with their labels, maps fixed in the patient. What was changed
   // since is in state(), but for numbers of tissues.
   virtual const Exercise& exercise() const = 0;
-  // The newest state: poses, forces, counts, time.
-  virtual const LoopState& state() = 0;
+  // The newest state: poses, forces, counts, time. A copy: a later call does not change it.
+  virtual LoopState state() = 0;
   // The voxels as they are now. What changed since they were looked at last are the grid's dirty
   // bricks, which a mirror takes (VolumeMirror::pull).
   virtual Grid& grid() = 0;

@@ -1,5 +1,6 @@
 #include "ui/train/hand_bar.h"
 
+#include <QCoreApplication>
 #include <algorithm>
 
 #include "ui/common/colours.h"
@@ -92,6 +93,12 @@ void HandBar::fit(int width, int) {
     if (fits()) return;
     part->hide();
   }
+}
+
+QString handName(const ExerciseArm& arm) {
+  if (arm.name == "left") return QCoreApplication::translate("trephine", "Left hand");
+  if (arm.name == "right") return QCoreApplication::translate("trephine", "Right hand");
+  return toQt(arm.name);
 }
 
 }  // namespace trephine

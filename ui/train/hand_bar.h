@@ -5,6 +5,7 @@
 #include <QBoxLayout>
 #include <QLabel>
 
+#include "exercise/exercise.h"
 #include "tissue/tissue_set.h"
 #include "ui/common/floating_card.h"
 #include "ui/train/force_bar.h"
@@ -30,5 +31,8 @@ class HandBar : public FloatingCard {
   QLabel *hand_, *tool_, *touches_, *push_, *waits_;
   ForceBar* bar_;
 };
+
+// "Left hand".
+QString handName(const ExerciseArm& arm);
 
 }  // namespace trephine

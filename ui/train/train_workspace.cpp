@@ -6,8 +6,10 @@
 #include <algorithm>
 
 #include "ui/common/actions.h"
+#include "ui/common/colours.h"
 #include "ui/common/error_dialog.h"
 #include "ui/common/placing.h"
+#include "ui/common/preferences.h"
 #include "ui/common/question.h"
 #include "ui/common/words.h"
 
@@ -30,13 +32,7 @@ TrainWorkspace::TrainWorkspace(AppContext& app)
       views_(&case_views_.views()),
       view_(&case_views_.view()) {
   buildActions();
-  exercises_ = new QComboBox;
-  exercises_->setObjectName("scenes");
-  exercises_->setToolTip(tr("The exercise"));
-  exercises_->setAccessibleName(tr("Exercise"));
-  exercises_->setSizeAdjustPolicy(QComboBox::AdjustToContents);
-  constexpr int kMostWidth = 320;  // of the widest letters
-  exercises_->setMaximumWidth(kMostWidth);
+  choice_ = new ExerciseChoice(app, this);
   notice_ = new StateNotice(views_, views_->bar());
   rewind_ = new RewindBar;
   arms_ = new ArmsPanel;
@@ -47,13 +43,11 @@ TrainWorkspace::TrainWorkspace(AppContext& app)
   result_ = new ResultPage(*views_);
   hand_bar_ = new HandBar(*view_);
   hands_ = new PointerHands(*view_);
+  running_ = new RunningView(app, {*arms_, *notice_, *rewind_, *exercise_}, *hands_, this);
   connectParts();
-  fillExercises();
+  choice_->fill();
   frame_timer_.setObjectName("frame");
   frame_timer_.setInterval(kFrame_ms);
-  rate_clock_.start();
-  panel_clock_.start();
-  cards_clock_.start();
   showPhase();
 }
 
@@ -67,12 +61,14 @@ Workspace::Parts TrainWorkspace::parts() {
 
 void TrainWorkspace::enter() {
   here_ = true;
+  choice_->stayIn(Place::train);
   showCard();
   showHand();
 }
 
 void TrainWorkspace::leave() {
   here_ = false;
+  choice_->stayIn(Place::prepare);
   showCard();
   showHand();
 }
@@ -116,10 +112,12 @@ void TrainWorkspace::connectParts() {
           [this](bool on) { command(on ? CommandKind::pause : CommandKind::resume); });
   connect(notice_, &StateNotice::goOnWanted, this, [this] { command(CommandKind::resume); });
   connect(notice_, &StateNotice::forceWanted, this, [this] { command(CommandKind::clear_faults); });
-  connect(app_.undoAction(), &QAction::triggered, this, [this] { undo(CommandKind::undo); });
-  connect(app_.redoAction(), &QAction::triggered, this, [this] { undo(CommandKind::redo); });
+  connect(app_.undoAction(), &QAction::triggered, running_,
+          [this] { running_->undo(CommandKind::undo); });
+  connect(app_.redoAction(), &QAction::triggered, running_,
+          [this] { running_->undo(CommandKind::redo); });
   connect(reset_, &QAction::triggered, this, &TrainWorkspace::reset);
-  connect(rewind_, &RewindBar::rewindAsked, this, &TrainWorkspace::rewind);
+  connect(rewind_, &RewindBar::rewindAsked, running_, &RunningView::rewind);
   // Space belongs to buttons and lists where they have the focus.
   auto* space = new QShortcut(Qt::Key_Space, view_, nullptr, nullptr, Qt::WidgetShortcut);
   space->setAutoRepeat(false);
@@ -128,7 +126,14 @@ void TrainWorkspace::connectParts() {
     workstation_.setController(kind);
     view_->setFocus();
   });
-  connect(exercises_, &QComboBox::activated, this, &TrainWorkspace::chooseExercise);
+  connect(choice_, &ExerciseChoice::controllerShown, arms_, &ArmsPanel::showController);
+  connect(choice_, &ExerciseChoice::structureWanted, this, &TrainWorkspace::structureWanted);
+  connect(running_, &RunningView::ratesChanged, this, &TrainWorkspace::ratesChanged);
+  connect(running_, &RunningView::cardsChanged, this, &TrainWorkspace::cardsChanged);
+  connect(running_, &RunningView::stateShown, this, [this](const LoopState& state) {
+    pause_->setChecked(state.paused);
+    showHand();
+  });
   connect(hands_, &PointerHands::changed, this, &TrainWorkspace::showHand);
   connect(other_hand_, &QAction::triggered, hands_, &PointerHands::takeOther);
   connect(change_tool_, &QAction::triggered, this, &TrainWorkspace::nextTool);
@@ -138,7 +143,6 @@ void TrainWorkspace::connectParts() {
   connect(card_, &StartCard::startWanted, start_, &QAction::trigger);
   connect(card_, &StartCard::caseWanted, this, [this] { app_.go(Place::cases); });
   connect(card_, &StartCard::asideWanted, this, [this] { putAside(true); });
-  connect(&app_, &AppContext::exercisesChanged, this, &TrainWorkspace::fillExercises);
   connect(&app_, &AppContext::tryingChanged, this, [this] { exercise_->offerBack(app_.trying()); });
   connect(exercise_, &ExercisePanel::backWanted, this, [this] {
     // Of a trial nothing is kept but its recording.
@@ -159,18 +163,17 @@ void TrainWorkspace::connectParts() {
   connect(result_, &ResultPage::lookWanted, this, [this] { putAside(true); });
   connect(&workstation_, &Workstation::locksChanged, this, &TrainWorkspace::showLocks);
   connect(&workstation_, &Workstation::structuresChanged, this, &TrainWorkspace::showOutline);
-  connect(view_, &ViewWidget::framePainted, this, [this] { ++frames_; });
 
   connect(&case_views_, &CaseViews::caseShown, this, [this] {
-    warned_ = result_shown_ = aside_ = false;
+    result_shown_ = aside_ = false;
     exercise_->showIdle();  // of the exercise before
-    sayWhatIsOpen();
     showOutline();
     showCard();
   });
   connect(&case_views_, &CaseViews::cutsChanged, this, &TrainWorkspace::showReset);
-  connect(&workstation_, &Workstation::openingEnded, this, &TrainWorkspace::showInUse);
-  connect(&workstation_, &Workstation::exerciseOpening, this, &TrainWorkspace::showOpening);
+  connect(&workstation_, &Workstation::exerciseOpening, this, [this] {
+    if (!result_shown_) aside_ = false;
+  });
   connect(&workstation_, &Workstation::exerciseChanged, this, &TrainWorkspace::showChosen);
   connect(&workstation_, &Workstation::phaseChanged, this, &TrainWorkspace::showPhase);
   connect(&workstation_, &Workstation::sessionStarted, this, &TrainWorkspace::sessionStarted);
@@ -193,8 +196,62 @@ void TrainWorkspace::startExercise(std::optional<OperatorScript> script, double 
 
 void TrainWorkspace::startUnlessLost(const std::vector<UnsavedWork>& losses) {
   guards_.beforeStart([this, losses] {
-    unlessItDoesNotFit([this, losses] { guards_.unlessLost(losses, [this] { startExercise(); }); });
+    choice_->unlessItDoesNotFit(
+        [this, losses] { guards_.unlessLost(losses, [this] { startExercise(); }); });
   });
+}
+
+void TrainWorkspace::showChosen() {
+  const std::optional<Exercise>& exercise = workstation_.exercise();
+  if (!exercise) return;
+  choice_->showInUse();
+  arms_->setExercise(*exercise);
+  exercise_->setExercise(*exercise, toQt(languageInUse()));
+  showOutline();
+  showCard();
+}
+
+// What is said before it starts; nothing while one runs, or once one has ended and is looked at.
+void TrainWorkspace::showCard() {
+  using Phase = Workstation::Phase;
+  const Phase phase = workstation_.phase();
+  const bool idle = phase == Phase::ready || phase == Phase::empty;
+  const bool result = result_shown_ && phase == Phase::ready;
+  const bool card = !result_shown_ && phase == Phase::ready && !case_views_.carved();
+  exercise_->offerCard(!here_ || !aside_ ? QString()
+                       : result          ? tr("Show the &result")
+                       : card            ? tr("Show &what to do")
+                                         : QString());
+  if (!idle || !here_) {
+    card_->hide();
+    if (!here_ || phase == Phase::running) result_->hide();
+    return;
+  }
+  if (phase == Phase::empty) return workstation_.isOpening() ? card_->hide() : card_->showNoCase();
+  result_->setVisible(result && !aside_);
+  if (!card || aside_) return card_->hide();
+  card_->showExercise(*workstation_.exercise(), toQt(languageInUse()), start_->isEnabled());
+}
+
+void TrainWorkspace::putAside(bool aside) {
+  aside_ = aside;
+  showCard();
+  view_->setFocus();
+}
+
+void TrainWorkspace::showOutline() {
+  const std::optional<Placement>& placed = workstation_.placed();
+  if (!placed || !placed->exercise.outline) return view_->setOutline({}, false, 1.0);
+  const Exercise& exercise = placed->exercise;
+  view_->setOutline(
+      outlineOn(exercise, placed->landmarks, *placed->patient.volume, placed->labels.get()),
+      exercise.outline->closed, exercise.outline->width_mm);
+}
+
+void TrainWorkspace::showLocks() {
+  arms_->setLocked(workstation_.isLocked(Lock::controller)
+                       ? tr("Locked. %1.").arg(unlockWords(workstation_.policy()))
+                       : QString());
 }
 
 void TrainWorkspace::showReset() {
@@ -208,7 +265,6 @@ void TrainWorkspace::showPhase() {
   const Phase phase = workstation_.phase();
   const bool opening = workstation_.isOpening();
   const bool running = phase == Phase::running, ready = phase == Phase::ready && !opening;
-  exercises_->setEnabled(ready || (phase == Phase::empty && !opening));
   start_->setEnabled(ready);
   for (QAction* action : {stop_, pause_}) action->setEnabled(running);
   if (!running) {
@@ -280,30 +336,37 @@ void TrainWorkspace::sessionStarted() {
   pedal_ = {};
   messages_.say({});  // of the exercise before
   Session& session = *workstation_.session();
-  limits_N_.clear();
-  for (const ExerciseArm& arm : session.exercise().arms) limits_N_.push_back(arm.max_force_N);
-  going_back_.reset();
-  undoing_.reset();
-  ticks_shown_ = 0;
-  rate_clock_.restart();
+  running_->begin(session);
   if (!session.isPoke()) case_views_.exerciseBegan();
-  touched_ = result_shown_ = aside_ = false;
-  removed_clock_.restart();
-  exercise_->showIdle();
+  result_shown_ = aside_ = false;
   hand_bar_->setTissues(session.exercise().tissues);
   hands_->begin(&session);
   frame_timer_.start();
   view_->setFocus();
 }
 
+void TrainWorkspace::follow(bool all) {
+  Session* session = workstation_.session();
+  if (!session) return;
+  const LoopState& state = session->state();
+  running_->showPicture(*session, state);
+  followPedal(state);
+  hands_->follow();
+  running_->showNumbers(*session, state, all);
+  workstation_.checkRecording();
+  if (session->finished()) workstation_.stop();
+}
+
+void TrainWorkspace::command(CommandKind kind) {
+  Session* session = workstation_.session();
+  if (!session) return;
+  if (!session->send(kind)) return messages_.say(tr("Busy: try again in a moment."));
+}
+
 void TrainWorkspace::sessionEnded(Session& session) {
   frame_timer_.stop();
   hands_->begin(nullptr);
-  showState(session, session.state());
-  arms_->showIdle();
-  arms_->showController(workstation_.exercise()->controller);
-  showTools({});
-  emit ratesChanged({});
+  running_->end(session);
   if (session.isPoke()) return;
   const RunReport report = session.report();
   case_views_.exerciseEnded(report.done.removed_voxels > 0);
@@ -314,6 +377,31 @@ void TrainWorkspace::sessionEnded(Session& session) {
                 : any                     ? tr("The exercise is recorded in part only.")
                                           : tr("The exercise is not recorded."));
   showResult(session, report);
+}
+
+void TrainWorkspace::showResult(Session& session, const RunReport& report) {
+  ExerciseResult result;
+  result.exercise = toQt(session.exercise().name);
+  if (const CardText* card = cardFor(session.exercise(), languageInUse())) {
+    result.goal = toQt(card->goal);
+  }
+  result.seconds = session.state().seconds;
+  for (const auto& [id, mm3] : report.done.removed_mm3) {
+    const Tissue* tissue = session.exercise().tissues.find(id);
+    if (tissue) result.tissues.push_back({toQt(tissue->name), colours::of(tissue->colour), mm3});
+  }
+  result.structures = report.structures_cut;
+  for (std::size_t i = 0; i < report.done.arms.size(); ++i) {
+    result.ways.push_back({handName(session.exercise().arms[i]), report.done.arms[i].path_mm,
+                           report.done.arms[i].max_force_N});
+  }
+  result.recorded = session.recordingStatus() && report.machine.events_dropped == 0;
+  result.late = report.machine.missed_deadlines;
+  recorded_ = result.recorded;
+  result_shown_ = true;
+  aside_ = false;
+  result_->setResult(result);
+  showCard();
 }
 
 // The exercise goes on behind the question.

@@ -1,21 +1,19 @@
-// Train: the exercise: which one, its start and end, what the hands do and feel. Between its
-// panels, the views and the workstation. (train_exercises.cpp is which exercise it is,
-// train_running.cpp what is shown while one runs.)
+// Train: the exercise: its start and end, what the hands do, what is said before and after it.
+// Between its panels, the views and the workstation. (train_hands.cpp is what the hands do.)
 #pragma once
 
-#include <QComboBox>
-#include <QElapsedTimer>
 #include <QTimer>
 #include <optional>
 
-#include "ui/headset/eye_cards.h"
 #include "ui/train/arms_panel.h"
+#include "ui/train/exercise_choice.h"
 #include "ui/train/exercise_panel.h"
 #include "ui/train/hand_bar.h"
 #include "ui/train/pedal_switches.h"
 #include "ui/train/pointer_hands.h"
 #include "ui/train/result_page.h"
 #include "ui/train/rewind_bar.h"
+#include "ui/train/running_view.h"
 #include "ui/train/start_card.h"
 #include "ui/train/state_notice.h"
 #include "ui/work/app_context.h"
@@ -37,7 +35,7 @@ class TrainWorkspace : public Workspace {
   bool escape() override;
 
   // The exercises to choose from, for the bar; what one does with a running one.
-  QComboBox* exercises() const { return exercises_; }
+  QComboBox* exercises() const { return choice_->list(); }
   QAction* startAction() const { return start_; }
   QAction* stopAction() const { return stop_; }
   QAction* pauseAction() const { return pause_; }
@@ -49,15 +47,15 @@ class TrainWorkspace : public Workspace {
   // `script` plays until the mouse takes a hand; after `seconds` the exercise stops by itself.
   void startExercise(std::optional<OperatorScript> script = {}, double seconds = kNoEnd_s);
   // Shows the exercise as it is now; a timer does so 60 times a second while one runs.
-  void tick();
+  void tick() { follow(false); }
   // A tick of which also those parts are shown that change more slowly than pictures, but for the
   // rates, which are of the true clock.
-  void showAll();
+  void showAll() { follow(true); }
   // An exercise that is about to open may not be in the list.
-  void chooseNothing() { exercises_->setCurrentIndex(-1); }
-  void showInUse();  // in the list of exercises
+  void chooseNothing() { choice_->showNone(); }
+  void showInUse() { choice_->showInUse(); }  // in the list of exercises
   // Somebody reads the state as cards (cardsChanged).
-  void setCardsWanted(bool wanted) { cards_wanted_ = wanted; }
+  void setCardsWanted(bool wanted) { running_->setCardsWanted(wanted); }
 
  signals:
   void ratesChanged(const QString& words);
@@ -69,12 +67,7 @@ class TrainWorkspace : public Workspace {
  private:
   void buildActions();
   void connectParts();
-  void fillExercises();
-  void chooseExercise(int index);
-  void useExercise(const std::filesystem::path& file);
   void showChosen();
-  void showOpening(const Exercise& exercise, const std::filesystem::path& file);
-  void sayWhatIsOpen();
   void showPhase();
   void showReset();
   void start() { startUnlessLost({UnsavedWork::cuts}); }
@@ -82,30 +75,18 @@ class TrainWorkspace : public Workspace {
   void tryAgain() { recorded_ ? startUnlessLost({}) : start(); }
   void startUnlessLost(const std::vector<UnsavedWork>& losses);
   void reset();
-  // Goes on with the exercise; where the case is not what it is for it asks first.
-  void unlessItDoesNotFit(WorkGuards::Next go_on);
   void sessionStarted();
   void sessionEnded(Session& session);
+  void follow(bool all);
   void followPedal(const LoopState& state);
-  void showTools(const std::vector<ToolView>& tools);
-  void showState(Session& session, const LoopState& state);
-  void showRates();
-  bool isDue(const QElapsedTimer& since, int every_ms) const;
-  void tellCards(const Session& session, const LoopState& state);
   bool pointerHasAHand() const;
   void command(CommandKind kind);
-  void undo(CommandKind which);
-  void rewind(std::uint32_t second);
-  void showRewind(const LoopState& state);
   void askToGoOn(const Error& error);
   void showCard();
   void putAside(bool aside);
   void showHand();
-  void showRemoved(Session& session, const LoopState& state);
   void showOutline();
   void showLocks();
-  void showAllowed();
-  void refuse(int index, const QString& why);
   void showResult(Session& session, const RunReport& report);
   void showChangeTool();
   void giveTool(std::size_t arm, std::size_t tool);
@@ -121,7 +102,7 @@ class TrainWorkspace : public Workspace {
   FourUp* views_;
   ViewWidget* view_;
   QAction *start_, *stop_, *pause_, *reset_, *clutch_, *recentre_, *other_hand_, *change_tool_;
-  QComboBox* exercises_;
+  ExerciseChoice* choice_;
   ArmsPanel* arms_;
   StateNotice* notice_;  // over the views
   RewindBar* rewind_;
@@ -131,29 +112,14 @@ class TrainWorkspace : public Workspace {
   ResultPage* result_;
   HandBar* hand_bar_;
   PointerHands* hands_;
-  bool here_ = false;          // this workspace is the one that is shown
-  bool touched_ = false;       // something has been, in this exercise
-  bool result_shown_ = false;  // instead of the card
-  bool recorded_ = false;      // whole, the exercise of the result
-  bool aside_ = false;         // card or result, by the person
-  std::vector<std::pair<std::filesystem::path, Exercise>> listed_;  // the workstation's exercises
-  QTimer frame_timer_;
-  QElapsedTimer panel_clock_, rate_clock_, removed_clock_, cards_clock_;
-  bool all_is_due_ = false;
-  std::vector<double> limits_N_;  // of the running session's arms
-  struct GoingBack {
-    std::uint32_t second;
-    std::uint64_t asked_tick;
-  };
-  std::optional<GoingBack> going_back_;  // until it is said that one is there
-  bool cards_wanted_ = false;
-  PedalSwitches pedal_;
-  std::optional<LoopState> undoing_;     // what was there when it was asked for
-  int frames_ = 0;                       // since the rates were shown
-  std::uint64_t ticks_shown_ = 0;
-  QString exercise_said_;  // the last one that was open
+  RunningView* running_;
+  bool here_ = false;             // this workspace is the one that is shown
+  bool result_shown_ = false;     // instead of the card
+  bool recorded_ = false;         // whole, the exercise of the result
+  bool aside_ = false;            // card or result, by the person
   bool back_from_trial_ = false;  // once it has ended
-  bool warned_ = false;    // of this case in this exercise, and it was gone on
+  QTimer frame_timer_;
+  PedalSwitches pedal_;
 };
 
 }  // namespace trephine

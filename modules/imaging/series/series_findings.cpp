@@ -12,9 +12,6 @@
 
 namespace trephine {
 
-namespace {
-
-// A finding that stays however the series is looked at.
 void keepFinding(Series& series, Finding finding) {
   auto& findings = series.report.findings;
   // Answers that cannot save the series are not asked for.
@@ -22,8 +19,6 @@ void keepFinding(Series& series, Finding finding) {
   findings.insert(findings.begin() + std::ptrdiff_t(series.findings_kept++), std::move(finding));
   series.report.verdict = verdictOf(findings);
 }
-
-}  // namespace
 
 std::optional<Error> folderError(const ImportReport& report) {
   const auto is_ct = [](const SeriesReport& s) { return s.modality == "CT"; };
@@ -205,23 +200,6 @@ void saySeveral(std::vector<Series>& all) {
     if (patients.size() > 1 || days.size() < 2 || day == days.end()) continue;
     say(*scans[n], code::kDays, trCount(days.size(), "{} day", "{} days"),
         std::size_t(std::distance(days.begin(), day)));
-  }
-}
-
-// Slices of it may be among what could not be unpacked.
-void addNotWhole(const UnpackedArchives& unpacked, Series& series) {
-  for (const auto& archive : unpacked.not_whole) {
-    const bool from_it = std::ranges::any_of(series.slices, [&](const DicomHeader& slice) {
-      return slice.file.parent_path() == archive.folder;
-    });
-    if (!from_it) continue;
-    return keepFinding(
-        series,
-        {code::kArchiveNotWhole,
-         Severity::refusal,
-         tr("It comes from {}: some of its slices may not be there", archive.why),
-         {},
-         tr("Copy or download the archive again, or unpack it by hand and import the folder")});
   }
 }
 

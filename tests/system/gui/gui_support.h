@@ -230,7 +230,8 @@ class WindowTest : public QObject {
   }
   static std::uint64_t removedVoxels(Session& session) {
     std::uint64_t sum = 0;
-    for (const auto& arm : session.state().removed) {
+    const LoopState state = session.state();
+    for (const auto& arm : state.removed) {
       for (std::uint64_t voxels : arm) sum += voxels;
     }
     return sum;

@@ -49,9 +49,7 @@ class TrainTest : public WindowTest {
     stop();
     QTRY_VERIFY_WITH_TIMEOUT(find<QWidget>("resultPage")->isVisible(), kLong_ms);
   }
-  const ArmRecord& arm(std::size_t which) {
-    return workstation().session()->state().record.arms[which];
-  }
+  ArmRecord arm(std::size_t which) { return workstation().session()->state().record.arms[which]; }
 };
 
 }  // namespace trephine::test

@@ -89,7 +89,7 @@ TEST(Hands, BeginOutsideOfTheTissueThatTheExercisePutsThemIn) {
     auto made = Session::create(test::placed(liver(), smallBelly()), {{}, {}, outside});
     ASSERT_TRUE(made.ok()) << made.error().sentence();
     ASSERT_TRUE((*made)->freewheel(0.3).ok());
-    const ArmRecord& arm = (*made)->state().record.arms[0];
+    const ArmRecord arm = (*made)->state().record.arms[0];
     EXPECT_EQ((arm.tool_state & kToolWaits) == 0, outside);
     EXPECT_EQ(arm.tissue_class < 0, outside);
     EXPECT_LT(glm::distance((*made)->handTarget_mm(0), arm.patient_position_mm), 0.5)
@@ -113,7 +113,7 @@ TEST(Hands, AreBackWhereTheyBeganAfterAReset) {
   });
   ASSERT_GT(talks, 26);
   EXPECT_LT(glm::distance(session.handTarget_mm(0), begin_mm), 1e-9);
-  const ArmRecord& arm = session.state().record.arms[0];
+  const ArmRecord arm = session.state().record.arms[0];
   EXPECT_LT(glm::distance(arm.patient_position_mm, begin_mm), 0.5);
   EXPECT_EQ(arm.tool_state & kToolWaits, 0u);
 }

@@ -299,7 +299,7 @@ PutDown putDown(double seconds, const Talk& talk = {}) {
     }
     if (talk) talk(session, now_s);
     if (talks == 1) return;  // nothing has been felt yet
-    const ArmRecord& arm = session.state().record.arms[kArm];
+    const ArmRecord arm = session.state().record.arms[kArm];
     const double depth_mm =
         (glm::conjugate(frame.rotation) * (arm.proxy_position_mm - frame.position_mm)).z;
     if (now_s < 2.5) out.deepest_mm = std::min(out.deepest_mm, depth_mm);
@@ -344,7 +344,7 @@ TEST(PointerHand, TurnsTheToolInATenthOfASecondWithinBoundsAndBack) {
   Session& session = **made;
   PointerUser user(session, kArm, {{0, 4, 0, 0}, {9.0, 4, 0, 0}}, 125.0);
   const auto turned_rad = [&] {
-    const ArmRecord& arm = session.state().record.arms[kArm];
+    const ArmRecord arm = session.state().record.arms[kArm];
     return 2.0 * std::acos(std::min(1.0, std::abs(arm.device_orientation.w)));
   };
   int talks = 0;
@@ -389,7 +389,7 @@ TEST(PointerHand, AnUndoTakesThePushAwayAndTheToolComesOut) {
   });
   ASSERT_TRUE(session.freewheel(5.0, progress).ok());
   EXPECT_TRUE(undone);
-  const ArmRecord& arm = session.state().record.arms[kArm];
+  const ArmRecord arm = session.state().record.arms[kArm];
   EXPECT_EQ(arm.tool_state, 0u) << "out, and ready";
   EXPECT_EQ(arm.tissue_class, -1);
   EXPECT_EQ(session.report().done.removed_voxels, 0u) << "and cut nothing since";

@@ -62,7 +62,7 @@ Done done(const PointerTask& task, double rate_hz, const std::filesystem::path& 
     out.removed_mm3 += mm3;
   }
   for (std::size_t i = 0; i < users.size(); ++i) {
-    const ArmRecord& arm = session.state().record.arms[i];
+    const ArmRecord arm = session.state().record.arms[i];
     EXPECT_EQ(arm.tool_state & (kToolWaits | kToolHeld), 0u) << task.name << ": it came out";
     EXPECT_LT(glm::length(arm.sent_N), 0.05) << task.name;
     EXPECT_EQ(arm.tissue_class, -1) << task.name;

@@ -274,7 +274,7 @@ TEST(ShippedExercises, BeginWithTheToolsOutsideOfTissueInTheWindow) {
     ASSERT_TRUE(session.ok()) << session.error().sentence();
     ASSERT_TRUE((*session)->freewheel(0.5).ok());
     EXPECT_EQ((*session)->report().done.removed_voxels, 0u) << name;
-    const TickRecord& record = (*session)->state().record;
+    const TickRecord record = (*session)->state().record;
     for (std::size_t i = 0; i < exercise.arms.size(); ++i) {
       EXPECT_EQ(record.arms[i].tissue_class, -1) << name << ", " << exercise.arms[i].name;
       EXPECT_EQ(record.arms[i].tool_state, 0u) << name << ", " << exercise.arms[i].name;

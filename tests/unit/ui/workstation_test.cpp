@@ -341,7 +341,7 @@ TEST_F(WorkstationTest, HandsThatTheMouseWillMoveBeginOutsideOfTissue) {
   ASSERT_TRUE(waitFor([this] { return workstation_.session() != nullptr; }));
   ASSERT_TRUE(comes([this] { return workstation_.session()->state().ticks > 10; }));
   for (int arm : {0, 1}) {
-    const ArmRecord& record = workstation_.session()->state().record.arms[arm];
+    const ArmRecord record = workstation_.session()->state().record.arms[arm];
     EXPECT_EQ(record.tissue_class, -1) << arm;
     EXPECT_EQ(record.tool_state & kToolWaits, 0u) << arm;
   }

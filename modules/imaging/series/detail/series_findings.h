@@ -6,7 +6,6 @@
 
 #include "base/result.h"
 #include "imaging/common/detail/stored_values.h"
-#include "imaging/files/detail/archive.h"
 #include "imaging/report/report.h"
 #include "imaging/series/detail/scan.h"
 #include "imaging/series/detail/series.h"
@@ -29,8 +28,8 @@ void addEmptyFiles(const ScannedFiles& files, Series& series);
 // Where a folder holds CT of several patients, or of several days of one: which of them each series
 // is of, since nothing else that is shown tells them apart (PATIENTS, DAYS).
 void saySeveral(std::vector<Series>& all);
-// Refuses a series whose archive was not whole (ARCHIVE_NOT_WHOLE).
-void addNotWhole(const UnpackedArchives& unpacked, Series& series);
+// A finding that stays however the series is looked at; its questions go where it is a refusal.
+void keepFinding(Series& series, Finding finding);
 
 // --- While it is read ---
 // Notes padding, and HU that were rounded or clamped.
