@@ -40,11 +40,14 @@ QString wordsIfThin(const StructureEditor& editor, double thickness_mm) {
                    .arg(voxel_mm, 0, 'f', 1);
 }
 
-// Whether one was current. A preview may have been it, which goes: none is left then, and the edit
-// says so.
+// A preview may have been the one that is current, and it goes: that is said.
 bool beginOnCurrent(StructureEditor& editor) {
   const bool any = editor.current() != 0;
-  return editor.begin() && any;
+  if (!editor.begin() || !any) return false;
+  if (editor.current() != 0) return true;
+  emit editor.said(StructureEditor::tr(
+      "What was grown was not taken, and is gone. Grow it again and take it first."));
+  return false;
 }
 
 // What `make` makes of the current one's map and label.
