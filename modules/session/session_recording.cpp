@@ -110,7 +110,8 @@ double Session::recorderBehind_s() {
   const std::uint64_t flushed = flushed_ticks_;  // before the ticks, which go on
   // What was dropped is never written.
   const std::uint64_t settled = flushed + loop_->records().dropped();
-  return double(state().ticks - std::min(settled, state().ticks)) / exercise_.rate_hz;
+  const std::uint64_t ticks = state().ticks;
+  return double(ticks - std::min(settled, ticks)) / exercise_.rate_hz;
 }
 
 Status Session::finishRecording() {
