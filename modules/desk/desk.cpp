@@ -146,7 +146,7 @@ void Desk::begin(const std::filesystem::path& recordings, std::optional<Operator
           placed = *std::move(anew);
         }
         const auto file = poke ? std::filesystem::path() : freshFile(recordings, stem, ".h5");
-        return Session::create(placed, {file, script, true, poke, nullptr, *std::move(used)});
+        return Session::create(placed, {file, script, true, poke, nullptr, {}, *std::move(used)});
       },
       [this, seconds, tissues](Result<std::unique_ptr<Session>> created) {
         if (!created) return notStarted(created.error());

@@ -6,6 +6,7 @@
 #include "case/codes.h"
 #include "desk/desk.h"
 #include "exercise/codes.h"
+#include "exercise/exercise_fields.h"
 
 namespace trephine {
 
@@ -82,11 +83,10 @@ Status Desk::mayEdit(const Exercise& wanted) const {
     return Error{code::kBusy, tr("A running exercise keeps its list of tissues"), "",
                  tr("Stop it before tissues are added or removed")};
   }
-  if (wanted.controller != exercise_->controller) {
-    if (Status may = notLocked(Lock::controller); !may) return may;
-  }
-  if (wanted.rate_hz != exercise_->rate_hz) {
-    if (Status may = notLocked(Lock::rate); !may) return may;
+  for (const FieldOf<Exercise>& field : kTouchFields) {
+    const auto lock = kindOf(kLockNames, field.row.lock);
+    if (!lock || valueOf(field, wanted) == valueOf(field, *exercise_)) continue;
+    if (Status may = notLocked(*lock); !may) return may;
   }
   const Exercise live = withLiveOf(wanted, *exercise_, isElsewhere());
   if (live == *exercise_) return {};

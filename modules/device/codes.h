@@ -12,6 +12,7 @@ inline constexpr Code kDeviceStuck{"DEVICE_STUCK"};
 inline constexpr Code kNoBench{"NO_BENCH"};
 inline constexpr Code kNoDevice{"NO_DEVICE"};
 inline constexpr Code kNoPlugin{"NO_PLUGIN"};
+inline constexpr Code kNotCalibrated{"NOT_CALIBRATED"};
 inline constexpr Code kTwoPlugins{"TWO_PLUGINS"};
 
 }  // namespace trephine::code

@@ -227,15 +227,14 @@ Device::~Device() {
 
 Status Device::start() {
   const TrephineDeviceApi& api = plugin_->api();
-  bool started = true;
-  for (std::uint32_t arm = 0; started && arm < armCount(); ++arm) {
-    started = api.calibrate(handle_, arm) == TREPHINE_OK;
-  }
-  started = started && api.start(handle_) == TREPHINE_OK;
-  if (!started) {
-    return Error{code::kDeviceNotStarted, lastSentence(api, handle_), tr("device '{}'", api.name),
+  const auto failed = [&](Code code) {
+    return Error{code, lastSentence(api, handle_), tr("device '{}'", api.name),
                  tr("Check the arm and start again")};
+  };
+  for (std::uint32_t arm = 0; arm < armCount(); ++arm) {
+    if (api.calibrate(handle_, arm) != TREPHINE_OK) return failed(code::kNotCalibrated);
   }
+  if (api.start(handle_) != TREPHINE_OK) return failed(code::kDeviceNotStarted);
   refused_ = false;
   running_ = true;
   return {};

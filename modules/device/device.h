@@ -55,7 +55,9 @@ class Device {
   // Its samples come by a clock of its own, at their rate: wait() waits for the next.
   bool hasClock() const { return plugin_->api().wait != nullptr; }
 
-  // Calibrates and starts every arm. Error: DEVICE_NOT_STARTED with the plugin's own sentence.
+  // Calibrates and starts every arm. Errors, with the plugin's own sentence:
+  // NOT_CALIBRATED where an arm does not know where it is and cannot find out by itself,
+  // DEVICE_NOT_STARTED.
   Status start();
   void stop();
   // Zero force until a write has commanded zero on all arms, or the next start. Any thread,

@@ -97,7 +97,7 @@ const Contact& ToolContact::update(const TissueField& tissue, const Pose& pose_m
   // The voxels of all points are on the way before the first is looked at.
   for (std::size_t i = 0; i < points_mm_.size(); ++i) {
     voxels_[i] = TissueField::voxelAt(tissue.geometry(), tip + to_voxel * points_mm_[i]);
-    if (voxels_[i] >= 0) tissue.grid().prefetch(std::size_t(voxels_[i]));
+    if (voxels_[i] >= 0) tissue.prefetch(std::size_t(voxels_[i]));
   }
   for (std::size_t i = 0; i < points_mm_.size(); ++i) {
     int found = voxels_[i] < 0 ? -1 : tissue.classAt(std::size_t(voxels_[i]));

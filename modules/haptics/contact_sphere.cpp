@@ -30,22 +30,22 @@ std::size_t cornerOf(const Vec3& v, std::size_t row, std::size_t slice) {
 }
 
 // Trilinear, all eight voxels in the grid.
-double sampleInside(const Grid& grid, std::size_t row, std::size_t slice, const Vec3& v) {
+double sampleInside(const TissueField& tissue, std::size_t row, std::size_t slice, const Vec3& v) {
   const int i = int(v.x), j = int(v.y), k = int(v.z);  // none is negative
   const double tx = v.x - i, ty = v.y - j, tz = v.z - k;
   const std::size_t at = std::size_t(k) * slice + std::size_t(j) * row + std::size_t(i);
-  const auto edge = [&](std::size_t n) { return mix(grid.hu(n), grid.hu(n + 1), tx); };
+  const auto edge = [&](std::size_t n) { return mix(tissue.hu(n), tissue.hu(n + 1), tx); };
   return mix(mix(edge(at), edge(at + row), ty), mix(edge(at + slice), edge(at + slice + row), ty),
              tz);
 }
 
 // Trilinear anywhere: beyond the grid lies air.
-double sampleAnywhere(const Grid& grid, const Vec3& v) {
+double sampleAnywhere(const TissueField& tissue, const Vec3& v) {
   const auto below = [](double x) { return int(x) - (x < int(x) ? 1 : 0); };
   const int i = below(v.x), j = below(v.y), k = below(v.z);
   const Vec3 t = v - Vec3(i, j, k);
   double c[8];
-  for (int n = 0; n < 8; ++n) c[n] = grid.hu(i + (n & 1), j + (n >> 1 & 1), k + (n >> 2));
+  for (int n = 0; n < 8; ++n) c[n] = tissue.hu(i + (n & 1), j + (n >> 1 & 1), k + (n >> 2));
   return mix(mix(mix(c[0], c[1], t.x), mix(c[2], c[3], t.x), t.y),
              mix(mix(c[4], c[5], t.x), mix(c[6], c[7], t.x), t.y), t.z);
 }
@@ -56,13 +56,13 @@ struct FieldOfHu {
   using Stiffness = StiffnessOfHu;
 
   Sample sample(const Vec3& v) const {
-    return inside ? sampleInside(grid, row, slice, v) : sampleAnywhere(grid, v);
+    return inside ? sampleInside(tissue, row, slice, v) : sampleAnywhere(tissue, v);
   }
   bool isAir(Sample hu) const { return stiffness.isAir(hu); }
   double at(Sample hu) const { return stiffness.at(hu); }
   double mean(Sample a, Sample b) const { return stiffness.mean(a, b); }
 
-  const Grid& grid;
+  const TissueField& tissue;
   const Stiffness& stiffness;
   std::size_t row, slice;
   bool inside;  // all places that will be asked for lie within the grid
@@ -86,14 +86,14 @@ struct FieldOfLabels {
     double sum = 0.0, held = 0.0;
     for (int n = 0; n < 8; ++n) {
       const int a = n & 1, b = n >> 1 & 1, c = n >> 2;
-      if (!inside && !grid.geometry().contains(i + a, j + b, k + c)) continue;
-      const std::size_t voxel = grid.geometry().indexOf(i + a, j + b, k + c);
-      const std::int16_t hu = grid.hu(voxel);
+      if (!inside && !tissue.geometry().contains(i + a, j + b, k + c)) continue;
+      const std::size_t voxel = tissue.geometry().indexOf(i + a, j + b, k + c);
+      const std::int16_t hu = tissue.hu(voxel);
       const double share = (a ? t.x : 1.0 - t.x) * (b ? t.y : 1.0 - t.y) * (c ? t.z : 1.0 - t.z);
       if (hu == kAirHu || !(share > 0.0)) continue;
       sum += share * hu;
       held += share;
-      const std::uint8_t label_row = stiffness.rowOf(grid.label(voxel));
+      const std::uint8_t label_row = stiffness.rowOf(tissue.label(voxel));
       int at = 0;
       while (at < out.count && out.row[std::size_t(at)] != label_row) ++at;
       if (at == out.count) {
@@ -130,7 +130,7 @@ struct FieldOfLabels {
     return 0.5 * sum;
   }
 
-  const Grid& grid;
+  const TissueField& tissue;
   const Stiffness& stiffness;
   std::size_t row, slice;
   bool inside;
@@ -230,8 +230,7 @@ template <class Field, class Stiffness>
 ElasticPush ContactSphere::pushIn(const TissueField& tissue,
                                   const Stiffness& stiffness, const Vec3& centre_mm) const {
   ElasticPush out;
-  const Grid& grid = tissue.grid();
-  const GridGeometry& g = grid.geometry();
+  const GridGeometry& g = tissue.geometry();
   const Vec3 centre = Vec3(patient_to_voxel_ * glm::dvec4(centre_mm, 1.0));
   const Vec3 low = centre - reach_, high = centre + reach_;
   if (!tissue.mayHold(low, high)) return out;
@@ -241,7 +240,7 @@ ElasticPush ContactSphere::pushIn(const TissueField& tissue,
 
   const auto row = std::size_t(g.size[0]);
   const std::size_t slice = row * std::size_t(g.size[1]);
-  const Field field{grid, stiffness, row, slice, inside};
+  const Field field{tissue, stiffness, row, slice, inside};
   const auto at_centre = field.sample(centre);
   out.at_centre = field.at(at_centre);
   Vec3 sum(0.0);
@@ -251,8 +250,8 @@ ElasticPush ContactSphere::pushIn(const TissueField& tissue,
   std::array<std::array<typename Field::Sample, kParts>, kMostRays> met;
   if (inside) {
     for (const Ray& ray : rays_) {
-      grid.prefetch(cornerOf(centre + kRadii[3] * ray.reach, row, slice), row, slice);
-      grid.prefetch(cornerOf(centre + kRadii[1] * ray.reach, row, slice), row, slice);
+      tissue.prefetch(cornerOf(centre + kRadii[3] * ray.reach, row, slice), row, slice);
+      tissue.prefetch(cornerOf(centre + kRadii[1] * ray.reach, row, slice), row, slice);
     }
   }
   for (std::size_t n = 0; n < rays_.size(); ++n) {

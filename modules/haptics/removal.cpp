@@ -245,8 +245,8 @@ std::size_t Removal::findRows(Tick& tick, int k, int rows, int& next, std::span<
     row.k = k;
     row.number = next;
     row.voxel = geometry_.indexOf(0, j, k);
-    tick.tissue.grid().prefetch(row.voxel + std::size_t(row.all.first));
-    tick.tissue.grid().prefetch(row.voxel + std::size_t(row.all.last));
+    tick.tissue.prefetch(row.voxel + std::size_t(row.all.first));
+    tick.tissue.prefetch(row.voxel + std::size_t(row.all.last));
     ++count;
   }
   return count;
@@ -262,7 +262,7 @@ bool Removal::sweepRow(Tick& tick, const Row& row) {
     }
     --tick.looks;
     const std::size_t voxel = row.voxel + std::size_t(i);
-    const std::int16_t hu = tick.tissue.grid().hu(voxel);
+    const std::int16_t hu = tick.tissue.hu(voxel);
     const int c = hu == kAirHu ? -1 : tick.tissue.classAt(voxel, hu);
     if (c < 0 || !tick.tissue.ofClass(c).cuttable) continue;
     const double price_J = cost_J(kind_, tick.tissue.ofClass(c), tick.voxel_mm3);

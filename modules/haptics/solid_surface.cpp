@@ -344,8 +344,8 @@ int SolidSurface::searchPlane(const TissueField& tissue, Stretch& stretch) {
       row.left = std::min(row.to, clear.low > 0.0 ? int(clear.low * per_x) + 1 : 0);
       row.right = std::max({row.from, row.left + 1, int(std::max(0.0, clear.high) * per_x)});
     }
-    tissue.grid().prefetch(row.voxel + std::size_t(row.from));
-    tissue.grid().prefetch(row.voxel + std::size_t(row.to));
+    tissue.prefetch(row.voxel + std::size_t(row.from));
+    tissue.prefetch(row.voxel + std::size_t(row.to));
     ++all;
     if (++count < rows.size()) continue;
     searchRows(tissue, stretch, rows);

@@ -27,7 +27,7 @@ class VoxelSurroundings {
               k = voxel_[2] + by[2] * apart_[2];
     if (!geometry.contains(i, j, k)) return -kWhole_hu;
     const std::size_t there = geometry.indexOf(i, j, k);
-    const std::int16_t hu = tissue_.grid().hu(there);
+    const std::int16_t hu = tissue_.hu(there);
     const double more = double(hu) - threshold_;
     return tissue_.isSolid(tissue_.classAt(there, hu))
                ? std::clamp(more, 1.0, kWhole_hu)

@@ -27,13 +27,22 @@ class TissueField {
   Change use(const TissueTable& tissues);
 
   const GridGeometry& geometry() const { return grid_.geometry(); }
-  const Grid& grid() const { return grid_; }
   const TissueTable& tissues() const { return tissues_; }
   // Of a class that is not air.
   const TissueClass& ofClass(int tissue_class) const {
     return tissues_.classes[std::size_t(tissue_class)];
   }
 
+  std::int16_t hu(std::size_t voxel) const { return grid_.hu(voxel); }
+  // Air outside the grid.
+  std::int16_t hu(int i, int j, int k) const { return grid_.hu(i, j, k); }
+  // Hints that a voxel, or the eight from one on, will be read.
+  void prefetch(std::size_t voxel) const { grid_.prefetch(voxel); }
+  void prefetch(std::size_t voxel, std::size_t row, std::size_t slice) const {
+    grid_.prefetch(voxel, row, slice);
+  }
+  // 0: none.
+  std::uint8_t label(std::size_t voxel) const { return grid_.label(voxel); }
   int classAt(std::size_t voxel) const { return lookup_.classAt(grid_, voxel); }
   // Of a voxel whose HU is known already.
   int classAt(std::size_t voxel, std::int16_t hu) const {

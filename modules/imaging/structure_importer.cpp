@@ -41,7 +41,7 @@ bool liesOn(const GridGeometry& of, const GridGeometry& ct) {
 }
 
 // A choice about where the file belongs, as those of fitStructures().
-// `answered` with "keep" by request, or `open`, which is the Error then.
+// `answered` with "keep" by request, or `open`: nobody has answered.
 Status match(const DicomSegmentation& seg, const Volume& ct, const StructureRequest& request,
              std::optional<Choice>& answered, std::optional<Choice>& open) {
   const SourceIds &of = seg.of, &to = request.ct;
@@ -75,10 +75,9 @@ Status match(const DicomSegmentation& seg, const Volume& ct, const StructureRequ
   const auto given = request.answers.find(choice.code);
   const bool keep = given != request.answers.end() ? given->second == "keep" : !request.ask_all;
   if (!keep) {
-    const Error refused{choice.code, choice.question, tr("the segmentation"),
-                        tr("Choose another file, or answer OTHER_FRAME=keep")};
-    if (given == request.answers.end()) open = std::move(choice);
-    return refused;
+    if (given != request.answers.end()) return notUsed(choice);
+    open = std::move(choice);
+    return {};
   }
   answered = std::move(choice);
   return {};
@@ -165,10 +164,10 @@ struct StructureFile::Read {
   Result<bool> isOfShares(const Progress& progress);
   Status readMap(const std::string& with_form, const Progress& progress);
   Status readDicom(double with_threshold, const Progress& progress);
-  Result<StructureFit> fitMap(const Volume& ct, const StructureRequest& request,
-                              std::optional<Choice>& open, const Progress& progress);
-  Result<StructureFit> fitDicom(const Volume& ct, const StructureRequest& request,
-                                std::optional<Choice>& open, const Progress& progress);
+  Result<FitAnswer> fitMap(const Volume& ct, const StructureRequest& request,
+                           const Progress& progress);
+  Result<FitAnswer> fitDicom(const Volume& ct, const StructureRequest& request,
+                             const Progress& progress);
 };
 
 Status StructureFile::Read::readKind(const Progress& progress) {
@@ -207,43 +206,46 @@ Status StructureFile::Read::readDicom(double with_threshold, const Progress& pro
   return {};
 }
 
-Result<StructureFit> StructureFile::Read::fitMap(const Volume& ct, const StructureRequest& request,
-                                                 std::optional<Choice>& open,
-                                                 const Progress& progress) {
+Result<FitAnswer> StructureFile::Read::fitMap(const Volume& ct, const StructureRequest& request,
+                                              const Progress& progress) {
   std::optional<Finding> said;
+  std::optional<Choice> open;
   if (!header) {
     if (Result<VolumeFileHeader> read = readVolumeFileHeader(file)) header = *std::move(read);
   }
   // What has no header that can be read is for who reads the rest to say.
   const std::string with_form =
       formOf(header.value_or(VolumeFileHeader()), ct, request.answers, said, open);
+  if (open) return FitAnswer(*std::move(open));
   if (Status read = readMap(with_form, Progress(progress, 0.0, 0.5)); !read) return read.error();
   // A copy where a person may be asked, and it is fitted once more.
   Segmentation segmentation =
       request.ask_person ? *map : *std::exchange(map, std::optional<Segmentation>());
   const int hidden = hideNames(segmentation, request);
-  Result<StructureFit> fit = fitStructures(std::move(segmentation), ct, request.answers,
-                                           request.ask_all, Progress(progress, 0.5, 1.0), &open);
-  if (fit && said) fit->findings.push_back(*std::move(said));
-  if (fit) sayHidden(*fit, hidden);
-  return fit;
+  Result<FitAnswer> answer = fitStructures(std::move(segmentation), ct, request.answers,
+                                           request.ask_all, Progress(progress, 0.5, 1.0));
+  auto* fit = answer ? std::get_if<StructureFit>(&*answer) : nullptr;
+  if (!fit) return answer;
+  if (said) fit->findings.push_back(*std::move(said));
+  sayHidden(*fit, hidden);
+  return answer;
 }
 
-Result<StructureFit> StructureFile::Read::fitDicom(const Volume& ct,
-                                                   const StructureRequest& request,
-                                                   std::optional<Choice>& open,
-                                                   const Progress& progress) {
+Result<FitAnswer> StructureFile::Read::fitDicom(const Volume& ct, const StructureRequest& request,
+                                                const Progress& progress) {
   if (Status read = readDicom(request.threshold, Progress(progress, 0.0, 0.5)); !read) {
     return read.error();
   }
-  std::optional<Choice> answered;
+  std::optional<Choice> answered, open;
   if (Status of = match(*dicom, ct, request, answered, open); !of) return of.error();
+  if (open) return FitAnswer(*std::move(open));
   Segmentation segmentation =
       request.ask_person ? dicom->segmentation : std::exchange(dicom->segmentation, {});
   const int hidden = hideNames(segmentation, request);
-  Result<StructureFit> fit = fitStructures(std::move(segmentation), ct, request.answers,
-                                           request.ask_all, Progress(progress, 0.5, 1.0), &open);
-  if (!fit) return fit;
+  Result<FitAnswer> answer = fitStructures(std::move(segmentation), ct, request.answers,
+                                           request.ask_all, Progress(progress, 0.5, 1.0));
+  auto* fit = answer ? std::get_if<StructureFit>(&*answer) : nullptr;
+  if (!fit) return answer;
   if (dicom->fractional) {
     fit->fractional = true;
     fit->findings.push_back(
@@ -268,7 +270,7 @@ Result<StructureFit> StructureFile::Read::fitDicom(const Volume& ct,
         {answered->code, Severity::notice, answered->question, {}, tr("It was kept")});
     fit->choices.push_back(*std::move(answered));
   }
-  return fit;
+  return answer;
 }
 
 StructureFile::StructureFile(std::filesystem::path file) : read_(std::make_unique<Read>()) {
@@ -316,12 +318,12 @@ Result<StructureAnswer> StructureFile::fit(const Volume& ct, const StructureRequ
           Choice{kThreshold, tr("From which share of a voxel on has a structure it?"), {}, {}}});
     }
   }
-  std::optional<Choice> open;
-  Result<StructureFit> fit = dicom ? read_->fitDicom(ct, wanted, open, progress)
-                                   : read_->fitMap(ct, wanted, open, progress);
-  if (!fit && open && open->code == fit.error().code && request.ask_person) {
-    return StructureAnswer(askedOption(*std::move(open)));
+  Result<FitAnswer> answer =
+      dicom ? read_->fitDicom(ct, wanted, progress) : read_->fitMap(ct, wanted, progress);
+  if (auto* open = answer && request.ask_person ? std::get_if<Choice>(&*answer) : nullptr) {
+    return StructureAnswer(askedOption(std::move(*open)));
   }
+  Result<StructureFit> fit = fitOf(std::move(answer));
   if (!fit) return fit.error();
   if (request.ask_person && !fit->overlapping.empty() && !request.answers.contains(kOverlap)) {
     const auto choice = std::ranges::find(fit->choices, kOverlap, &Choice::code);

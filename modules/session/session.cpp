@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <iterator>
 #include <limits>
 #include <new>
 #include <system_error>
@@ -55,6 +56,20 @@ TissueSet tooToughToCut(TissueSet tissues) {
   return tissues;
 }
 
+// Writes into the log what the meter, which takes each event before it, warns of.
+class WarningLog : public RecordSink {
+ public:
+  explicit WarningLog(const RunMeter& meter) : meter_(meter) {}
+  void event(const Event&) override {
+    const std::vector<Warning>& warnings = meter_.metrics().warnings;
+    for (; logged_ < warnings.size(); ++logged_) spdlog::warn("{}", warnings[logged_].text);
+  }
+
+ private:
+  const RunMeter& meter_;
+  std::size_t logged_ = 0;
+};
+
 }  // namespace
 
 std::filesystem::path freshFile(const std::filesystem::path& folder, const std::string& stem,
@@ -102,6 +117,8 @@ Status Session::set(const Placement& placed, const SessionOptions& options) {
   }
   meter_ = std::make_unique<RunMeter>(exercise_);
   sinks_.push_back(meter_.get());
+  warning_log_ = std::make_unique<WarningLog>(*meter_);
+  sinks_.push_back(warning_log_.get());
 
   std::vector<LoopDevice> devices;
   rig_ = options.rig;
@@ -162,6 +179,7 @@ Status Session::set(const Placement& placed, const SessionOptions& options) {
     recorder_ = *std::move(recorder);
     sinks_.push_back(recorder_.get());
   }
+  std::ranges::copy(options.sinks, std::back_inserter(sinks_));
   return {};
 }
 

@@ -20,13 +20,14 @@
 #include "base/progress.h"
 #include "base/result.h"
 #include "base/rt/abandonable_thread.h"
-#include "haptics/haptic_loop.h"
-#include "exercise/exercise.h"
 #include "case/placement.h"
+#include "exercise/exercise.h"
+#include "haptics/haptic_loop.h"
 #include "session/live_operator.h"
 #include "session/operator_script.h"
 #include "session/poke_curves.h"
 #include "session/run_report.h"
+#include "training/record_sink.h"
 #include "training/run_metrics.h"
 #include "training/session_recorder.h"
 #include "training/session_view.h"
@@ -44,6 +45,9 @@ struct SessionOptions {
   // Nothing is cut, whatever the tissues say, and pokes() tells what was felt.
   bool poke = false;
   LoopProbe* probe = nullptr;  // looks on; it outlives the session
+  // Take what the session does, after its own; they outlive it and throw
+  // nothing. Called by the recorder's thread, and by the owner's where the session has none.
+  std::vector<RecordSink*> sinks{};
   Rig rig{};  // what moves the arms; those that it lacks are simulated
 };
 
@@ -196,7 +200,6 @@ class Session : public SessionView {
     const std::lock_guard lock(sinks_mutex_);
     for (RecordSink* sink : sinks_) add(*sink);
   }
-  void logWarnings();
   void flush();
   // So much of the session may wait to be written. Counted in ticks, not on the recorder's clock: a
   // recorder that gets to run seldom must not put off what it then finds waiting.
@@ -245,8 +248,8 @@ class Session : public SessionView {
   // meanwhile is behind the mutex.
   std::unique_ptr<RunMeter> meter_;
   std::unique_ptr<PokeCurves> poke_curves_;  // of a session for poking
+  std::unique_ptr<RecordSink> warning_log_;  // of what the meter warns of
   std::vector<RecordSink*> sinks_;
-  std::size_t logged_ = 0;  // of the meter's warnings
   mutable std::mutex failure_mutex_;  // recorder and owner only, never the tick
   mutable std::mutex sinks_mutex_;    // so too
   std::optional<Error> failure_;

@@ -48,7 +48,6 @@ void Session::drain() {
       while (loop_->carves().pop(carve)) tellSinks([&](RecordSink& sink) { sink.carve(carve); });
       Event event;
       while (loop_->events().pop(event)) tellSinks([&](RecordSink& sink) { sink.event(event); });
-      logWarnings();
     } catch (const std::exception&) {
       const Error error{code::kOutOfMemory, tr("The recorder ran out of memory"),
                         tr("the recording"),
@@ -61,11 +60,6 @@ void Session::drain() {
                         std::chrono::duration<double>(2.0 * kFlushEvery_s);
     if (unflushed_ticks_ >= slice || (unflushed_ticks_ > 0 && waited)) flush();
   }
-}
-
-void Session::logWarnings() {
-  const std::vector<Warning>& warnings = meter_->metrics().warnings;
-  for (; logged_ < warnings.size(); ++logged_) spdlog::warn("{}", warnings[logged_].text);
 }
 
 void Session::flush() {

@@ -6,6 +6,7 @@
 #include <thread>
 
 #include "../support.h"
+#include "device/codes.h"
 #include "device/device.h"
 #include "haptics/haptic_loop.h"
 #include "haptics_support.h"
@@ -89,6 +90,7 @@ TEST_F(OpenHaptics, AnArmThatCanCalibrateItselfIsAndOneThatCannotIsSaid) {
   ASSERT_TRUE(device) << device.error().sentence();
   const Status started = (*device)->start();
   ASSERT_FALSE(started);
+  EXPECT_EQ(started.error().code, code::kNotCalibrated);
   EXPECT_NE(started.error().what.find("'Right Device' is not calibrated"), std::string::npos)
       << started.error().what;
   EXPECT_EQ(hd->arms[0].calibration, 0x5000u);

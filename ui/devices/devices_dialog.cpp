@@ -364,8 +364,7 @@ void DevicesDialog::showNow() {
   }
   const std::size_t i = std::size_t(row);
   if (const std::optional<Error>& problem = trial_->problem(i)) {
-    const bool calibration = problem->code == code::kDeviceNotStarted &&
-                             problem->what.find("calibrated") != std::string::npos;
+    const bool calibration = problem->code == code::kNotCalibrated;
     now_->setText(calibration ? tr("%1. Then look again.").arg(toQt(problem->what))
                               : toQt(problem->sentence()));
     calibration ? picture_->showHolder() : picture_->clear();

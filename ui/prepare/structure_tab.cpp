@@ -8,8 +8,7 @@
 #include <array>
 #include <utility>
 
-#include "case/codes.h"
-#include "exercise/codes.h"
+#include "desk/fit_question.h"
 #include "ui/common/question.h"
 #include "ui/common/words.h"
 #include "ui/structures/structure_report.h"
@@ -183,14 +182,9 @@ void StructureTab::showOpened() {
 
 // What is missing is offered to be made at once. False: the exercise lacks nothing that could be.
 bool StructureTab::offerMissing() {
-  const std::optional<Placement>& of = workstation_.placed();
-  if (!of || workstation_.session()) return false;
-  bool lacks = false;
-  for (const Warning& warning : of->warnings) {
-    if (warning.code == code::kOtherAnatomy) return false;  // another exercise comes first
-    lacks = lacks || warning.code == code::kLacksStructure;
-  }
-  if (!lacks) return false;
+  if (!workstation_.placed() || workstation_.session()) return false;
+  const std::optional<FitQuestion> question = fitQuestion(*workstation_.placed());
+  if (!question || question->mend != FitQuestion::Mend::make_structure) return false;
   emit frontWanted();
   toolbox_.take(*structures_.tools()[0]);
   structures_.say(tr("The exercise needs the structure \"%1\", which the case lacks: click into "

@@ -4,7 +4,7 @@
 #include <QStandardItemModel>
 
 #include "case/codes.h"
-#include "exercise/codes.h"
+#include "desk/fit_question.h"
 #include "ui/common/question.h"
 #include "ui/common/words.h"
 
@@ -149,35 +149,32 @@ void ExerciseChoice::sayWhatIsOpen() {
 }
 
 void ExerciseChoice::unlessItDoesNotFit(WorkGuards::Next go_on) {
-  const std::optional<Placement>& of = workstation_.placed();
-  if (!of || of->warnings.empty() || warned_) return go_on();
-  QStringList words;
-  bool lacks = false, no_place = false;
-  std::string fits;
-  for (const Warning& warning : of->warnings) {
-    words << toQt(warning.text) + (warning.text.ends_with('.') ? "" : ".");
-    lacks = lacks || warning.code == code::kLacksStructure;
-    no_place = no_place || warning.code == code::kNoLandmark;
-    if (warning.code == code::kOtherAnatomy) fits = exerciseAnatomy(of->patient.anatomy->region);
+  if (!workstation_.placed() || warned_) return go_on();
+  const std::optional<FitQuestion> asked = fitQuestion(*workstation_.placed());
+  if (!asked) return go_on();
+  using Mend = FitQuestion::Mend;
+  QStringList why;
+  for (const std::string& sentence : asked->why) why << toQt(sentence);
+  QString next = tr("Choose an exercise that fits, or go on as it is.");
+  if (asked->mend == Mend::make_structure) {
+    next = tr("Make the structure in the slices first, or go on as it is.");
+  } else if (asked->mend == Mend::place_entry) {
+    next = tr("Click where it is to enter (I) first, or go on as it is.");
   }
-  const QString next = !fits.empty() ? tr("Choose an exercise that fits, or go on as it is.")
-                       : lacks    ? tr("Make the structure in the slices first, or go on as it is.")
-                       : no_place ? tr("Click where it is to enter (I) first, or go on as it is.")
-                                  : tr("Choose an exercise that fits, or go on as it is.");
-  QMessageBox* question = ask(messages_.window(), "fitQuestion", words.join('\n'), next,
+  QMessageBox* question = ask(messages_.window(), "fitQuestion", why.join('\n'), next,
                               tr("&Go on as it is"), [this, go_on] {
                                 warned_ = true;
                                 go_on();
                               });
-  if (!fits.empty()) {
-    const std::filesystem::path file = defaultExercise(fits);
+  if (asked->mend == Mend::change_exercise) {
+    const std::filesystem::path file = defaultExercise(asked->anatomy);
     const int index = list_->findData(toQt(file));
     orElse(*question, "changeExercise", tr("&Change to \"%1\"").arg(list_->itemText(index)),
            [this, file] {
              guards_.unlessLost({UnsavedWork::cuts, UnsavedWork::tissues},
                                 [this, file] { open(file); });
            });
-  } else if (lacks) {
+  } else if (asked->mend == Mend::make_structure) {
     orElse(*question, "makeStructure", tr("&Make it"), [this] { emit structureWanted(); });
   }
 }

@@ -184,17 +184,15 @@ std::string partWords(const VoxelBox& box, const GridGeometry& ct) {
 // What is done about a choice.
 class Asking {
  public:
-  Asking(const Answers& answers, bool ask_all, StructureFit& fit, std::optional<Choice>* open)
+  Asking(const Answers& answers, bool ask_all, StructureFit& fit, std::optional<Choice>& open)
       : answers_(answers), ask_all_(ask_all), fit_(fit), open_(open) {}
 
   // Kept only where a person says so.
   Status refuseUnless(Choice choice) {
     const auto given = answers_.find(choice.code);
     if (given == answers_.end() || given->second != "keep") {
-      if (given == answers_.end() && open_) *open_ = choice;
-      return Error{
-          choice.code, choice.question, tr("the segmentation"),
-          tr("Export it again with its orientation, or answer {}=keep", choice.code.str())};
+      if (given == answers_.end()) open_ = choice;
+      return notUsed(choice);
     }
     fit_.choices.push_back(std::move(choice));
     return {};
@@ -216,10 +214,8 @@ class Asking {
       option = choice.options.back();
     }
     if (option == "refuse") {
-      if (given == answers_.end() && open_) *open_ = choice;
-      return Error{
-          choice.code, choice.question, tr("the segmentation"),
-          tr("Choose another file, or answer {}={}", choice.code.str(), choice.options.back())};
+      if (given == answers_.end()) open_ = choice;
+      return notUsed(choice);
     }
     fit_.choices.push_back(std::move(choice));
     return option;
@@ -229,7 +225,7 @@ class Asking {
   const Answers& answers_;
   bool ask_all_;
   StructureFit& fit_;
-  std::optional<Choice>* open_;  // that nobody has answered; null: nobody wants it
+  std::optional<Choice>& open_;  // that nobody has answered
 };
 
 Result<std::vector<std::size_t>> orderOf(const Segmentation& of, const Answers& answers,
@@ -333,8 +329,7 @@ Status placeByItsSize(Segmentation& of, const GridGeometry& ct, Asking& asking, 
 }
 
 Result<StructureFit> fitted(Segmentation& of, const Volume& ct, const Answers& answers,
-                            bool ask_all, const Progress& progress,
-                            std::optional<Choice>* open) {
+                            bool ask_all, const Progress& progress, std::optional<Choice>& open) {
   const GridGeometry& g = ct.geometry;
   const Error cancelled{code::kCancelled, tr("Reading the segmentation was cancelled"), "", ""};
   StructureFit fit;
@@ -525,11 +520,29 @@ Json toJson(const Choice& choice) {
 
 }  // namespace
 
-Result<StructureFit> fitStructures(Segmentation segmentation, const Volume& ct,
-                                   const Answers& answers, bool ask_all, const Progress& progress,
-                                   std::optional<Choice>* open) {
+Error notUsed(const Choice& choice) {
+  std::vector<std::string> answers;
+  for (const std::string& option : choice.options) {
+    if (option != "refuse") answers.push_back(choice.code.str() + "=" + option);
+  }
+  return {choice.code, choice.question, tr("the segmentation"),
+          tr("Export it again, choose another file, or answer {}", listed(answers, tr("or")))};
+}
+
+Result<StructureFit> fitOf(Result<FitAnswer> answer) {
+  if (!answer) return answer.error();
+  if (const auto* open = std::get_if<Choice>(&*answer)) return notUsed(*open);
+  return std::get<StructureFit>(*std::move(answer));
+}
+
+Result<FitAnswer> fitStructures(Segmentation segmentation, const Volume& ct, const Answers& answers,
+                                bool ask_all, const Progress& progress) {
   try {
-    return fitted(segmentation, ct, answers, ask_all, progress, open);
+    std::optional<Choice> open;
+    Result<StructureFit> fit = fitted(segmentation, ct, answers, ask_all, progress, open);
+    if (open) return FitAnswer(*std::move(open));
+    if (!fit) return fit.error();
+    return FitAnswer(*std::move(fit));
   } catch (const std::bad_alloc&) {
     return outOfMemory(tr("for the segmentation"), tr("the segmentation"));
   }

@@ -4,6 +4,7 @@
 
 #include <optional>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "base/json.h"
@@ -47,6 +48,9 @@ struct StructureFit {
   std::vector<Choice> choices;  // what only a person can answer, answered or not
 };
 
+// Choice: nobody has answered it, and one of its options uses the file.
+using FitAnswer = std::variant<StructureFit, Choice>;
+
 // Between which HU the median of a structure lies that is called so, by an English word of its
 // name, else of its tissue; none where neither says anything.
 struct HuOfKind {
@@ -59,16 +63,19 @@ std::optional<HuOfKind> huOfKind(const std::string& name, const std::string& tis
 // OVERLAP (smaller, first, last, or an order of one's own as "order:vessel,liver",
 // overlap_order.h), HU_NOT_TISSUE (refuse, keep), MIRRORED (refuse, keep), NO_AFFINE (of a file of
 // the CT's size that says nothing of its place: refuse, keep for where it says, ct for voxel by
-// voxel). What nobody has answered: OVERLAP is taken as smaller; MIRRORED is an Error of its code;
-// the other two are Errors of their codes with `ask_all`, and without it they are taken by their
-// last option (keep, ct) and said in findings. `open` gets the choice that such an Error is of,
-// else it is left alone. Other errors: LABELS_ELSEWHERE (no voxel on the CT), HALF_OUTSIDE (of one
-// structure half or more lies over a voxel beyond the CT), EMPTY_SEGMENTATION, BAD_CHOICE,
-// CANCELLED, OUT_OF_MEMORY.
-Result<StructureFit> fitStructures(Segmentation segmentation, const Volume& ct,
-                                   const Answers& answers = {}, bool ask_all = true,
-                                   const Progress& progress = Progress(),
-                                   std::optional<Choice>* open = nullptr);
+// voxel). What nobody has answered: OVERLAP is taken as smaller; MIRRORED is the answer, as a
+// Choice; so are the other two with `ask_all`, and without it they are taken by their last option
+// (keep, ct) and said in findings. Errors: what was answered with refuse, by its code (notUsed);
+// LABELS_ELSEWHERE (no voxel on the CT), HALF_OUTSIDE (of one structure half or more lies over a
+// voxel beyond the CT), EMPTY_SEGMENTATION, BAD_CHOICE, CANCELLED, OUT_OF_MEMORY.
+Result<FitAnswer> fitStructures(Segmentation segmentation, const Volume& ct,
+                                const Answers& answers = {}, bool ask_all = true,
+                                const Progress& progress = Progress());
+
+// Why a file is not used: the choice was answered with refuse, or nobody is there to answer it.
+Error notUsed(const Choice& choice);
+// Where nobody is there to answer: the fit, or notUsed().
+Result<StructureFit> fitOf(Result<FitAnswer> answer);
 
 Json toJson(const StructureFit& fit);
 

@@ -3,6 +3,7 @@
 #include "imaging/codes.h"
 #include "imaging/segmentation/overlap_order.h"
 #include "imaging/segmentation/structure_fit.h"
+#include "structure_fit_support.h"
 
 namespace trephine {
 namespace {
@@ -52,19 +53,19 @@ TEST(OverlapOrder, AsAnAnswerToTheQuestionGivesTheFirstTheVoxels) {
   Volume ct;
   ct.geometry = threeThatOverlap().geometry;
   ct.hu.assign(8, 50);
-  const auto first = fitStructures(threeThatOverlap(), ct);
+  const auto first = test::fitted(threeThatOverlap(), ct);
   ASSERT_TRUE(first) << first.error().sentence();
   EXPECT_EQ(first->overlapping, (std::vector<std::string>{"tumour", "vessel, portal", "Liver"}));
   const auto fit =
-      fitStructures(threeThatOverlap(), ct,
-                    {{code::kOverlap, orderAnswer({"vessel, portal", "tumour", "Liver"})}});
+      test::fitted(threeThatOverlap(), ct,
+                   {{code::kOverlap, orderAnswer({"vessel, portal", "tumour", "Liver"})}});
   ASSERT_TRUE(fit) << fit.error().sentence();
   EXPECT_EQ(fit->structures[1].voxels, 4u);
   EXPECT_EQ(fit->structures[2].voxels, 0u);
   EXPECT_EQ(fit->structures[0].voxels, 4u);
   EXPECT_EQ(fit->overlapping, (std::vector<std::string>{"vessel, portal", "tumour", "Liver"}));
   EXPECT_EQ(
-      fitStructures(threeThatOverlap(), ct, {{code::kOverlap, "order:foot"}}).error().code.str(),
+      test::fitted(threeThatOverlap(), ct, {{code::kOverlap, "order:foot"}}).error().code.str(),
       "BAD_CHOICE");
 }
 

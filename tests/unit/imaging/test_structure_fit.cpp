@@ -2,6 +2,7 @@
 
 #include "imaging/codes.h"
 #include "imaging/segmentation/structure_fit.h"
+#include "structure_fit_support.h"
 #include "volume/phantom.h"
 
 namespace trephine {
@@ -44,13 +45,13 @@ bool found(const std::vector<Finding>& findings, const std::string& code) {
 }
 
 std::string codeOf(const Segmentation& of, const Answers& answers = {}, bool ask_all = true) {
-  const auto fit = fitStructures(of, abdomen().ct, answers, ask_all);
+  const auto fit = test::fitted(of, abdomen().ct, answers, ask_all);
   return fit ? "fits" : fit.error().code.str();
 }
 
 TEST(StructureFit, AFittingLiverIsTakenAsItIs) {
   const Segmentation of = liverOf(abdomen().truth);
-  const auto fit = fitStructures(of, abdomen().ct);
+  const auto fit = test::fitted(of, abdomen().ct);
   ASSERT_TRUE(fit) << fit.error().sentence();
   EXPECT_EQ(fit->map.labels, of.layers[0]);
   ASSERT_EQ(fit->structures.size(), 1u);
@@ -79,7 +80,7 @@ Segmentation part(int low, int high, const Vec3& moved_mm = Vec3(0.0)) {
 
 TEST(StructureFit, WhatCoversAPartOfTheCtSaysWhich) {
   const int slices = abdomen().ct.geometry.size[2];
-  const auto fit = fitStructures(part(slices / 2, slices / 2 + 5), abdomen().ct);
+  const auto fit = test::fitted(part(slices / 2, slices / 2 + 5), abdomen().ct);
   ASSERT_TRUE(fit) << fit.error().sentence();
   EXPECT_NEAR(fit->covers_percent, 500.0 / slices, 1e-9);
   EXPECT_EQ(fit->covers.low[2], slices / 2);
@@ -97,7 +98,7 @@ TEST(StructureFit, WhatLiesElsewhereOrHalfOutsideIsRefusedByName) {
   const int slices = abdomen().ct.geometry.size[2];
   EXPECT_EQ(codeOf(part(0, slices, Vec3(0, 0, 3000))), "LABELS_ELSEWHERE");
   const double far_mm = 6.0 * slices * 0.6;
-  const auto fit = fitStructures(part(0, slices, Vec3(0, 0, far_mm)), abdomen().ct);
+  const auto fit = test::fitted(part(0, slices, Vec3(0, 0, far_mm)), abdomen().ct);
   ASSERT_FALSE(fit);
   EXPECT_EQ(fit.error().code.str(), "HALF_OUTSIDE");
   EXPECT_NE(fit.error().what.find("'liver'"), std::string::npos);
@@ -107,8 +108,8 @@ TEST(StructureFit, APartThatIsOutsideIsLeftOutAndSaid) {
   const int slices = abdomen().ct.geometry.size[2];
   // Up until a quarter of it or so is beyond the scan.
   for (double by_mm = 0.0; by_mm < 6.0 * slices; by_mm += 6.0) {
-    const auto fit = fitStructures(part(0, slices, Vec3(0, 0, by_mm)), abdomen().ct,
-                                   {{code::kHuNotTissue, "keep"}});
+    const auto fit = test::fitted(part(0, slices, Vec3(0, 0, by_mm)), abdomen().ct,
+                                  {{code::kHuNotTissue, "keep"}});
     if (!fit || fit->structures[0].outside_percent < 10.0) continue;
     EXPECT_TRUE(found(fit->structures[0].findings, "OUTSIDE"));
     EXPECT_NEAR(fit->structures[0].ml,
@@ -133,7 +134,7 @@ Segmentation mirroredLiver() {
 
 TEST(StructureFit, AMirroredLiverIsRefusedWithTheSidesNamed) {
   const Segmentation of = mirroredLiver();
-  const auto fit = fitStructures(of, abdomen().ct);
+  const auto fit = test::fitted(of, abdomen().ct);
   ASSERT_FALSE(fit);
   EXPECT_EQ(fit.error().code.str(), "MIRRORED");
   EXPECT_NE(fit.error().what.find("left and right"), std::string::npos) << fit.error().what;
@@ -176,7 +177,7 @@ TEST(StructureFit, WhatAnObliqueFileCoversIsCounted) {
   of.geometry.direction =
       glm::mat3_cast(glm::angleAxis(glm::radians(45.0), Vec3(0, 0, 1))) * of.geometry.direction;
   of.geometry.origin_mm += middle - of.geometry.centre_mm();
-  const auto fit = fitStructures(of, abdomen().ct, {{code::kHuNotTissue, "keep"}}, false);
+  const auto fit = test::fitted(of, abdomen().ct, {{code::kHuNotTissue, "keep"}}, false);
   ASSERT_TRUE(fit) << fit.error().sentence();
   const GridGeometry& g = abdomen().ct.geometry;
   const Mat4 to_file = of.geometry.patientToVoxel() * g.voxelToPatient();
@@ -199,13 +200,28 @@ TEST(StructureFit, AStructureWhoseHuCannotBeItsTissueIsAskedAbout) {
   Segmentation of = liverOf(abdomen().truth);
   of.segments[0].name = "Left_lung";
   EXPECT_EQ(codeOf(of), "HU_NOT_TISSUE");
-  const auto kept = fitStructures(of, abdomen().ct, {{code::kHuNotTissue, "keep"}});
+  const auto kept = test::fitted(of, abdomen().ct, {{code::kHuNotTissue, "keep"}});
   ASSERT_TRUE(kept) << kept.error().sentence();
   ASSERT_EQ(kept->choices.size(), 1u);
   EXPECT_EQ(kept->choices[0].code.str(), "HU_NOT_TISSUE");
   EXPECT_TRUE(found(kept->findings, "HU_NOT_TISSUE"));
   EXPECT_EQ(codeOf(of, {}, false), "fits") << "where nobody is asked it is said";
   EXPECT_EQ(codeOf(of, {{code::kHuNotTissue, "perhaps"}}), "BAD_CHOICE");
+}
+
+TEST(StructureFit, WhatNobodyHasAnsweredIsAChoiceAndWhatWasRefusedAnError) {
+  Segmentation of = liverOf(abdomen().truth);
+  of.segments[0].name = "Left_lung";
+  const auto open = fitStructures(of, abdomen().ct);
+  ASSERT_TRUE(open) << open.error().sentence();
+  const auto* choice = std::get_if<Choice>(&*open);
+  ASSERT_TRUE(choice);
+  EXPECT_EQ(choice->code, code::kHuNotTissue);
+  EXPECT_EQ(choice->options, (std::vector<std::string>{"refuse", "keep"}));
+  const auto refused = fitStructures(of, abdomen().ct, {{code::kHuNotTissue, "refuse"}});
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().code, code::kHuNotTissue);
+  EXPECT_NE(refused.error().next.find("HU_NOT_TISSUE=keep"), std::string::npos);
 }
 
 TEST(StructureFit, OverlapsAreAskedAboutOnce) {
@@ -217,7 +233,7 @@ TEST(StructureFit, OverlapsAreAskedAboutOnce) {
   }
   of.segments.push_back({"tumour", Vec3(1.0), "", 1, 1});
   const auto count = [&](const Answers& answers) {
-    const auto fit = fitStructures(of, abdomen().ct, answers);
+    const auto fit = test::fitted(of, abdomen().ct, answers);
     EXPECT_TRUE(fit);
     EXPECT_TRUE(found(fit->findings, "OVERLAP"));
     EXPECT_EQ(fit->choices.size(), 1u);
@@ -231,7 +247,7 @@ TEST(StructureFit, OverlapsAreAskedAboutOnce) {
 TEST(StructureFit, NothingAtAllAndAnEmptyStructureAreSaid) {
   Segmentation of = liverOf(abdomen().truth);
   of.segments.push_back({"spleen", Vec3(1.0), "", 0, 2});
-  const auto fit = fitStructures(of, abdomen().ct);
+  const auto fit = test::fitted(of, abdomen().ct);
   ASSERT_TRUE(fit);
   EXPECT_TRUE(found(fit->structures[1].findings, "EMPTY_STRUCTURE"));
   std::ranges::fill(of.layers[0], std::uint8_t(0));
@@ -246,7 +262,7 @@ TEST(StructureFit, AFinerGridIsSaidToBeResampled) {
   }
   fine.origin_mm -= Vec3(1.5);
   const auto fit =
-      fitStructures(liverOf(phantomLabelsOn(*phantomTruth("abdomen"), fine)), abdomen().ct);
+      test::fitted(liverOf(phantomLabelsOn(*phantomTruth("abdomen"), fine)), abdomen().ct);
   ASSERT_TRUE(fit) << fit.error().sentence();
   EXPECT_TRUE(fit->resampled);
   EXPECT_NEAR(fit->structures[0].ml / fit->structures[0].ml_in_file, 1.0, 0.02);

@@ -6,6 +6,7 @@
 
 #include "imaging/importer.h"
 #include "imaging/segmentation/structure_fit.h"
+#include "structure_fit_support.h"
 #include "thorough.h"
 #include "volume/phantom.h"
 #include "volume/volume_files.h"
@@ -164,7 +165,7 @@ LabelMap mirroredAlong(LabelMap map, std::size_t axis) {
 
 // "fits", or the code and what is said.
 std::string answerTo(const Segmentation& of, const Volume& ct) {
-  const auto fit = fitStructures(of, ct);
+  const auto fit = test::fitted(of, ct);
   return fit ? "fits" : fit.error().code.str() + ": " + fit.error().what;
 }
 

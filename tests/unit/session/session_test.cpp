@@ -275,6 +275,34 @@ TEST(Session, AToolThatIsChangedOnTheWayReplaysIdenticallyAndItsCutsAreUndone) {
   EXPECT_TRUE(result->identical) << result->first_difference->field;
 }
 
+namespace {
+
+struct CountingSink : RecordSink {
+  void tick(const TickRecord& record) override {
+    ++ticks;
+    last_tick = record.tick;
+  }
+  void carve(const CarveRecord&) override { ++carved; }
+  void event(const Event&) override { ++events; }
+  std::uint64_t ticks = 0, last_tick = 0, carved = 0, events = 0;
+};
+
+}  // namespace
+
+TEST(Session, GivesTheWholeStreamToWhoeverElseTakesIt) {
+  CountingSink sink;
+  SessionOptions options = scripted();
+  options.sinks = {&sink};
+  auto session = *Session::create(test::placed(cranium(), smallHead()), options);
+  ASSERT_TRUE(session->freewheel(10.0).ok());
+  const RunReport report = session->report();
+  EXPECT_EQ(sink.ticks, report.done.ticks);
+  EXPECT_EQ(sink.last_tick + 1, report.done.ticks);
+  EXPECT_EQ(sink.carved, report.done.removed_voxels);
+  EXPECT_GT(sink.carved, 0u);
+  EXPECT_GT(sink.events, 0u);
+}
+
 TEST(Session, APokeCutsNothingWhateverIsEditedAndTellsForceAgainstDepth) {
   SessionOptions options = scripted();
   options.poke = true;
