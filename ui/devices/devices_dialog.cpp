@@ -33,12 +33,6 @@ QString nameOf(const FoundArm& arm) {
       .arg(brief(arm.model.empty() ? arm.plugin : arm.model), brief(arm.bus_path));
 }
 
-QLabel* wordsLabel(const char* name) {
-  auto* label = wrapped(named(new QLabel, name));
-  label->setTextFormat(Qt::PlainText);  // what a device says of itself
-  return label;
-}
-
 }  // namespace
 
 DevicesDialog::DevicesDialog(std::shared_ptr<std::timed_mutex> opens_arms, QWidget* parent)
@@ -47,26 +41,25 @@ DevicesDialog::DevicesDialog(std::shared_ptr<std::timed_mutex> opens_arms, QWidg
   setWindowTitle(tr("Devices"));
   list_ = named(new QListWidget, "deviceList");
   list_->setAccessibleName(tr("Arms that are plugged in"));
-  problems_ = looking(wordsLabel("deviceProblems"), {"quiet"});
-  again_ = named(new QPushButton(tr("L&ook again")), "lookAgain");
-  name_ = wordsLabel("deviceName");
-  able_ = looking(wordsLabel("deviceAble"), {"quiet"});
+  problems_ = wrappedLabel("deviceProblems", {"quiet"});
+  again_ = namedButton("lookAgain", tr("L&ook again"));
+  name_ = wrappedLabel("deviceName");
+  able_ = wrappedLabel("deviceAble", {"quiet"});
   picture_ = new ArmPicture;
   room_ = new RoomPanel;
-  now_ = wordsLabel("deviceNow");
-  test_ = wordsLabel("forceTest");
+  now_ = wrappedLabel("deviceNow");
+  test_ = wrappedLabel("forceTest");
   for (QLabel* words : {now_, test_}) {  // what is said changes, and nothing moves with it
     words->setAlignment(Qt::AlignTop);
     words->setFixedHeight(3 * words->fontMetrics().lineSpacing());
   }
-  force_ = named(new QPushButton(tr("&Test the force")), "testForce");
-  felt_ = named(new QPushButton(tr("It pulled &up")), "forceFelt");
-  not_felt_ = named(new QPushButton(tr("It did &not")), "forceNotFelt");
+  force_ = namedButton("testForce", tr("&Test the force"));
+  felt_ = namedButton("forceFelt", tr("It pulled &up"));
+  not_felt_ = namedButton("forceNotFelt", tr("It did &not"));
   left_ = named(new QComboBox, "leftArm");
   right_ = named(new QComboBox, "rightArm");
   pedal_ = named(new QComboBox, "pedal");
-  for (QPushButton* each : {again_, force_, felt_, not_felt_}) each->setAutoDefault(false);
-  auto* how = looking(wordsLabel("deviceHow"), {"quiet"});
+  auto* how = wrappedLabel("deviceHow", {"quiet"});
   how->setText(tr("Move an arm by hand: it is chosen here."));
 
   auto* found = new QVBoxLayout;

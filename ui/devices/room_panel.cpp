@@ -20,22 +20,16 @@ namespace {
 constexpr double kPoor_mm = 5.0;  // marks that were touched better than that are rare to miss
 constexpr double kFarthest_cm = 500.0;
 
-QPushButton* button(const char* name, const QString& text) {
-  auto* made = named(new QPushButton(text), name);
-  made->setAutoDefault(false);
-  return made;
-}
-
 }  // namespace
 
 RoomPanel::RoomPanel(QWidget* parent) : QWidget(parent) {
-  words_ = wrapped(named(new QLabel, "roomWords"));
+  words_ = wrappedLabel("roomWords");
   words_->setAlignment(Qt::AlignTop);
   words_->setFixedHeight(2 * words_->fontMetrics().lineSpacing());  // nothing moves with it
-  begin_ = button("touchMarks", tr("Touch three &marks"));
-  here_ = button("markTouched", tr("The tip is &there"));
-  by_hand_ = button("roomByHand", tr("&By hand\u2026"));
-  forget_ = button("forgetRoom", tr("&Forget"));
+  begin_ = namedButton("touchMarks", tr("Touch three &marks"));
+  here_ = namedButton("markTouched", tr("The tip is &there"));
+  by_hand_ = namedButton("roomByHand", tr("&By hand\u2026"));
+  forget_ = namedButton("forgetRoom", tr("&Forget"));
   auto* row = new QHBoxLayout;
   for (QPushButton* each : {begin_, here_, by_hand_, forget_}) row->addWidget(each);
   row->addStretch(1);

@@ -29,12 +29,9 @@ StatusLine::StatusLine(AppContext& app, const HeadsetView& headset, const Stereo
   setSizePolicy(QSizePolicy::Ignored, QSizePolicy::Fixed);  // no words make the window wider
   hint_ = elided("hint");
   hint_->setContentsMargins(6, 0, 0, 0);
-  opening_ = named(new QProgressBar, "openProgress");
-  opening_->setRange(0, kProgressSteps);
-  opening_->setTextVisible(false);
-  opening_->setMaximumHeight(14);
+  opening_ = thinProgress("openProgress", kProgressSteps);
   opening_->setFixedWidth(kProgressWidth);
-  auto* cancel = named(new QPushButton(tr("Cancel")), "cancelOpening");
+  auto* cancel = namedButton("cancelOpening", tr("Cancel"));
   opening_box_ = new QWidget;
   opening_words_ = elided("openWords", false);
   auto* opening_row = tight(new QHBoxLayout(opening_box_));
@@ -43,7 +40,7 @@ StatusLine::StatusLine(AppContext& app, const HeadsetView& headset, const Stereo
   eyes_ = elided("eyes");
   eyes_->hide();
   rates_ = elided("rates");
-  locked_ = named(new QLabel, "locked");
+  locked_ = namedLabel("locked");
   locked_->setContentsMargins(8, 0, 8, 0);
   colours::setText(*locked_, colours::kCaution);
   auto* purpose = named(new QLabel(purposeText()), "purpose");

@@ -136,7 +136,7 @@ std::vector<HeadsetView::Standing> HeadsetView::standing() const {
     if (device == here.end() || session->isSimulated(i)) continue;
     const std::optional<ArmInRoom> in_room = armInRoom(device->second);
     if (!in_room) continue;
-    const LoopState& state = session->state();  // as clutching left them, once there is a tick
+    const LoopState state = session->state();  // as clutching left them, once there is a tick
     const WorkspaceMap map =
         state.ticks > 0 ? state.maps[i] : *session->exercise().arms[i].map.fixed;
     arms.push_back({in_room->room_from_device_m,

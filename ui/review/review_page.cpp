@@ -39,19 +39,16 @@ ReviewPage::ReviewPage(QWidget* parent) : QWidget(parent) {
   for (int column : {kTimeColumn, kCaseColumn, kLengthColumn, kStateColumn}) {
     list_->header()->setSectionResizeMode(column, QHeaderView::ResizeToContents);
   }
-  empty_ = wrapped(named(new QLabel, "noRecordings", {"quiet"}));
+  empty_ = wrappedLabel("noRecordings", {"quiet"});
   empty_->setAlignment(Qt::AlignTop | Qt::AlignLeft);
-  reading_ = named(new QLabel, "readingRecordings", {"quiet"});
-  outcome_ = wrapped(named(new QLabel, "replayOutcome"));
-  replay_ = named(new QPushButton(tr("&Check by replay")), "replay");
+  reading_ = namedLabel("readingRecordings", {"quiet"});
+  outcome_ = wrappedLabel("replayOutcome");
+  replay_ = namedButton("replay", tr("&Check by replay"));
   replay_->setToolTip(
       tr("Computes the exercise again from what the arms did, and compares every bit"));
   step_ = new QLabel;
-  progress_ = named(new QProgressBar, "replayProgress");
-  progress_->setRange(0, kProgressSteps);
-  progress_->setTextVisible(false);
-  progress_->setMaximumHeight(14);
-  cancel_ = named(new QPushButton(tr("Cancel")), "cancelReplay");
+  progress_ = thinProgress("replayProgress", kProgressSteps);
+  cancel_ = namedButton("cancelReplay", tr("Cancel"));
   progress_box_ = new QWidget;
   auto* progress_row = tight(new QHBoxLayout(progress_box_));
   progress_row->addWidget(step_);

@@ -11,9 +11,9 @@ namespace trephine {
 
 namespace {
 
-QLabel* wordsLabel(const char* name, Qt::TextFormat format = Qt::PlainText) {
-  auto* label = wrapped(named(new QLabel, name));
-  label->setTextFormat(format);
+QLabel* richLabel(const char* name) {
+  QLabel* label = wrappedLabel(name);
+  label->setTextFormat(Qt::RichText);
   return label;
 }
 
@@ -59,29 +59,27 @@ QString toolWords(const Exercise& exercise, const std::array<std::int32_t, kMaxA
 }
 
 ExercisePanel::ExercisePanel(QWidget* parent) : QWidget(parent) {
-  title_ = looking(wordsLabel("exerciseTitle"), {"heading"});
-  goal_ = wordsLabel("exerciseGoal");
-  steps_ = wordsLabel("exerciseSteps", Qt::RichText);
-  tools_ = wordsLabel("exerciseTools");
-  hands_ = wordsLabel("exerciseHands");
-  time_ = named(new QLabel, "exerciseTime", {"largest"});
-  removed_ = wordsLabel("exerciseRemoved", Qt::RichText);
-  keys_ = looking(wordsLabel("exerciseKeys"), {"quiet"});
+  title_ = wrappedLabel("exerciseTitle", {"heading"});
+  goal_ = wrappedLabel("exerciseGoal");
+  steps_ = richLabel("exerciseSteps");
+  tools_ = wrappedLabel("exerciseTools");
+  hands_ = wrappedLabel("exerciseHands");
+  time_ = namedLabel("exerciseTime", {"largest"});
+  removed_ = richLabel("exerciseRemoved");
+  keys_ = wrappedLabel("exerciseKeys", {"quiet"});
   keys_->setText(
       tr("Mouse or arrows: where the tool goes. Wheel up or down, Page Down or Up: presses more or "
          "less. Shift and arrows: tilt. Tab: the other hand. Space: pause. Right drag: turn the "
          "view. The tool follows the mouse wherever it goes: pause before you take it to a "
          "button."));
-  card_ = named(new QPushButton, "showCard");
+  card_ = namedButton("showCard", "");
   card_->hide();
   connect(card_, &QPushButton::clicked, this, &ExercisePanel::cardWanted);
-  back_ = named(new QPushButton(tr("&Back to Prepare")), "backToPrepare");
+  back_ = namedButton("backToPrepare", tr("&Back to Prepare"));
   back_->setToolTip(tr("Ends the try and goes on preparing the exercise"));
   back_->hide();
   connect(back_, &QPushButton::clicked, this, &ExercisePanel::backWanted);
-  auto* layout = new QVBoxLayout(this);
-  layout->setContentsMargins(12, 10, 12, 10);
-  layout->setSpacing(8);
+  auto* layout = tight(new QVBoxLayout(this), 8, {12, 10, 12, 10});
   addAll(*layout, {title_, back_, card_, time_});
   layout->addWidget(heading(tr("Removed")));
   layout->addWidget(removed_);

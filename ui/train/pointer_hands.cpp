@@ -34,7 +34,7 @@ PointerHands::PointerHands(ViewWidget& view) : QObject(&view), view_(view) {
 // In a pause, and clutched: what is not felt while it is set would come as a stab, and the tool, in
 // tissue, would cut its way to where the pointer has been led meanwhile.
 bool PointerHands::holds() {
-  const LoopState& state = session_->state();
+  const LoopState state = session_->state();
   return state.paused || (state.record.arms[active_].tool_state & kToolClutched);
 }
 

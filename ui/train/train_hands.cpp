@@ -33,7 +33,7 @@ void TrainWorkspace::showHand() {
   if (!shown) return hand_bar_->hide();
   const std::size_t active = hands_->active();
   const ExerciseArm& arm = session->exercise().arms[active];
-  const LoopState& state = session->state();
+  const LoopState state = session->state();
   const ExerciseTool& tool = *session->exercise().toolOf(active, std::size_t(state.tools[active]));
   hand_bar_->showHand(handName(arm), colours::ofArm(arm, active), toolWord(tool),
                       state.wanted_tools[active] != state.tools[active], hands_->push_N(),

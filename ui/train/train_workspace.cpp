@@ -314,7 +314,7 @@ bool TrainWorkspace::pointerHasAHand() const {
 
 void TrainWorkspace::reset() {
   if (Session* session = workstation_.session()) {
-    const LoopState& state = session->state();
+    const LoopState state = session->state();
     if (!state.can_undo && !state.can_redo) return;  // nothing was cut
     ask(messages_.window(), "resetQuestion", tr("Put all tissue back?"),
         tr("Undo cannot bring the cuts again; the bar of seconds still leads back to them. Hands "
@@ -348,7 +348,7 @@ void TrainWorkspace::sessionStarted() {
 void TrainWorkspace::follow(bool all) {
   Session* session = workstation_.session();
   if (!session) return;
-  const LoopState& state = session->state();
+  const LoopState state = session->state();
   running_->showPicture(*session, state);
   followPedal(state);
   hands_->follow();
