@@ -33,10 +33,11 @@ constexpr std::size_t kMostWrittenBytes = std::size_t{4} << 20;
 Result<Json> readJsonFile(const std::filesystem::path& file, const Progress& progress = Progress(),
                           std::size_t most_bytes = kMostJsonBytes);
 
-// Reads one JSON object field by field. The first problem is kept and every later read returns a
-// default, so that a caller reads all fields straight through and asks `finish()` once.
+// Reads one JSON object field by field. The first problem is kept and reading goes on: a caller
+// reads all fields straight through, asks `finish()` once, and uses none of them after an error.
 class JsonReader {
  public:
+  // `object` outlives this reader and all that are made from it.
   JsonReader(const Json& object, std::string file, std::string field = "");
 
   bool has(const char* key) const;
@@ -59,19 +60,21 @@ class JsonReader {
   // Always `count` values: zeros after a problem.
   std::vector<std::int64_t> integers(const char* key, std::size_t count, const Range& range);
   std::vector<double> numbers(const char* key, std::size_t count, const Range& range);
-  // The sub-object or the array's elements, each with its own field name.
+  // The sub-object or the array's elements, each with its own field name. What has no fallback is
+  // required, lists as well (texts and objects may be empty): ask has() first where it is not.
   JsonReader object(const char* key);
   std::vector<JsonReader> objects(const char* key, std::size_t most);
   // The raw value; null where absent. Not for numbers: they would have no range.
   const Json& raw(const char* key);
 
-  // Checks `format` and `version`: a newer version is refused by name. A text `purpose` may stand
-  // beside them.
+  // Checks `format` and `version`: 1 to `version` are read, a newer one is refused by name. A text
+  // `purpose` may stand beside them.
   void format(const char* format, int version);
 
   // Records a problem found by the caller; `field` is the key, "" the object itself.
   void fail(const char* field, const std::string& what, const std::string& next = "");
-  // The first problem of this reader or of any reader made from it; also reports unknown keys.
+  // Asked of the first reader alone: the first problem of it or of any reader made from it, unknown
+  // keys of all of them included. Error: BAD_FIELD.
   Status finish();
   bool ok() const { return !state_->error; }
   const std::string& file() const { return state_->file; }

@@ -6,7 +6,7 @@
 
 namespace trephine {
 
-// As strftime has it, below 64 characters.
+// As strftime has it, of at most 63 characters; empty where it would be longer. Any thread.
 inline std::string localTime(const char* format) {
   const std::time_t now = std::time(nullptr);
   std::tm at{};

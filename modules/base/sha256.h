@@ -6,7 +6,7 @@
 
 namespace trephine {
 
-// SHA-256, fed in pieces; `hex()` ends it and returns 64 lower-case digits.
+// SHA-256, fed in pieces; `hex()` returns 64 lower-case digits and ends it: no call comes after it.
 class Sha256 {
  public:
   Sha256();

@@ -21,12 +21,12 @@ enum class DeskChange {
   case_opened,     // `exercise` came before
   case_named,      // the library has it under another name
   structures,      // of the open case, from a file or made here; `exercise` came before
-  placing_failed,  // the case stays as it was; onFailure() says why
-  opening_ended,
-  phase,  // Desk::phase() or isOpening()
+  placing_failed,  // the case stays as it was; onFailure() follows unless it was cancelled
+  opening_ended,   // however it ended; what came of it follows
+  phase,           // Desk::phase() or isOpening()
   session_started,
   start_failed,  // what the view shows of a session before is gone; onFailure() says why none runs
-  saving_ended,
+  saving_ended,  // onSaved() or onFailure() follows, neither where it was cancelled
 };
 
 class DeskEvents {
@@ -37,7 +37,8 @@ class DeskEvents {
   virtual void onSavingProgress(double fraction, const std::string& step) = 0;
   // Another exercise is being opened; Desk::exercise() is still the one before.
   virtual void onExerciseOpening(const Exercise& exercise, const std::filesystem::path& file) = 0;
-  // Desk::answer() goes on with the answer; without one nothing has changed.
+  // Desk::answer() goes on with the answer, within this call or later; without one nothing has
+  // changed.
   virtual void onQuestion(const StructureQuestion& question) = 0;
   // Once a session, which goes on; its end does not say it again.
   virtual void onRecordingFailed(const Error& error) = 0;
@@ -45,6 +46,7 @@ class DeskEvents {
   virtual void onSessionEnded(Session& session) = 0;
   // After onSessionEnded(), what it came to; not of a poke.
   virtual void onReport(const RunReport& report) = 0;
+  // `said`: a sentence for a person, as Desk::save() was given it.
   virtual void onSaved(const std::string& said) = 0;
   virtual void onFailure(const Error& error) = 0;
 

@@ -33,7 +33,8 @@ class StiffnessOfHu {
   double first_ = 0.0;  // no tissue below
 };
 
-// The same for each label that the tissues name.
+// The same for each label that the tissues name, a row each; row 0 where it is one for all. No
+// allocation.
 class StiffnessByLabel {
  public:
   void set(const TissueTable& tissues) {
@@ -85,6 +86,7 @@ class ContactSphere {
   // `directions` is rounded up to a whole number of opposite pairs.
   ContactSphere(const GridGeometry& geometry, double radius_mm, int directions);
 
+  // Beyond the grid lies air. The second takes the quick way of the first where one is for all.
   ElasticPush push(const TissueField& tissue, const StiffnessOfHu& stiffness,
                    const Vec3& centre_mm) const;
   ElasticPush push(const TissueField& tissue, const StiffnessByLabel& stiffness,

@@ -18,7 +18,8 @@ namespace trephine {
 // shows a hundredth of the model, is no work on tissue.
 class HandWork {
  public:
-  // Of the period in which `sent_N` acted (device), the arm moving by `moved_m`.
+  // Of the period in which `sent_N` acted (device), the arm moving by `moved_m`; turning does not
+  // count. `device_per_model`: g / s. Called in periods without force too.
   void addDeviceWork(const Vec3& sent_N, const Vec3& moved_m, double device_per_model) {
     if (device_per_model > 0.0) done_J_ -= glm::dot(sent_N, moved_m) / (device_per_model * share_);
     shown_ = sent_N != Vec3(0.0);
@@ -32,7 +33,7 @@ class HandWork {
   // an arm gave out, or a spring came to hold without work of the hand, comes off the motor's work
   // too.
   double endTick(double stored_J, double share, double motor_J = 0.0) {
-    // What the springs hold at first is no work of the hand.
+    // After forget(): what the springs hold then is no work of the hand.
     if (!started_) done_J_ = taken_J_ = most_lost_J_ - motor_J_ + stored_J;
     started_ = true;
     stored_J_ = stored_J;
@@ -44,7 +45,8 @@ class HandWork {
   }
   // D; it falls where an arm gives out energy.
   double lost_J() const { return std::min(done_J_, taken_J_) + motor_J_ - stored_J_; }
-  // Law states were forgotten: the springs begin anew.
+  // Law states were forgotten: the springs begin anew. Called before the endTick() that sees them
+  // empty, else what they held would pay for cutting.
   void forget() { started_ = false; }
 
   double done_J() const { return done_J_; }

@@ -1,6 +1,6 @@
 // One tick of touch, for all arms: a pure function of (state, device input, commands, parameters).
 // No clock, no device, no thread; the loop, a replay and a test drive it alike and get the same
-// bits. Nothing here allocates, locks, throws or does I/O after construction.
+// bits. After construction a tick allocates nothing, locks nothing, throws nothing and does no I/O.
 #pragma once
 
 #include <cstddef>
@@ -48,7 +48,8 @@ class HapticCore {
     arms_[arm].energy_out_J = energy_out_J;
   }
 
-  // False while an undo, redo or reset is still going on: commands then wait for a later tick.
+  // False while an undo, redo or reset is still going on: the caller keeps all commands for a later
+  // tick. One that acts on voxels would be lost now.
   bool acceptsCommands() const { return !journal_.busy(); }
 
   const std::vector<CarveRecord>& carves() const { return carves_; }  // of the last tick

@@ -11,7 +11,8 @@ namespace trephine {
 // A solid voxel and those around it, of which some rows may be left out.
 class VoxelSurroundings {
  public:
-  // `apart`: voxels from one that is looked at to the next. `tissue_class`: of the voxel.
+  // `apart`: voxels from one that is looked at to the next, 1: each. `tissue_class`: of the voxel,
+  // which is solid. `tissue` outlives it.
   VoxelSurroundings(const TissueField& tissue, const Index3& voxel, const Index3& apart,
                     int tissue_class)
       : tissue_(tissue),
@@ -47,17 +48,18 @@ class VoxelSurroundings {
 
 struct SurfaceFit {
   enum class Kind {
-    behind,  // the surface, seen between two voxels that are on it
-    plate,   // no clear side: as thin as a voxel, or its far side
+    behind,  // no surface in the voxel's own column: voxels beside it have it, and it is left out
+    plate,   // no clear side, as thin as a voxel, or its far side: the voxel itself is the surface
     rough,   // the slope of the tissue, at the height of the voxel's own column
     flat,    // the plane of the columns around
   };
+  // The two below are zero for `behind` and `plate`.
   Kind kind = Kind::behind;
   Vec3 above_mm{0.0};  // from the voxel's centre to the surface, the grid's own axes
   Vec3 normal{0.0};    // out of the tissue, unit
 };
 
-// `away_mm`: from the tool to the voxel.
+// `away_mm`: from the tool to the voxel, the grid's own axes; its direction alone counts.
 SurfaceFit fitSurface(const VoxelSurroundings& around, const Vec3& away_mm);
 
 }  // namespace trephine

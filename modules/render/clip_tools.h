@@ -22,14 +22,16 @@ class ClipTools {
     Vec3 at_mm{0.0};
   };
 
-  // Of another volume: nothing is cut away. Of the same place: all stays.
+  // Of another volume: as reset(). Of the same place: all stays.
   void setVolume(const GridGeometry& geometry);
   void showBox(bool on) { box_on_ = on; }
   // A plane that was never placed lies in the middle and faces the eye.
   void showPlane(bool on, const ViewCamera& camera);
-  // Through a tool's tip: what lies between it and the eye goes. Along the tool's axis, which the
-  // plane then contains, or, where `axis` has no length or points at the eye, facing the eye.
+  // Shows the plane through a tool's tip: what lies between it and the eye goes. Along the tool's
+  // axis, which the plane then contains, or, where `axis` has no length or points at the eye,
+  // facing the eye.
   void planeThrough(const Vec3& tip_mm, const Vec3& axis, const ViewCamera& camera);
+  // Box and plane are off, the box is whole and the plane was never placed.
   void reset();
 
   bool boxShown() const { return box_on_; }
@@ -42,10 +44,11 @@ class ClipTools {
   // The handle within reach of a pixel (from the lower left corner), nearest first.
   std::optional<Handle> handleAt(const glm::dvec2& pixel, const ViewCamera& camera, int width,
                                  int height, double reach_pixels) const;
-  // Drags a handle by pixels, right and up; a face or the plane follows along its normal.
+  // Drags a handle by pixels since the last call, right and up: a face or the plane follows along
+  // its normal, the grip `normal` turns the plane. Then the handle is taken anew from handles().
   void drag(const Handle& handle, const glm::dvec2& pixels, const ViewCamera& camera, int width,
             int height);
-  // Towards what is cut away for positive mm; it stays within the volume.
+  // Towards what is cut away for positive mm; at most half the volume's diagonal from its middle.
   void movePlane(double mm);
 
   void addLines(const ViewCamera& camera, int width, int height, ScreenLines& to) const;
@@ -66,7 +69,8 @@ class ClipTools {
 };
 
 // Where the light comes from (right, up, towards the eye) after a drag by pixels: it follows the
-// hand over the half sphere that faces the eye.
+// hand over the half sphere that faces the eye. `from` may have any length; the outcome is a
+// unit vector.
 Vec3 draggedLight(const Vec3& from, const glm::dvec2& pixels, int height);
 
 }  // namespace trephine

@@ -8,16 +8,18 @@ namespace trephine {
 
 // Up to `most_N` over 3 s, held for 2 s, and gone over 1 s.
 //
-// It begins with a hand on the arm. Whoever lets go of it has no force in that tick. A hand that
-// goes faster than 0.5 m/s has lost the arm: the test ends. So does one that nobody takes within
-// 30 s.
+// It begins with a hand on the arm. Letting go ends it (done), without force from that tick on. A
+// hand that goes faster than 0.5 m/s has lost the arm, as has one whose arm is away: it ends
+// (lost). Where nobody takes the arm within 30 s it ends as well (off).
 class ForceTest {
  public:
   enum class Phase { off, waiting, rising, holding, falling, done, lost };
 
+  // Begins one anew, also while one runs. `most_N` is not bounded here.
   void ask(double most_N);
   void end() { phase_ = Phase::off; }
-  // The force [N] along the device's y for this sample.
+  // The force [N] along the device's y, upward, for this sample; 0 where none runs. ask(), end()
+  // and tick() are one thread's.
   double tick(const HandSample& sample, double period_s);
 
   // A person has asked for a force, and it is not over.

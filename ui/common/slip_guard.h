@@ -7,8 +7,9 @@
 // - Ctrl+Z in a field in which nothing was typed is the window's, as are Ctrl+E and Ctrl+K in any.
 // - The keys of an open menu are the menu's: a letter that is a shortcut as well does not act
 // behind it.
-// - A list of choices changes by opening it and choosing: the wheel does nothing to it, Up and Down
-//   open it, other keys pass it by.
+// - A list of choices changes by opening it and choosing: the wheel does nothing to it, Up, Down,
+//   Space and F4 open it, Tab leaves it, other keys pass it by. One that can be typed in is left
+//   alone.
 #pragma once
 
 #include <QObject>
@@ -18,6 +19,7 @@ namespace trephine {
 class SlipGuard : public QObject {
   Q_OBJECT
  public:
+  // Installs itself in the QApplication, which is there already. Window's thread.
   explicit SlipGuard(QObject* parent = nullptr);
 
  protected:

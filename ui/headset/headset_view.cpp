@@ -37,6 +37,7 @@ HeadsetView::HeadsetView(Workstation& workstation, Messages& messages, CaseViews
       workstation_(workstation),
       messages_(messages),
       case_views_(case_views) {
+  forgetArmsInRoom(false);  // of a program that ended with its headset on
   QWidget& window = *messages.window();
   on_ = makeAction(window, Symbol::view, "headset", tr("&Headset"), Qt::Key_F9,
                    tr("The 3-D view through a head-mounted display; the exercise goes on"));

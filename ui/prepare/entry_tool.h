@@ -12,11 +12,13 @@ namespace trephine {
 
 class EntryTool : public ViewTool {
  public:
+  // Adds itself to the toolbox. All four outlive it.
   EntryTool(Workstation& workstation, Toolbox& toolbox, Messages& messages, WorkGuards& guards);
 
-  // Takes it in hand until it was used.
+  // Takes it in hand until a place was taken.
   void useOnce();
-  // Whether the case was placed anew for it; asked once.
+  // Whether a person has asked here for the placing that came to its end; the answer resets it.
+  // Asked when structures changed and when placing failed, else the next placing would count.
   bool takeAsked() { return std::exchange(asked_, false); }
 
   bool worksIn3D() const override { return true; }

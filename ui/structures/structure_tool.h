@@ -9,7 +9,8 @@ namespace trephine {
 
 class StructureTool : public ViewTool {
  public:
-  // Both outlive it; the panel deletes it.
+  // The editor outlives it. The panel deletes it as its QObject child, when the panel's own members
+  // are gone: no destructor uses `panel_`.
   StructureTool(Facts facts, StructureEditor& editor, StructurePanel& panel)
       : ViewTool(std::move(facts), &panel), editor_(editor), panel_(panel) {}
 

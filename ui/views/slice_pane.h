@@ -1,5 +1,6 @@
 // Draws one slice in its true proportions on black, with the patient's letters at its edges and a
-// scale bar; middle drag shifts it, Ctrl+wheel, right drag, + and - zoom it, 0 fits it in again.
+// scale bar; middle drag shifts it, Ctrl+wheel and right drag zoom it, and where a subclass gives
+// its keys to zoomKey(), + and - zoom it and 0 fits it in again.
 // What the slice is, and what lies over it, is its subclasses' matter.
 #pragma once
 
@@ -19,17 +20,20 @@ class SlicePane : public QWidget {
   // Where all of the slice is drawn in the widget; empty without one.
   QRectF target() const;
   // Pixel (x, y) of the slice, as it is drawn, covers [x, x + 1) x [y, y + 1).
+  // Without a slice: (0, 0).
   QPointF toSlice(const QPointF& in_widget) const;
   QPointF toWidget(const QPointF& in_slice) const;
   // Larger by the factor around a point of the widget.
   void zoomAt(const QPointF& in_widget, double factor);
   void fit();
+  // 0 without a slice.
   double pixelsPerMm() const {
     return hasSlice() ? target().width() / (shape_.width() * pixel_mm_.width()) : 0.0;
   }
 
  protected:
-  // So many pixels of that size. An empty size: no slice, only the message.
+  // So many pixels of that size. An empty size: no slice, only the message, which a slice hides.
+  // Zoom and shift stay: fit() for another slice. These three repaint.
   void setShape(const QSize& pixels, const QSizeF& pixel_mm);
   // Unit directions, LPS, to the right and down as drawn; none: no letters.
   void setEdges(const std::optional<std::array<Vec3, 2>>& right_down);
@@ -37,6 +41,7 @@ class SlicePane : public QWidget {
   const QSize& shape() const { return shape_; }
   bool hasSlice() const { return !shape_.isEmpty(); }
 
+  // In the widget's coordinates, not clipped: the slice into target(). Only where there is one.
   virtual void paintSlice(QPainter& painter) = 0;
   virtual void paintOver(QPainter&) {}
 

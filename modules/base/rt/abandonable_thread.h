@@ -15,8 +15,8 @@ namespace trephine::rt {
 class AbandonableThread {
  public:
   AbandonableThread() = default;  // no thread: it has ended
-  // Runs `work`, which shares the ownership of all that it uses: once it is left behind, nobody
-  // else may be there. To be ended before it is destroyed. Errors: as std::thread's.
+  // Runs `work`, which shares the ownership of all that it uses: once it is left behind, its owner
+  // may be gone before it. To be ended before it is destroyed. Errors: as std::thread's.
   template <class Work>
   requires(!std::is_same_v<Work, AbandonableThread>) explicit AbandonableThread(Work work)
       : thread_([ending = ending_, work = std::move(work)]() mutable {

@@ -22,7 +22,7 @@ struct KnownVolume {
 struct ImportSeries {
   std::vector<std::string> names;
   Index3 size{512, 512, 300};  // of each (checkSeriesSize)
-  int scan_series = 10;        // 1 to 1000, in one folder whose headers are read
+  int scan_series = 10;        // 1 to 1000, each in a folder of its own; their headers are read
   int scan_slices = 300;       // 2 to 2048, of each of those; 64 x 64 voxels
 };
 
@@ -32,13 +32,14 @@ Status checkSeriesSize(const Index3& size);
 // A head's 230 x 230 x 180 mm around the origin, axes along the patient's.
 GridGeometry headGeometry(const Index3& size);
 
-// Writes each series into `folder` / its name and those of the scan below `folder` / "scan";
-// returns what each named one holds, in their order. Errors: CANNOT_WRITE, CANCELLED.
+// Makes `folder` / its name for each series and `folder` / "scan" / 1, 2 and so on for the scan,
+// always; returns what each named one holds, in their order. Sizes and counts are not checked here.
+// Errors: CANNOT_WRITE, CANCELLED; what was written until then stays.
 using SeriesWriter = std::function<Result<std::vector<KnownVolume>>(
     const ImportSeries& series, const std::filesystem::path& folder, const Progress& progress)>;
 
 // The cranium phantom, explicit little endian, slope 1: "int16" in signed words with intercept 0,
-// "u12" in unsigned ones with -1024. A SeriesWriter.
+// "u12" in unsigned ones with -1024, as any other name. A SeriesWriter.
 Result<std::vector<KnownVolume>> writeOwnSeries(const ImportSeries& series,
                                                 const std::filesystem::path& folder,
                                                 const Progress& progress);

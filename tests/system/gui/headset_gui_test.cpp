@@ -416,6 +416,17 @@ class HeadsetGuiTest : public test::TrainTest {
     QVERIFY(!armInRoom(kept));
     takeOff();
   }
+
+  void ofAProgramThatEndedWithItsHeadsetOnNothingIsLeftThatNoLongerHolds() {
+    const FoundArm now{"openhaptics", "1-2", "17", {}}, kept{"openhaptics", "1-3", "18", {}};
+    setArmInRoom(now, ArmInRoom{{}, 1.0, false});
+    setArmInRoom(kept, ArmInRoom{{}, 1.0, true});
+    window_.reset();
+    open();
+    QVERIFY(!armInRoom(now));
+    QVERIFY(armInRoom(kept));
+    (void)forgetArmsInRoom(true);
+  }
 };
 
 int main(int argc, char** argv) {
