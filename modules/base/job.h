@@ -32,11 +32,13 @@ class Job {
 
   // Called on the owner's thread, where they are set: by run() once the work goes on; by take() as
   // the work gets further (`fraction` never falls), and once busy() is over, before the outcome.
+  // `step` says how long it still takes, too: withTimeLeft() is in it already.
   std::function<void()> began, ended;
   std::function<void(double fraction, const std::string& step)> progressed;
 
   // From run() until take() has the outcome.
   bool busy() const { return thread_.joinable(); }
+  // Asks the work to end; `done` still gets what the work then returns. Nothing where none goes on.
   void cancel();
 
   // Runs `work` on a thread of its own; take() then calls `done` with its outcome. `work` returns a

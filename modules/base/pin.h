@@ -21,10 +21,12 @@ struct Pin {
 Result<Pin> makePin(std::string_view text);
 
 // Takes some tenths of a second, so that trying all of them takes long: not for a thread that
-// draws. How much of the text is right does not show in the time.
+// draws. How much of the text is right does not show in the time. A small letter is another than
+// its capital. False for a Pin that holds none.
 bool pinMatches(const Pin& pin, std::string_view text);
 
-// {algorithm: "pbkdf2-sha256", iterations, salt_hex, hash_hex}
+// {algorithm: "pbkdf2-sha256", iterations, salt_hex, hash_hex}. What is wrong with it is the
+// reader's error: finish() of the first reader gives it.
 Pin readPin(JsonReader pin);
 Json toJson(const Pin& pin);
 

@@ -9,7 +9,8 @@ namespace trephine {
 
 class Progress {
  public:
-  // `report` is called on the working thread with a fraction in [0, 1] and a step's name.
+  // `report` is called on the working thread with a fraction in [0, 1] and a step's name; where the
+  // work has several threads, on several at once.
   explicit Progress(std::function<void(double fraction, const std::string& step)> report = {})
       : report_(std::move(report)) {}
   // A part of `whole`, between two of its fractions; cancelled with it. `whole` outlives it. All of

@@ -10,7 +10,7 @@
 namespace trephine {
 
 // From how far work was at which time, on the assumption that it goes on as fast as so far. Nothing
-// for the first two seconds, nor in the last.
+// for the first two seconds, nor where less than one is left.
 class TimeLeft {
  public:
   using Clock = std::chrono::steady_clock;
@@ -26,7 +26,7 @@ class TimeLeft {
 std::string timeLeftWords(double seconds);
 
 // A Progress's report that passes each step on with the time left: "Reading headers, about 3 min
-// left". Any thread.
+// left". Any thread. A Job does this itself.
 std::function<void(double, const std::string&)> withTimeLeft(
     std::function<void(double, const std::string&)> report);
 

@@ -34,7 +34,7 @@ struct SeenStructure {
 };
 
 struct SeenTissues {
-  TissueSet tissues;  // the exercise's, in these structures, and those of the picture alone
+  TissueSet tissues;  // the exercise's in their order, then those of the picture alone
   TissueLooks looks;
   std::vector<SeenStructure> structures;  // as they were given
 };
@@ -47,7 +47,9 @@ SeenTissues withStructures(const TissueSet& tissues, const TissueLooks& looks,
 // The tissues of the set that are of this structure, by its name or its label.
 std::vector<std::string> tissuesOf(const TissueSet& tissues, const Structure& structure);
 
-// What was chosen of structures that a tissue is of becomes the look of that tissue.
+// A look that was chosen of a structure which a tissue is of becomes the look of that tissue, and
+// is absent in `chosen` then; opacity and colour stay there and go before the tissue's. It is
+// called before withStructures(), which takes the look of such structures from `looks` alone.
 void handToTissues(StructureLooks& chosen, TissueLooks& looks, const TissueSet& tissues,
                    const std::vector<Structure>& structures);
 

@@ -13,8 +13,9 @@ struct DurationSummary {
 
 class DurationHistogram {
  public:
+  // A negative one counts as 0. No lock.
   void add(std::int64_t ns);
-  DurationSummary summary() const;  // a quantile is the upper edge of its bin
+  DurationSummary summary() const;  // upper edges of bins, the largest exact; 0 of none
   std::uint64_t count() const { return count_; }
 
  private:

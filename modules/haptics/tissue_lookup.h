@@ -13,7 +13,8 @@ namespace trephine {
 
 static_assert(kRemovedHu == kAirHu);
 
-// classify() as a table: a row of HU for each label that the tissues name.
+// classify() as a table: a row of HU for each label that the tissues name, and the first for all
+// others. There are rows for as many labels as tissues. Nobody looks up while set() writes.
 class TissueLookup {
  public:
   TissueLookup() : class_of_(LabelRows::kMost * kHus, -1) {}

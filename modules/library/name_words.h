@@ -22,14 +22,15 @@ std::vector<std::string> wordsOf(std::string_view text);
 // One line of at most 80 visible characters, without blanks around it. Error: BAD_NAME.
 constexpr int kLongestCaseName = 80;
 Result<std::string> caseNameFrom(std::string_view text);
-// Equal for names that a person would take for the same: letters in either case, blanks.
+// Equal for names that a person would take for the same: letters in either case, blanks. It is for
+// comparing, not for showing.
 std::string foldedName(std::string_view name);
 
 // What a name may neither be nor hold, given whom its source is of, as keys that are compared as
 // they are or by their hashes.
 struct SourceKeys {
   std::map<std::string, IdentityKind> keys;
-  int most_words = 2;       // that a key which a name may not hold is written in
+  int most_words = 2;       // that a key of what a name may not hold is made of
   std::set<int> lengths{};  // in characters, of such keys in scripts that leave no blanks
 };
 SourceKeys sourceKeys(const SourceIdentity& source);
@@ -38,7 +39,8 @@ SourceKeys sourceKeys(const SourceIdentity& source);
 // `most_words` and `lengths` as of SourceKeys.
 std::set<std::string> nameKeys(std::string_view name, int most_words, const std::set<int>& lengths);
 
-// What of the source the name tells; nothing where it tells none of it.
+// What of the source the name tells, of several the first kind; nothing where it tells none of it.
+// A case's name is refused for every kind, a structure's only where tellsPatient().
 std::optional<IdentityKind> toldBy(std::string_view name, const SourceKeys& source);
 // Segments whose names tell who the patient is are called by their values, "label 7"; how many.
 int hideNames(Segmentation& segmentation, const SourceKeys& source);

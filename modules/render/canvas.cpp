@@ -48,8 +48,10 @@ bool Canvas::bind(int width, int height, std::initializer_list<Image> images) {
   glBindTexture(GL_TEXTURE_2D, GLuint(bound));
   glDrawBuffers(colours, buffers);
   glReadBuffer(GL_COLOR_ATTACHMENT0);
-  return glGetError() == GL_NO_ERROR &&
-         glCheckFramebufferStatus(GL_FRAMEBUFFER) == GL_FRAMEBUFFER_COMPLETE;
+  const bool complete = glGetError() == GL_NO_ERROR &&
+                        glCheckFramebufferStatus(GL_FRAMEBUFFER) == GL_FRAMEBUFFER_COMPLETE;
+  if (!complete) width_ = height_ = 0;  // the same size is refused again
+  return complete;
 }
 
 void Canvas::bind() const {

@@ -31,7 +31,8 @@ Status openDevices(Exercise& exercise, Rig& rig, std::vector<LoopDevice>& device
 
 // Asks the plugins of a rig what its arms are, without starting them: fills in their dynamics, with
 // the most that the devices give. And how far each arm reaches: the full extents of its workspace,
-// device axes, mm. `exercise` is what it is for. Errors: as above.
+// device axes, mm, one an arm of the exercise, in its order. The devices are opened and closed
+// again; openDevices() does not need it. After an error the rig is as it was. Errors: as above.
 Status readArmDynamics(const Exercise& exercise, Rig& rig, std::vector<Vec3>* workspaces_mm = nullptr);
 
 // A device that a workstation has chosen for the exercise's arm of that name, as it is plugged in

@@ -28,7 +28,7 @@ struct PokeCurve {
 
 class PokeCurves : public RecordSink {
  public:
-  static constexpr std::size_t kKept = 3;  // of those that have ended
+  static constexpr std::size_t kKept = 3;  // of those that have ended, of all arms together
   // A step that is worth a point; longer pokes keep every other one.
   static constexpr double kStep_mm = 0.02, kStep_N = 0.02;
   static constexpr std::size_t kMostPoints = 4000;
@@ -38,7 +38,7 @@ class PokeCurves : public RecordSink {
   PokeCurves(std::size_t arms, double rate_hz);
 
   void tick(const TickRecord& record) override;
-  // The oldest first; those that go on last.
+  // The oldest first; those that go on last, however small they are yet. Until the next tick().
   const std::vector<PokeCurve>& curves() const { return curves_; }
 
  private:

@@ -24,8 +24,10 @@ struct CutStructure {
 std::vector<CutStructure> cutStructures(const LabelMap& structures, const Volume& before,
                                         const Grid& after);
 
-// While it is being cut: mm3 of each label, by label, that differ within the box. The box has at
-// most `most` voxels, else there are no rows: it is for who asks often. `now` is a copy.
+// While it is being cut: mm3 of each label, by label, that differ from `before` within the box;
+// there is no row for 0, nor for a label of which nothing differs. The box lies in the grid and
+// holds all that was cut so far: VolumeMirror has it, touched(), and `now`, which is a copy. It has
+// at most `most` voxels, else there are no rows: it is for who asks often.
 std::vector<std::pair<int, double>> cutWithin(const LabelMap& structures, const Volume& before,
                                               const Volume& now, const VoxelBox& box,
                                               std::size_t most = 4'000'000);

@@ -16,6 +16,7 @@
 
 namespace trephine {
 
+// Window's thread. All that it is given outlives it.
 class TissuePicture : public QObject {
   Q_OBJECT
  public:
@@ -25,15 +26,19 @@ class TissuePicture : public QObject {
   void show();
   // Once the window has shown what is quicker: slices and histogram.
   void showSoon() { later_.start(); }
-  // Looks that a person gives to structures, by label. Of the view alone; kept while the case is.
+  // Looks that a person gives to structures, by label; a colour is r, g, b in [0, 1]. Of the view
+  // alone. Each is shown at once. They are kept until forgetLooks(), which shows nothing: who opens
+  // another case or other structures calls it.
   void setLook(int label, TissueLook look);
   void setOpacity(int label, double per_mm);
   void setColour(int label, const Vec3& colour);
   void forgetLooks() { structure_looks_.clear(); }
   // An opacity or colour that is now set for a tissue goes before one that was set for its
-  // structure.
+  // structure. It is called before the workstation takes `wanted`, and shows nothing.
   void yieldTo(const TissueSet& wanted);
-  // The tissue whose threshold is being moved is seen alone, the others as ghosts; empty: none is.
+  // The tissue of this id, whose threshold is being moved, is seen alone, the others as ghosts. "":
+  // which one is not known yet, and all are ghosts. nullopt: none is moved any more. The next
+  // show() or showSoon() shows it, the end too.
   void followThreshold(std::optional<std::string> tissue);
 
  private:

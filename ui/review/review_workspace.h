@@ -10,6 +10,7 @@ namespace trephine {
 class ReviewWorkspace : public Workspace {
   Q_OBJECT
  public:
+  // `app` is its parent.
   explicit ReviewWorkspace(AppContext& app);
 
   QString title() const override { return tr("Review"); }
@@ -22,8 +23,9 @@ class ReviewWorkspace : public Workspace {
   // One that a person has opened, wherever it lies: from the next enter() on it stands in the list,
   // chosen.
   void choose(const std::filesystem::path& file);
+  // By its ending, ".h5"; nothing is read.
   static bool isRecording(const std::filesystem::path& path);
-  // Once the list is there.
+  // Once the list is there: called before or after enter(). Nothing while one is being replayed.
   void replayNewest() { replay_newest_ = true; }
 
  private:

@@ -31,7 +31,9 @@ class ViewWidget : public QOpenGLWidget {
   explicit ViewWidget(Toolbox& toolbox, QWidget* parent = nullptr);  // which outlives it
   ~ViewWidget() override;
 
-  // What it draws, from now on; once what the mirror holds has changed, takeChanges().
+  // What it draws, from now on and at once; not null: an empty mirror is no case. Once what the
+  // mirror holds has changed, takeChanges(). All points, poses and rays are in mm of the patient's
+  // frame (LPS), all places in the widget's own units.
   void setMirror(std::shared_ptr<VolumeMirror> mirror);
   void takeChanges();
   void setTissues(const TissueSet& tissues, const TissueLooks& looks = {});
@@ -75,7 +77,8 @@ class ViewWidget : public QOpenGLWidget {
   using WithGraphics =
       std::function<void(SceneRenderer&, unsigned int framebuffer, int width, int height)>;
   void withGraphics(const WithGraphics& work);
-  // The view shows this texture of its context instead of its own picture; 0: its own again.
+  // The view shows this texture of its context instead of its own picture; 0: its own again. Until
+  // then the caller keeps it, of this size in its pixels.
   void showInstead(unsigned int texture, int width, int height);
   void setCards(std::vector<Card> cards) { renderer_.setCards(std::move(cards)); }
 
@@ -91,6 +94,7 @@ class ViewWidget : public QOpenGLWidget {
   void resized();
   void nothingThere();  // under the pointer, where a tool was to work
   void framePainted(double paint_ms, bool with_volume);
+  // It cannot start to draw (NO_OPENGL and the like), or what it should draw was refused.
   void failed(const trephine::Error& error);
 
  protected:

@@ -17,13 +17,16 @@ enum class UnsavedWork { structures, cuts, tissues };
 class WorkGuards {
  public:
   using Next = std::function<void()>;
-  // Goes on at once, or once a person has decided.
+  // Calls Next at once where nothing would be lost, else once a person has decided to go on; never
+  // where a person stays.
   using Guard = std::function<void(Next)>;
 
   WorkGuards(Workstation& workstation, Messages& messages)
       : workstation_(workstation), messages_(messages) {}
 
   void setGuard(UnsavedWork loss, Guard guard) { guards_[std::size_t(loss)] = std::move(guard); }
+  // Goes on once all of these guards did, asked one after the other in this order. A kind without a
+  // guard goes on. What is being typed is taken first.
   void unlessLost(const std::vector<UnsavedWork>& losses, Next go_on);
   // What is being typed counts as entered.
   void takeTyped();

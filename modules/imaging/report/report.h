@@ -1,5 +1,5 @@
 // What an import says of a folder: its series, each with a verdict, findings and questions; and
-// what became of the source. Plain data.
+// what became of the source. Plain data. CtFolder (imaging/importer.h) makes it and takes requests.
 //
 // A report is for the screen: it may hold a series description and paths, never a patient's name.
 // What may leave the machine is the provenance and the page (report_page.h), which hold neither.
@@ -17,6 +17,9 @@
 
 namespace trephine {
 
+// By the findings, with the answers that were given so far. A series is refused also while a
+// question is open whose first option is "refuse": an answer may lift that. So ask its `choices`
+// first; seriesState() (imaging/series_state.h) tells which refusals no answer lifts.
 enum class Verdict { pass, repaired, refused };
 const char* verdictName(Verdict verdict);
 
@@ -55,7 +58,7 @@ struct ImportRequest {
   Answers answers;                       // a code that the series does not ask for is no error
   std::optional<VoxelBox> crop;          // of the grid that the report states; before the reduction
   int reduction = 1;                     // 1, 2 (half resolution) or 4 (a quarter)
-  std::optional<double> most_memory_mb;  // that reading it may take; absent: what is free
+  std::optional<double> most_memory_mb;  // the most for readingMb(); absent: what is free
 };
 
 // What a reduction cost, measured against the full resolution (volume/reduce.h).
@@ -85,7 +88,7 @@ struct Provenance {
 };
 
 struct SeriesReport {
-  std::string uid;  // "#2", "#3" appended when a Series UID is split
+  std::string uid;  // "#2", "#3" appended when a Series UID is split; of a file "file:" and name
   std::string description;
   std::string modality;
   std::string body_part;
@@ -107,7 +110,8 @@ struct SeriesReport {
   std::vector<Choice> choices;  // still open or answered: all that the series asks
 };
 
-// The same with its crop and reduction; `series` is as it was before it was read.
+// The same with its crop and reduction, in MB of 2^20 bytes; `series` is as it was before it was
+// read.
 double memoryMb(const SeriesReport& series, const ImportRequest& request);
 double readingMb(const SeriesReport& series, const ImportRequest& request);
 
@@ -139,6 +143,7 @@ enum class Identity { hidden, shown };
 // The contract of `trephine-lab import --json`, without schema and build.
 Json toJson(const ImportReport& report, Identity identity = Identity::hidden);
 
+// What CtFolder::slice() gives. `spacing_mm` lies between columns, then between rows.
 struct SlicePicture {
   int columns = 0, rows = 0;
   Vec3 spacing_mm{1.0};

@@ -66,7 +66,8 @@ struct CellResult {
 
 // What an encoder of this step cannot see [J].
 double unseenEnergy_J(const StabilityCell& cell);
-// The definition of the bars, from the figures alone.
+// What is too much, from the figures alone: an oscillation over 20 um and over two counts of the
+// encoder, a step over 0.1 N, energy over unseenEnergy_J(). Not a number is too much.
 struct CellFaults {
   bool oscillates = false, jumps = false, gives_out = false;
   bool any() const { return oscillates || jumps || gives_out; }
@@ -76,6 +77,7 @@ struct CellFaults {
   }
 };
 CellFaults faultsOf(const StabilityCell& cell, const CellResult& result);
+// None of the faults. CellResult::stable is this already.
 bool isStable(const StabilityCell& cell, const CellResult& result);
 
 CellResult runCell(const StabilityCell& cell, CellDriver driver, double tissue_scale = 1.0,
@@ -92,7 +94,7 @@ struct CellReference {
 };
 CellReference referenceOf(const StabilityCell& cell, double seconds = kCellDuration_s);
 
-// The product of numerics: 3 masses, periods, delays, encoders and hands, 15 tissues.
+// Every combination of 3 masses, periods, delays, encoders and hands with 15 tissues: 3645 cells.
 std::vector<StabilityCell> fullGrid();
 
 }  // namespace trephine

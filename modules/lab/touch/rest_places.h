@@ -11,7 +11,8 @@
 
 namespace trephine {
 
-// One run: every arm of a core on its path.
+// One run, as hold() (rest_measurement.h) takes it: all arms at once, simulated. `arms`, `tools`,
+// `rig` and `paths` have one an arm, in the same order.
 struct HoldCell {
   std::string exercise, place;
   std::vector<std::string> arms, tools;
@@ -22,7 +23,8 @@ struct HoldCell {
   std::vector<HoldPath> paths;
 };
 
-// Errors: those of the shipped exercises' files, cases and devices, CANCELLED.
+// From the program's resources. It reads their cases, and the cells keep all volumes in memory.
+// Errors: those of the shipped exercises' files, cases and (simulated) devices, CANCELLED.
 Result<std::vector<HoldCell>> restPlaces(const Progress& progress);
 
 }  // namespace trephine
