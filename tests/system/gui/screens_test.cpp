@@ -163,6 +163,8 @@ class ScreensTest : public test::WindowTest {
     QTRY_VERIFY_WITH_TIMEOUT(find<QWidget>("resultPage")->isVisible(), kLong_ms);
     take("train-result");
     window_->show(Place::review);
+    QTRY_VERIFY(find<QTreeWidget>("recordings")->topLevelItemCount() > 0);
+    QTRY_VERIFY(!find<QLabel>("readingRecordings")->isVisible());
     take("review");
     window_->show(Place::cases);
     take("cases");
