@@ -3,7 +3,6 @@
 
 #include "app/answer.h"
 #include "app/lab_commands.h"
-#include "app/out_folder.h"
 #include "base/codes.h"
 #include "base/file.h"
 #include "base/log.h"
@@ -111,7 +110,8 @@ void warnOfFace(const Provenance& provenance) {
       "leaves this computer, write it again with --choice FACE=deface");
 }
 
-// What is written can be written, as far as that can be said before a long run.
+// What is written can be written, as far as that can be said before a long run. Nothing is written
+// over, least of all the scan that is read.
 Status checkTargets(const ImportArguments& arguments) {
   if (!arguments.write.empty()) {
     if (Status can = checkVolumeFileName(arguments.write); !can) return can;
@@ -120,18 +120,10 @@ Status checkTargets(const ImportArguments& arguments) {
     return Error{code::kUnknownFormat, "A report is written as .html", arguments.report,
                  "Give the file this ending; the window also saves PDF"};
   }
-  for (const std::string& target : {arguments.write, arguments.report}) {
-    if (Status there = checkFolderOf(target); !there) return there;
-  }
-  return {};
-}
-
-// The patient's own scan is never written over.
-Status checkSourcesAreSpared(const CtFolder& folder, const ImportArguments& arguments) {
-  for (const std::string& target : {arguments.write, arguments.report}) {
-    if (target.empty() || !folder.cameUpon(target)) continue;
-    return Error{code::kCannotWrite, "This file lies in the folder that is read, and would be lost",
-                 target, "Choose another name, or remove the file first"};
+  for (const auto& [target, option] :
+       {std::pair(arguments.write, "--write"), std::pair(arguments.report, "--report")}) {
+    if (target.empty()) continue;
+    if (Status free = checkNewFile(target, option); !free) return free;
   }
   return {};
 }
@@ -155,9 +147,6 @@ int importCommand(const ImportArguments& arguments, bool json, const Progress& p
   if (Status can = checkTargets(arguments); !can) return fail(can.error(), nullptr);
   Result<CtFolder> folder = CtFolder::scan(arguments.path, progress);
   if (!folder) return fail(folder.error(), nullptr);
-  if (Status can = checkSourcesAreSpared(*folder, arguments); !can) {
-    return fail(can.error(), nullptr);
-  }
   const auto saveReport = [&]() -> Status {
     if (arguments.report.empty()) return {};
     return writeTextFile(arguments.report, reportPage(folder->report()));

@@ -35,13 +35,4 @@ class OutFolder {
   std::vector<std::filesystem::path> made_;  // the deepest first
 };
 
-// Of a file that will be written: its folder is there.
-inline Status checkFolderOf(const std::filesystem::path& target) {
-  const std::filesystem::path folder = target.parent_path();
-  std::error_code ec;
-  if (folder.empty() || std::filesystem::is_directory(folder, ec)) return {};
-  return Error{code::kCannotWrite, "There is no such folder", folder.string(),
-               "Make the folder first, or choose another"};
-}
-
 }  // namespace trephine

@@ -6,12 +6,13 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
+#include <map>
 #include <set>
 
 #include "app/answer.h"
 #include "app/lab_commands.h"
-#include "app/out_folder.h"
 #include "base/codes.h"
+#include "base/file.h"
 #include "base/log.h"
 #include "base/utf8.h"
 #include "case/case.h"
@@ -120,15 +121,17 @@ Result<GrowOptions> optionsOf(const GrowArguments& arguments, std::vector<double
   return options;
 }
 
-// The patient's own scan is never written over.
+// Nothing is written over, least of all the patient's own scan.
 Status checkStructureTarget(const std::string& target, const std::string& case_source) {
   if (!target.ends_with(".nrrd") && !checkVolumeFileName(target)) {
     return Error{code::kUnknownFormat, "Label maps are written as .nrrd, .mha, .nii or .nii.gz",
                  target, "Choose one of these endings"};
   }
-  if (Status there = checkFolderOf(target); !there) return there;
   if (Status kept = keepsCase(structuresFile(target), case_source); !kept) return kept;
-  return keepsCase(target, case_source);
+  if (Status kept = keepsCase(target, case_source); !kept) return kept;
+  if (Status free = checkNewFile(target, "--write"); !free) return free;
+  if (target.ends_with(".nrrd")) return {};  // which holds the names itself
+  return checkNewFile(structuresFile(target), "--write");
 }
 
 // Whether the case's file has its slices the other way round, so that what goes beside it has too.
@@ -444,7 +447,7 @@ int exportStructuresCommand(const StructureExportArguments& arguments, bool json
                    "Give --write FILE or --dicom FOLDER"});
   }
   if (Status target = !arguments.dicom.empty() ? keepsCase(arguments.dicom, arguments.case_source)
-                      : stl                    ? checkFolderOf(arguments.write)
+                      : stl                    ? Status()
                             : checkStructureTarget(arguments.write, arguments.case_source);
       !target) {
     return failed(target.error());
@@ -463,15 +466,21 @@ int exportStructuresCommand(const StructureExportArguments& arguments, bool json
   Json rows = Json::array(), files = Json::array();
   std::string text;
   std::set<std::string> taken;
+  std::map<int, std::string> surfaces;  // by label
+  for (const Structure& s : chosen->structures) {
+    if (!stl || voxels[std::size_t(s.label)] == 0) continue;
+    std::string file = surfaceFile(arguments.write, s.name, chosen->structures.size() > 1, taken);
+    if (Status free = checkNewFile(file, "--write"); !free) return failed(free.error());
+    surfaces[s.label] = std::move(file);
+  }
   for (const Structure& s : chosen->structures) {
     const std::size_t count = voxels[std::size_t(s.label)];
     Json row = {{"name", s.name}, {"voxels", count}, {"ml", double(count) * voxel_ml}};
     char figures[64];
     std::snprintf(figures, sizeof figures, " %9.1f mL\n", double(count) * voxel_ml);
     text += padded(s.name, 24) + figures;
-    if (stl && count > 0) {
-      const std::string file =
-          surfaceFile(arguments.write, s.name, chosen->structures.size() > 1, taken);
+    if (const auto named = surfaces.find(s.label); named != surfaces.end()) {
+      const std::string& file = named->second;
       const auto surface = writeSurface(*chosen, s.label, file, Progress(progress, 0.6, 1.0));
       if (!surface) return failed(surface.error());
       row["triangles"] = surface->triangles;

@@ -46,7 +46,9 @@ inline constexpr FieldOf<Exercise> kExerciseFields[] = {
           "names of the structures that the exercise needs. Where the case lacks one, and its "
           "tissues "
           "name another set for `elsewhere`, that is used and a warning says so (LACKS_STRUCTURE); "
-          "without such a set the scene is refused (NO_STRUCTURE)"),
+          "without such a set the scene is refused (NO_STRUCTURE). Of one by which no tissue is "
+          "told "
+          "a warning says that it is lacking"),
       trLater("Needs"),
       trLater("A case that lacks one is helped to it first.")},
      ReferencesIn<Exercise>{&Exercise::structures}},

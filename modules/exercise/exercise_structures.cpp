@@ -26,7 +26,7 @@ const Tissue* tissueIn(const TissueSet& set, const std::string& structure) {
   return nullptr;
 }
 
-// The first that is needed and lacking. What no tissue is known by is told by HU or by a number.
+// The first that is needed and lacking, among those that tell a tissue.
 const std::string* lacking(const Exercise& exercise, const LabelMap* labels) {
   for (const std::string& name : exercise.structures) {
     const Tissue* tissue = tissueIn(exercise.tissues, name);
@@ -53,6 +53,12 @@ Result<PlacedStructures> placeStructures(const Exercise& exercise,
         {code::kLacksStructure, tr("The case has no structure '{}': tissue is told by its HU "
                                    "alone, so that whatever has the same HU is taken for it",
                                    *name)});
+  }
+  for (const std::string& name : exercise.structures) {
+    if (tissueIn(exercise.tissues, name) || isIn(placed.labels.get(), name)) continue;
+    placed.warnings.push_back(
+        {code::kLacksStructure,
+         tr("The case has no structure '{}', which the exercise needs", name)});
   }
   placed.labels = withShells(placed.elsewhere ? *exercise.tissues_elsewhere : exercise.tissues,
                              std::move(placed.labels));

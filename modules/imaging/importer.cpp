@@ -133,7 +133,6 @@ SeriesReport answeredReport(const Source& source, const Answers& answers) {
 
 struct CtFolder::Contents {
   ImportReport report;
-  FileIds came_upon;
   std::optional<UnpackedArchives> unpacked;  // where the files lie, of a series in an archive
   std::vector<Source> sources;               // of report.series
 
@@ -188,7 +187,6 @@ Status CtFolder::Contents::unpackInto(ScannedFiles& files, std::filesystem::path
   }
   for (const auto& archive : some->not_whole) ++within->skipped[archive.why];
   within->files_seen += files.files_seen - int(files.archives.size());
-  within->came_upon.merge(files.came_upon);
   files = *std::move(within);
   scanned = some->folder.path();
   unpacked = *std::move(some);
@@ -257,7 +255,6 @@ Result<CtFolder> CtFolder::scan(const std::filesystem::path& path, const Progres
   }
 
   report.path = cleanUtf8(path.string());
-  contents.came_upon = std::move(files->came_upon);
   report.files_seen = files->files_seen;
   report.files_read = files->dicom_files + int(files->volume_files.size());
   for (const auto& [reason, count] : files->skipped) {
@@ -379,11 +376,6 @@ std::vector<CtFolder::LabelFile> CtFolder::labelFiles() const {
     }
   }
   return files;
-}
-
-bool CtFolder::cameUpon(const std::filesystem::path& file) const {
-  const std::optional<FileId> id = fileId(file);
-  return id && contents_->came_upon.contains(*id);
 }
 
 Result<SlicePicture> CtFolder::slice(const std::string& uid, int index,

@@ -51,9 +51,6 @@ class CtFolder {
   std::optional<std::string> bestSeries(const Answers& answers = {}) const;
   // Whether each answer is one that a series of the folder takes where it asks. Errors: BAD_CHOICE.
   Status checkAnswers(const Answers& answers) const;
-  // Whether the file, under any name, is one of those that the scan came upon: nothing may be
-  // written there.
-  bool cameUpon(const std::filesystem::path& file) const;
   // Reads one series, by its UID or its hash, into a volume and completes its entry in report().
   // Errors: NO_SUCH_SERIES, BAD_CHOICE, BAD_CROP, the refusal's own code (SOURCE_VANISHED among
   // them, where the folder is not there any more), CANCELLED, or OUT_OF_MEMORY. The report then

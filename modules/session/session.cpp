@@ -391,7 +391,11 @@ bool Session::push(CommandKind kind) {
   if (sent ? kind == CommandKind::resume : !held) holdHands(false);
   if (sent && kind == CommandKind::reset) {  // the tissue comes back around the tools
     for (std::size_t i = 0; i < begin_m_.size(); ++i) {
-      if (begin_m_[i]) hands_.hands[i].position_m = *begin_m_[i];
+      if (!begin_m_[i]) continue;
+      LiveHands::Hand& hand = hands_.hands[i];
+      hand.position_m = hand.held_m = *begin_m_[i];
+      // In a pause the pointer has not moved since: where it is, tissue may be again.
+      if (hand.held) hand.pointed = false;
     }
     engine_->live_hands.write(hands_);
   }

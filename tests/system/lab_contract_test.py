@@ -73,11 +73,15 @@ class Phantom(LabTest):
             self.assert_error(answer, "CANNOT_WRITE", "would be lost")
         self.assertEqual(slice_.read_bytes(), before)
         self.assertEqual(page.read_text(), "precious")
+        page = page.rename(self.folder / "thesis.html")
+        answer = lab("import", self.folder / "ct", "--report", page, expect=2)
+        self.assert_error(answer, "CANNOT_WRITE", "would be lost", "--report")
+        self.assertEqual(page.read_text(), "precious")
 
     def test_what_cannot_be_written_is_said_before_the_reading(self):
         missing = self.folder / "missing" / "v.mha"
-        self.assert_error(lab("import", self.folder, "--write", missing, expect=2), "CANNOT_WRITE",
-                          "no such folder")
+        self.assert_error(lab("import", self.folder, "--write", missing, expect=2), "MISSING_FOLDER",
+                          "no folder for this file")
         self.assert_error(lab("import", self.folder, "--report", self.folder / "x.pdf", expect=2),
                           "UNKNOWN_FORMAT", ".html")
 

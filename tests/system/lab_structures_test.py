@@ -85,7 +85,7 @@ class Grow(LabTest):
         refused("BAD_ARGUMENT", "--box", box="1,2,3,4,5")
         refused("BAD_SEED", "outside of the box", box="0,10,0,10,0,10")
         refused("BAD_ARGUMENT", "0 to 50 mm", open=80)
-        refused("CANNOT_WRITE", "no such folder", write=self.folder / "none" / "x.nii.gz")
+        refused("MISSING_FOLDER", "no folder for this file", write=self.folder / "none" / "x.nii.gz")
         refused("UNKNOWN_FORMAT", "x.png", write=self.folder / "x.png")
 
     def test_the_case_is_never_written_over(self):
@@ -99,6 +99,25 @@ class Grow(LabTest):
                          "--seed", IN_LIVER, "--name", "liver", "--write", file, expect=1)
             self.assert_error(answer, "CANNOT_WRITE", "would be lost")
             self.assertEqual(file.read_bytes(), before)
+
+    def test_no_file_that_is_there_is_written_over(self):
+        def refused(*arguments):
+            answer = lab("structures", *arguments, expect=1)
+            self.assert_error(answer, "CANNOT_WRITE", "would be lost", "--write")
+        liver = self.folder / "own.nii.gz"
+        lab("structures", "export", "phantom:abdomen", "--name", "liver", "--write", liver)
+        names = self.folder / "own.structures.json"
+        before = liver.read_bytes(), names.read_bytes()
+        refused("import", "phantom:abdomen", liver, "--write", liver)
+        refused("export", "phantom:abdomen", "--write", liver)
+        refused("grow", "phantom:abdomen", "--seed", IN_LIVER, "--name", "x", "--write", liver)
+        refused("export", "phantom:abdomen", "--write", self.folder / "own.mha")  # its names
+        self.assertEqual((liver.read_bytes(), names.read_bytes()), before)
+        surface = self.folder / "all-vessel.stl"
+        surface.write_text("precious")
+        refused("export", "phantom:abdomen", "--write", self.folder / "all.stl")
+        self.assertEqual(surface.read_text(), "precious")
+        self.assertEqual(list(self.folder.glob("all-*")), [surface])
 
     def test_no_file_of_the_case_is_written_over_be_it_beside_its_header(self):
         header, voxels = self.folder / "ct.nhdr", self.folder / "ct.nrrd"

@@ -161,12 +161,6 @@ ScreenNames screenNames(const DicomHeader& header) {
   return {std::move(patient), header.study_uid, header.patient_name, header.study_text};
 }
 
-std::optional<FileId> fileId(const fs::path& file) {
-  struct stat status;
-  if (::stat(file.c_str(), &status) != 0) return std::nullopt;
-  return FileId{status.st_dev, status.st_ino};
-}
-
 Result<ScannedFiles> scanFiles(const fs::path& path, const Progress& progress, ScanGuide* guide) {
   std::error_code error;
   if (!fs::exists(path, error)) {

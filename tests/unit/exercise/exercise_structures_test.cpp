@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "base/system.h"
+#include "exercise/codes.h"
 
 namespace trephine {
 namespace {
@@ -105,6 +106,18 @@ TEST(ExerciseStructures, WithNeitherStructureNorHuTheExerciseIsRefused) {
   ASSERT_FALSE(placed);
   EXPECT_EQ(placed.error().code.str(), "NO_STRUCTURE");
   EXPECT_NE(placed.error().what.find("'liver'"), std::string::npos);
+}
+
+TEST(ExerciseStructures, WhatIsNeededThoughNoTissueIsToldByItIsWarnedOf) {
+  Exercise exercise = liverExercise();
+  exercise.structures.push_back("phantom");
+  const auto placed = placeStructures(exercise, caseWith(5));
+  ASSERT_TRUE(placed);
+  EXPECT_FALSE(placed->elsewhere);
+  ASSERT_EQ(placed->warnings.size(), 1u);
+  EXPECT_EQ(placed->warnings[0].code, code::kLacksStructure);
+  EXPECT_NE(placed->warnings[0].text.find("'phantom', which the exercise needs"),
+            std::string::npos);
 }
 
 TEST(ExerciseStructures, AFileHasNoLabelsOfACaseAndARecordingHas) {

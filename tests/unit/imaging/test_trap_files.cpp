@@ -332,19 +332,6 @@ TEST_F(TrapFiles, ColourOfAnyKindIsRefused) {
   }
 }
 
-TEST_F(TrapFiles, EveryFileThatTheScanCameUponIsKnownUnderAnyName) {
-  write(rampVolume());
-  writeBytes(folder() / "notes.txt", "read by nobody");
-  fs::create_symlink(SeriesFixture::slice(2), temporary_ / "elsewhere.mha");
-  writeBytes(temporary_ / "another.mha", "x");
-  const CtFolder ct = scan();
-  EXPECT_TRUE(ct.cameUpon(SeriesFixture::slice(1)));
-  EXPECT_TRUE(ct.cameUpon(folder() / "notes.txt"));
-  EXPECT_TRUE(ct.cameUpon(temporary_ / "elsewhere.mha"));
-  EXPECT_FALSE(ct.cameUpon(temporary_ / "another.mha"));
-  EXPECT_FALSE(ct.cameUpon(folder() / "new.mha"));
-}
-
 // What may leave the room names no patient, file, description or UID, whatever went wrong.
 TEST_F(TrapFiles, ProvenanceAndPageTellNothingOfThePatient) {
   const fs::path named = temporary_ / "MUSTERMANN_ERIKA";

@@ -118,6 +118,37 @@ TEST(Hands, AreBackWhereTheyBeganAfterAReset) {
   EXPECT_EQ(arm.tool_state & kToolWaits, 0u);
 }
 
+// The tissue comes back around the tools in the pause, before they push or cut again.
+TEST(Hands, AreBackWhereTheyBeganAfterAResetInAPause) {
+  auto made = Session::create(test::placed(liver(), smallBelly()), {{}, {}, true});
+  ASSERT_TRUE(made.ok()) << made.error().sentence();
+  Session& session = **made;
+  const Vec3 begin_mm = session.handTarget_mm(0);
+  const Vec3 in = -0.5 * glm::normalize(begin_mm - session.landmarks()[0].frame.position_mm);
+  const auto arm = [&] { return session.state().record.arms[0]; };
+  int talks = 0;
+  freewheelTalking(session, 9.0, [&] {
+    ++talks;
+    if (talks < 24) session.moveHand(0, 8.0 * in);
+    if (talks == 24) {
+      EXPECT_GE(arm().tissue_class, 0);
+      EXPECT_TRUE(session.send(CommandKind::pause));
+    }
+    if (talks == 26) {
+      EXPECT_TRUE(session.send(CommandKind::reset));
+    }
+    if (talks != 30) return;
+    EXPECT_TRUE(session.state().paused);
+    EXPECT_LT(arm().tissue_class, 0) << "it is in the air before it goes on";
+    EXPECT_LT(glm::distance(arm().patient_position_mm, begin_mm), 0.5);
+    EXPECT_TRUE(session.send(CommandKind::resume));
+  });
+  ASSERT_GT(talks, 32);
+  EXPECT_FALSE(session.state().paused);
+  EXPECT_LT(glm::distance(arm().patient_position_mm, begin_mm), 0.5);
+  EXPECT_EQ(session.report().done.removed_voxels, 0u);
+}
+
 TEST(Hands, AScriptsHandsBeginWhereTheScriptSays) {
   const Exercise exercise = liver();
   auto script = readOperatorScript(exercise.operator_file, exercise);

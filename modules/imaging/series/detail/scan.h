@@ -19,9 +19,6 @@ namespace trephine {
 using FileId = std::pair<std::uint64_t, std::uint64_t>;  // device and inode: one file, many names
 using FileIds = std::set<FileId>;
 
-// Nothing where there is no such file.
-std::optional<FileId> fileId(const std::filesystem::path& file);
-
 struct ScannedFiles {
   std::vector<DicomHeader> headers;  // sorted by SOP Instance UID, then frame and path
   std::vector<std::filesystem::path> volume_files;   // NIfTI and the like, sorted
