@@ -52,6 +52,7 @@ class Phantom(LabTest):
         lab("phantom", "cranium", "--out", self.folder / "ct")
 
         def warnings(*choice):
+            (self.folder / "v.nii").unlink(missing_ok=True)
             done = subprocess.run(
                 [LAB, "import", self.folder / "ct", "--write", self.folder / "v.nii", *choice],
                 capture_output=True, text=True, timeout=240, check=True)

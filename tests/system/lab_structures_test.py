@@ -147,6 +147,8 @@ class Grow(LabTest):
 
     def test_a_name_is_one_line_of_letters_that_can_be_seen(self):
         def grown(name, expect=0):
+            for file in self.folder.iterdir():
+                file.unlink()
             return lab("structures", "grow", "phantom:abdomen", "--seed", IN_LIVER, "--name", name,
                        "--write", self.folder / "a.nii.gz", expect=expect)
         for name in ("", "   ", "\u00a0\u200b"):

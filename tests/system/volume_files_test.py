@@ -109,8 +109,10 @@ class Places:
 
     def read(self, file):
         """What this program makes of a volume file."""
-        lab("import", file, "--write", self.folder / "read.mha")
-        return read_mha(self.folder / "read.mha")
+        target = self.folder / "read.mha"
+        target.unlink(missing_ok=True)
+        lab("import", file, "--write", target)
+        return read_mha(target)
 
 
 @unittest.skipUnless(NIFTI_TOOL, "nifti_tool is not installed (nifti-bin)")
