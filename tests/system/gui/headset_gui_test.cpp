@@ -422,7 +422,7 @@ class HeadsetGuiTest : public test::TrainTest {
     setArmInRoom(now, ArmInRoom{{}, 1.0, false});
     setArmInRoom(kept, ArmInRoom{{}, 1.0, true});
     window_.reset();
-    open();
+    window_ = newWindow(toPath(temporary_.path()) / "recordings");
     QVERIFY(!armInRoom(now));
     QVERIFY(armInRoom(kept));
     (void)forgetArmsInRoom(true);
