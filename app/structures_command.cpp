@@ -447,7 +447,7 @@ int exportStructuresCommand(const StructureExportArguments& arguments, bool json
                    "Give --write FILE or --dicom FOLDER"});
   }
   if (Status target = !arguments.dicom.empty() ? keepsCase(arguments.dicom, arguments.case_source)
-                      : stl                    ? Status()
+                      : stl                    ? checkFolderOf(arguments.write, "--write")
                             : checkStructureTarget(arguments.write, arguments.case_source);
       !target) {
     return failed(target.error());

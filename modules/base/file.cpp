@@ -83,6 +83,13 @@ std::string afterFailedWrite(int error) {
   return tr("Choose another place");
 }
 
+Status checkFolderOf(const fs::path& file, const std::string& option) {
+  std::error_code ec;
+  if (fs::is_directory(file.has_parent_path() ? file.parent_path() : ".", ec)) return {};
+  return Error{code::kMissingFolder, tr("There is no folder for this file"), file.string(),
+               tr("Make it, or give {} another place", option)};
+}
+
 Status checkNewFile(const fs::path& file, const std::string& option) {
   std::error_code ec;
   const fs::file_status there = fs::symlink_status(file, ec);
@@ -93,11 +100,7 @@ Status checkNewFile(const fs::path& file, const std::string& option) {
                      : tr("There is something of this name already, which would be lost"),
                  file.string(), tr("Give {} a name that is not taken", option)};
   }
-  const fs::path folder = file.has_parent_path() ? file.parent_path() : ".";
-  if (!fs::is_directory(folder, ec)) {
-    return Error{code::kMissingFolder, tr("There is no folder for this file"), file.string(),
-                 tr("Make it, or give {} another place", option)};
-  }
+  if (Status folder = checkFolderOf(file, option); !folder) return folder;
   const fs::path temporary = temporaryFor(file);
   if (!Descriptor(::open(temporary.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0600)).ok()) {
     return writeError(file, errno);

@@ -20,6 +20,8 @@ Status replaceFile(const std::filesystem::path& target,
 // device or a broken link, and the folder takes it. `option` is what a person gave it with. Errors:
 // CANNOT_WRITE, MISSING_FOLDER.
 Status checkNewFile(const std::filesystem::path& file, const std::string& option);
+// The folder alone: for files whose names come of what is read. Error: MISSING_FOLDER.
+Status checkFolderOf(const std::filesystem::path& file, const std::string& option);
 
 // CANNOT_WRITE with the reason of this errno, 0 where it is not known; nothing that was there is
 // lost.

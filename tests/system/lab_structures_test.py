@@ -113,6 +113,9 @@ class Grow(LabTest):
         refused("grow", "phantom:abdomen", "--seed", IN_LIVER, "--name", "x", "--write", liver)
         refused("export", "phantom:abdomen", "--write", self.folder / "own.mha")  # its names
         self.assertEqual((liver.read_bytes(), names.read_bytes()), before)
+        answer = lab("structures", "export", self.folder / "no such case", "--write",
+                     self.folder / "none" / "x.stl", expect=1)
+        self.assert_error(answer, "MISSING_FOLDER", "--write")  # before the case is read
         surface = self.folder / "all-vessel.stl"
         surface.write_text("precious")
         refused("export", "phantom:abdomen", "--write", self.folder / "all.stl")

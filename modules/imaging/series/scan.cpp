@@ -49,7 +49,7 @@ class Walk {
       skip(tr("the file could not be opened"));
       return;
     }
-    const bool first_visit = result_.came_upon.emplace(status.st_dev, status.st_ino).second;
+    const bool first_visit = visited_.emplace(status.st_dev, status.st_ino).second;
     if (S_ISDIR(status.st_mode)) {
       if (first_visit) visitFolder(path, depth);
       return;
@@ -87,6 +87,8 @@ class Walk {
   ScannedFiles& result_;
   const Progress& progress_;
   std::vector<FoundFile> files_;
+  // Device and inode of files and folders, read or not: one file may have many names.
+  std::set<std::pair<std::uint64_t, std::uint64_t>> visited_;
 };
 
 // Whether all of the header could be read.

@@ -97,39 +97,41 @@ TEST(Hands, BeginOutsideOfTheTissueThatTheExercisePutsThemIn) {
   }
 }
 
+// Hands that begin outside of the tissue.
+struct BesideTheBelly {
+  std::unique_ptr<Session> session =
+      *Session::create(test::placed(liver(), smallBelly()), {{}, {}, true});
+  Vec3 begin_mm = session->handTarget_mm(0);  // of the first
+  Vec3 in = glm::normalize(session->landmarks()[0].frame.position_mm - begin_mm);
+};
+
 TEST(Hands, AreBackWhereTheyBeganAfterAReset) {
-  auto made = Session::create(test::placed(liver(), smallBelly()), {{}, {}, true});
-  ASSERT_TRUE(made.ok()) << made.error().sentence();
-  Session& session = **made;
-  const Vec3 begin_mm = session.handTarget_mm(0);
-  const Vec3 in = -0.5 * glm::normalize(begin_mm - session.landmarks()[0].frame.position_mm);
+  BesideTheBelly hands;
+  Session& session = *hands.session;
   int talks = 0;
   freewheelTalking(session, 8.0, [&] {
     ++talks;
-    if (talks < 24) session.moveHand(0, 8.0 * in);
+    if (talks < 24) session.moveHand(0, 4.0 * hands.in);
     if (talks != 24) return;
     EXPECT_GE(session.state().record.arms[0].tissue_class, 0);
     EXPECT_TRUE(session.send(CommandKind::reset));
   });
   ASSERT_GT(talks, 26);
-  EXPECT_LT(glm::distance(session.handTarget_mm(0), begin_mm), 1e-9);
+  EXPECT_LT(glm::distance(session.handTarget_mm(0), hands.begin_mm), 1e-9);
   const ArmRecord arm = session.state().record.arms[0];
-  EXPECT_LT(glm::distance(arm.patient_position_mm, begin_mm), 0.5);
+  EXPECT_LT(glm::distance(arm.patient_position_mm, hands.begin_mm), 0.5);
   EXPECT_EQ(arm.tool_state & kToolWaits, 0u);
 }
 
 // The tissue comes back around the tools in the pause, before they push or cut again.
 TEST(Hands, AreBackWhereTheyBeganAfterAResetInAPause) {
-  auto made = Session::create(test::placed(liver(), smallBelly()), {{}, {}, true});
-  ASSERT_TRUE(made.ok()) << made.error().sentence();
-  Session& session = **made;
-  const Vec3 begin_mm = session.handTarget_mm(0);
-  const Vec3 in = -0.5 * glm::normalize(begin_mm - session.landmarks()[0].frame.position_mm);
+  BesideTheBelly hands;
+  Session& session = *hands.session;
   const auto arm = [&] { return session.state().record.arms[0]; };
   int talks = 0;
   freewheelTalking(session, 9.0, [&] {
     ++talks;
-    if (talks < 24) session.moveHand(0, 8.0 * in);
+    if (talks < 24) session.moveHand(0, 4.0 * hands.in);
     if (talks == 24) {
       EXPECT_GE(arm().tissue_class, 0);
       EXPECT_TRUE(session.send(CommandKind::pause));
@@ -140,12 +142,12 @@ TEST(Hands, AreBackWhereTheyBeganAfterAResetInAPause) {
     if (talks != 30) return;
     EXPECT_TRUE(session.state().paused);
     EXPECT_LT(arm().tissue_class, 0) << "it is in the air before it goes on";
-    EXPECT_LT(glm::distance(arm().patient_position_mm, begin_mm), 0.5);
+    EXPECT_LT(glm::distance(arm().patient_position_mm, hands.begin_mm), 0.5);
     EXPECT_TRUE(session.send(CommandKind::resume));
   });
   ASSERT_GT(talks, 32);
   EXPECT_FALSE(session.state().paused);
-  EXPECT_LT(glm::distance(arm().patient_position_mm, begin_mm), 0.5);
+  EXPECT_LT(glm::distance(arm().patient_position_mm, hands.begin_mm), 0.5);
   EXPECT_EQ(session.report().done.removed_voxels, 0u);
 }
 

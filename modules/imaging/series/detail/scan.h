@@ -3,7 +3,6 @@
 
 #include <filesystem>
 #include <map>
-#include <optional>
 #include <set>
 #include <string>
 #include <utility>
@@ -16,9 +15,6 @@
 
 namespace trephine {
 
-using FileId = std::pair<std::uint64_t, std::uint64_t>;  // device and inode: one file, many names
-using FileIds = std::set<FileId>;
-
 struct ScannedFiles {
   std::vector<DicomHeader> headers;  // sorted by SOP Instance UID, then frame and path
   std::vector<std::filesystem::path> volume_files;   // NIfTI and the like, sorted
@@ -30,7 +26,6 @@ struct ScannedFiles {
   std::map<std::string, int> skipped;                // by reason; none names a file
   std::set<std::string> packed;                      // reasons that say that files are packed
   std::map<std::filesystem::path, int> empty_files;  // by folder
-  FileIds came_upon;                                 // files and folders, read or not
 };
 
 // `path` is a folder, taken with its subfolders, or one file. Of a DICOMDIR the files that it names
