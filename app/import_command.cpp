@@ -30,7 +30,8 @@ std::string placesOf(const Finding& finding) {
   return text.empty() ? text : text + ". ";
 }
 
-void printReport(const ImportReport& report) {
+// What a series is called may say whom it shows.
+void printReport(const ImportReport& report, Identity identity) {
   for (const SeriesReport& s : report.series) {
     const GridGeometry& g = s.geometry;
     say("%-8s  ", verdictName(s.verdict));
@@ -38,7 +39,7 @@ void printReport(const ImportReport& report) {
       say("%dx%dx%d  %.3f x %.3f x %.3f mm  ", g.size[0], g.size[1], g.size[2], g.spacing_mm.x,
           g.spacing_mm.y, g.spacing_mm.z);
     }
-    say("%s  %s\n", s.modality.c_str(), s.description.c_str());
+    say("%s  %s\n", s.modality.c_str(), identity == Identity::shown ? s.description.c_str() : "");
     if (report.series.size() > 1) {
       const char* mark = "";
       if (report.chosen && s.verdict != Verdict::refused) mark = "  (not read)";
@@ -138,7 +139,7 @@ int importCommand(const ImportArguments& arguments, bool json, const Progress& p
     Json extra = toJson(report ? *report : nothing, identity);
     extra["chosen"] = nullptr;
     if (json && identity == Identity::hidden) error.where.clear();
-    if (!json && report) printReport(*report);
+    if (!json && report) printReport(*report, identity);
     printError("import", error, json, extra);
     return 2;
   };
@@ -179,7 +180,7 @@ int importCommand(const ImportArguments& arguments, bool json, const Progress& p
   if (json) {
     printAnswer("import", toJson(folder->report(), identity));
   } else {
-    printReport(folder->report());
+    printReport(folder->report(), identity);
   }
   return unused.empty() ? 0 : 3;
 }

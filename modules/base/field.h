@@ -38,6 +38,7 @@ struct FieldRow {
   int decimals = -1;
   const char* shown_unit = "";
   double shown_per = 1.0;
+  int lines = 1;  // over which a text is shown on a form
 };
 
 // What a field is to a file and to a form.

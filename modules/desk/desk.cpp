@@ -112,6 +112,8 @@ void Desk::begin(const std::filesystem::path& recordings, std::optional<Operator
   if (phase() != Phase::ready || isOpening()) return;
   // It may have come in while it was unlocked.
   if (Status may = mayPractise(*exercise_, exercise_file_); !may) return fail(may.error());
+  if (Status kept = poke ? Status() : keptAsSaved(); !kept) return fail(kept.error());
+  practised_ = practising_ && !poke;
   Exercise practised = onCase(*exercise_, placed_->patient.source);
   ChosenArms chosen;
   if (!arms_) {

@@ -88,17 +88,26 @@ class Desk {
   bool isOpening() const { return std::holds_alternative<Opening>(activity_); }
   // While structures that were made here are being placed: the case itself stays as it is.
   bool isPlacing() const { return isOpening() && std::get<Opening>(activity_).placing; }
+  // Not structures or places alone, of the open one.
+  bool opensAnotherCase() const {
+    return isOpening() && !std::get<Opening>(activity_).structures_alone;
+  }
   void cancelOpening() { opening_.cancel(); }
 
-  // --- What may not be changed (desk_edits.cpp): by the workstation or by the exercise, until an
-  // educator's PIN takes the locks off, for this session of the program or until they are put on
-  // again. What is locked and tried all the same is refused here: LOCKED.
+  // --- What may not be changed (desk_edits.cpp): by the workstation always, by the exercise as it
+  // was saved while a person practises, until an educator's PIN takes the locks off, for this
+  // session of the program or until they are put on again. What is locked and tried all the same is
+  // refused here: LOCKED.
 
   const Policy& policy() const { return policy_; }
   bool isLocked(Lock lock) const;
   bool anyLocked() const;
+  // Whether the exercise is practised (at first it is) or prepared, by who made it or who makes
+  // another of it. What it keeps is not practised with another value than the saved one: LOCKED.
+  void setPractising(bool practising);
   bool isUnlocked() const { return unlocked_; }
-  // Locked again, what is locked is as it is prescribed, or as the exercise brings it.
+  // Locked again, what is locked is as it is prescribed, or as the exercise brings it: what the
+  // exercise keeps, where it is practised.
   void setUnlocked(bool unlocked);
   // Edited, and taken back when it is locked again.
   bool tissuesWouldGo() const;
@@ -183,7 +192,7 @@ class Desk {
   // Null: where the file says.
   const Landmark* entry() const;
   // Whether anything but the controller and the tissues in force is another than the exercise was
-  // opened with, or saved as.
+  // opened with, or saved as; a place that was clicked, too.
   bool exerciseEdited() const;
   // The case lacks a structure that is needed: the exercise runs on its set for such cases.
   bool isElsewhere() const { return placed_ && placed_->elsewhere; }
@@ -203,14 +212,16 @@ class Desk {
   // it.
   ControllerKind controllerInForce() const { return in_force_; }
   void noteController(ControllerKind in_force);
-  // The tissues as the exercise's file has them, or as they were saved last; and whether they have
-  // been edited since.
+  // The tissues as the exercise's file has them, or as the case or a file of tissues has them
+  // since; and whether they have been edited since.
   const TissueSet& declaredTissues() const {
-    return tissuesInForce(opened_exercise_, isElsewhere());
+    return saved_tissues_ ? *saved_tissues_ : ofExercise();
   }
   bool tissuesEdited() const { return exercise_ && tissues() != declaredTissues(); }
-  // They are these on disk now.
-  void tissuesSaved(const TissueSet& as) { tissuesInForce(opened_exercise_, isElsewhere()) = as; }
+  // Whether the exercise's own file has other tissues, wherever these are saved.
+  bool tissuesUnlikeExercise() const { return exercise_ && tissues() != ofExercise(); }
+  // The case, or a file of tissues, has these now. The exercise's own file has not.
+  void tissuesSaved(const TissueSet& as) { saved_tissues_ = as; }
   // The exercise is on disk now as this file: that is what it is opened with from here on.
   void exerciseSaved(const std::filesystem::path& file);
 
@@ -239,9 +250,10 @@ class Desk {
   // What goes on; one at a time. Whether a case is open is placed_'s to say.
   struct Idle {};
   struct Opening {
-    bool placing = false;      // structures alone, of the open case
+    bool placing = false;      // structures that were made here, or places, of the open case
     bool of_edit = false;      // of an edit of places, which goes back where they cannot be had
     bool place_again = false;  // an edit of places waits for its end
+    bool structures_alone = false;  // the case stays
   };
   struct Starting {};
   struct Running {
@@ -296,16 +308,23 @@ class Desk {
   void tellTissues();
   void applyController(ControllerKind kind);
   Status notLocked(Lock lock) const;
+  bool wouldBeLocked(Lock lock) const;
+  const TissueSet& prescribedTissues() const;
+  const TissueSet& ofExercise() const { return tissuesInForce(opened_exercise_, isElsewhere()); }
+  Status keptAsSaved() const;
 
   void saveOnceStill(WaitingSave save);
 
   Policy policy_;
   DeskEvents& events_;
   bool unlocked_ = false;
+  bool practising_ = true;
+  bool practised_ = false;  // what runs was started so
 
   std::optional<Exercise> exercise_;
   std::filesystem::path exercise_file_;
   Exercise opened_exercise_;      // as it was opened, or saved
+  std::optional<TissueSet> saved_tissues_;  // tissues() in the case or in a file of their own
   bool exercise_chosen_ = false;  // by a person
   ExerciseHistory history_;
   ControllerKind in_force_ = ControllerKind::bounded;

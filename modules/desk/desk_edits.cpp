@@ -12,9 +12,38 @@ namespace trephine {
 
 // --- Locks ---
 
+// But for a PIN.
+bool Desk::wouldBeLocked(Lock lock) const {
+  const bool runs = phase() != Phase::empty && phase() != Phase::ready;
+  const bool practised = practising_ || (practised_ && runs);
+  return policy_.isLocked(lock) ||
+         (practised && exercise_ && opened_exercise_.locks.contains(lock));
+}
+
 bool Desk::isLocked(Lock lock) const {
-  if (unlocked_) return false;
-  return exercise_ ? locksOf(policy_, *exercise_).contains(lock) : policy_.isLocked(lock);
+  return !unlocked_ && wouldBeLocked(lock);
+}
+
+void Desk::setPractising(bool practising) {
+  if (std::exchange(practising_, practising) == practising) return;
+  if (exercise_ && !opened_exercise_.locks.empty()) say(DeskChange::locks);
+}
+
+// What the exercise keeps is practised as it was saved: nobody's edit gets round it.
+Status Desk::keptAsSaved() const {
+  if (unlocked_ || !practising_) return {};
+  const auto kept = [&](Lock lock) { return opened_exercise_.locks.contains(lock); };
+  const std::string what =
+      kept(Lock::tissues) && tissuesUnlikeExercise()
+          ? tr("The exercise keeps its tissues, and they have been changed since it was saved")
+      : kept(Lock::controller) && exercise_->controller != opened_exercise_.controller
+          ? tr("The exercise keeps its controller, which has been changed since it was saved")
+      : kept(Lock::rate) && exercise_->rate_hz != opened_exercise_.rate_hz
+          ? tr("The exercise keeps its rate, which has been changed since it was saved")
+          : std::string();
+  if (what.empty()) return {};
+  return Error{code::kLocked, what, "",
+               tr("Save the exercise in Prepare, undo the change there, or try it from there")};
 }
 
 bool Desk::anyLocked() const {
@@ -22,8 +51,12 @@ bool Desk::anyLocked() const {
 }
 
 bool Desk::tissuesWouldGo() const {
-  return unlocked_ && exercise_ && tissuesEdited() &&
-         locksOf(policy_, *exercise_).contains(Lock::tissues);
+  return unlocked_ && exercise_ && tissues() != prescribedTissues() && wouldBeLocked(Lock::tissues);
+}
+
+// What an exercise keeps is as its own file has it.
+const TissueSet& Desk::prescribedTissues() const {
+  return opened_exercise_.locks.contains(Lock::tissues) ? ofExercise() : declaredTissues();
 }
 
 void Desk::setUnlocked(bool unlocked) {
@@ -35,8 +68,8 @@ void Desk::setUnlocked(bool unlocked) {
 // What was changed while it was unlocked: controller and tissues are what they are prescribed to
 // be, or what the exercise brings. A rate of another exercise is seen to when that is started.
 void Desk::takeBack() {
-  if (isLocked(Lock::tissues) && tissuesEdited()) {
-    tissuesInForce(*exercise_, isElsewhere()) = declaredTissues();
+  if (isLocked(Lock::tissues) && tissues() != prescribedTissues()) {
+    tissuesInForce(*exercise_, isElsewhere()) = TissueSet(prescribedTissues());
     refreshPlaced();
     tellTissues();
     history_.begin(*exercise_);
@@ -62,7 +95,8 @@ Status Desk::notLocked(Lock lock) const {
       what = tr("The rate is locked on this workstation or by this exercise");
       break;
   }
-  return Error{code::kLocked, what, "", unlocking(policy_)};
+  return Error{code::kLocked, what, "",
+               policy_.isLocked(lock) ? unlocking(policy_) : tr("It can be changed in Prepare")};
 }
 
 // --- Edits ---
@@ -95,7 +129,7 @@ Status Desk::mayEdit(const Exercise& wanted) const {
   rest.landmarks = exercise_->landmarks;
   if (anyLocked() && rest != *exercise_) {
     return Error{code::kLocked, tr("Exercises are not changed while anything is locked"), "",
-                 unlocking(policy_)};
+                 policy_.locks.empty() ? tr("It can be changed in Prepare") : unlocking(policy_)};
   }
   if (phase() != Phase::ready && phase() != Phase::empty) {
     return Error{code::kBusy, tr("This cannot be changed while an exercise runs"), "",
@@ -225,6 +259,7 @@ void Desk::exerciseSaved(const std::filesystem::path& file) {
   // The open case is its own now, and its files lie elsewhere.
   exercise_ = asSaved(*std::move(exercise_), *saved);
   opened_exercise_ = *exercise_;
+  saved_tissues_.reset();
   if (placed_) placed_->patient.source = saved->case_source;
   refreshPlaced();
   replaced ? history_.begin(*exercise_) : history_.settle(*exercise_);

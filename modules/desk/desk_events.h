@@ -35,7 +35,8 @@ class DeskEvents {
   // Of what is being opened or saved; `fraction` in [0, 1], which never falls.
   virtual void onOpeningProgress(double fraction, const std::string& step) = 0;
   virtual void onSavingProgress(double fraction, const std::string& step) = 0;
-  // Another exercise is being opened; Desk::exercise() is still the one before.
+  // Another exercise is being opened, where that is known before the case is read;
+  // Desk::exercise() is still the one before.
   virtual void onExerciseOpening(const Exercise& exercise, const std::filesystem::path& file) = 0;
   // Desk::answer() goes on with the answer, within this call or later; without one nothing has
   // changed.

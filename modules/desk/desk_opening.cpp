@@ -128,6 +128,7 @@ void Desk::openSource(OpenRequest request, const std::string& source) {
     in_force_ = exercise_->controller;
     looks_ = exercise_->view.looks;
     opened_exercise_ = *exercise_;
+    saved_tissues_.reset();
     history_.begin(*exercise_);
     say(DeskChange::exercise);
     say(DeskChange::locks);
@@ -208,7 +209,12 @@ void Desk::placeAgain(const std::shared_ptr<const LabelMap>& structures, bool of
 
 void Desk::open(OpenRequest request, const Opening& as) {
   if (!as.placing) question_.reset();  // structures that were made here leave it as it is
-  if (!request.same_exercise) events_.onExerciseOpening(request.exercise, request.exercise_file);
+  const bool structures_alone = request.structures_alone;
+  // Which one it will be, a case of the library says once it is read.
+  const bool known = !(request.any_exercise && request.load);
+  if (!request.same_exercise && known) {
+    events_.onExerciseOpening(request.exercise, request.exercise_file);
+  }
   opening_.run(
       [request = std::move(request)](const Progress& progress) mutable -> Result<OpenOutcome> {
         const std::shared_ptr<const Volume> shown = request.shown;
@@ -220,7 +226,9 @@ void Desk::open(OpenRequest request, const Opening& as) {
         return outcome;
       },
       [this](Result<OpenOutcome> outcome) { opened(std::move(outcome)); });
-  go(as);
+  Opening opening = as;
+  opening.structures_alone = structures_alone;
+  go(opening);
 }
 
 // The outcome follows.
@@ -251,19 +259,27 @@ void Desk::opened(Result<OpenOutcome> outcome) {
 
 // What was edited holds on the next case too.
 void Desk::opened(Opened opened) {
-  const bool may_edit = !isLocked(Lock::tissues);
+  const Locks& kept = opened.same_exercise ? opened_exercise_.locks : opened.exercise.locks;
+  const bool may_edit =
+      unlocked_ || !(policy_.isLocked(Lock::tissues) || kept.contains(Lock::tissues));
   const bool was_elsewhere = isElsewhere();
+  if (opened.structures_alone && placed_) {  // the library may have got it meanwhile
+    opened.placed.patient.stored = placed_->patient.stored;
+    opened.placed.patient.name = placed_->patient.name;
+  }
   placed_ = std::move(opened.placed);
   placed_with_ = tissueTable(placed_->exercise.tissues);
   if (!opened.same_exercise) {
     exercise_ = std::move(opened.exercise);
     opened_exercise_ = *exercise_;
+    saved_tissues_.reset();
     looks_ = exercise_->view.looks;
     history_.begin(*exercise_);
   } else if (!opened.structures_alone) {
     // Tissues and controller were edited while it was read, perhaps.
     exercise_ = forAnotherCase(*std::move(exercise_), opened_exercise_);
   }
+  if (was_elsewhere != isElsewhere()) saved_tissues_.reset();  // of the other set
   // The case's own, where they are of the same kinds: what was felt on it is felt again.
   if (opened.tissues && may_edit && sameIds(*opened.tissues, tissues())) {
     tissuesInForce(*exercise_, isElsewhere()) = *opened.tissues;

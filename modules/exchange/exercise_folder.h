@@ -62,6 +62,16 @@ Result<ExportedExercise> exportExercise(const std::filesystem::path& exercise,
                                         const Progress& progress = Progress(),
                                         const NameHider& hide = {});
 
+// The exercise in the folder that exportExercise() wrote, of what a person may choose of it: the
+// folder, its list or the exercise. Empty where it is none. One that was imported has such a list,
+// too.
+std::filesystem::path exportedExercise(const std::filesystem::path& chosen);
+// Whether a file is of one of the exercises below `storage`/exercises: the exercise itself, or what
+// it came with.
+bool isOfOwnExercise(const std::filesystem::path& storage, const std::filesystem::path& file);
+// Whether the exercise is one of those below `storage`/exercises.
+bool isOwnExercise(const std::filesystem::path& storage, const std::filesystem::path& exercise);
+
 // What of a folder is missing or is not what was exported, by its path in the folder; files that
 // the list does not name are not looked at.
 struct ExerciseCheck {

@@ -204,6 +204,29 @@ Status verify(const fs::path& folder, ExerciseCheck& check, const Progress& prog
 
 }  // namespace
 
+fs::path exportedExercise(const fs::path& chosen) {
+  std::error_code ec;
+  const std::string name = chosen.filename().string();
+  const bool of_it = name == kListFile || name == kSceneFile;
+  const fs::path folder = fs::is_directory(chosen, ec) ? chosen
+                          : of_it                      ? chosen.parent_path()
+                                                       : fs::path();
+  if (folder.empty() || !fs::exists(folder / kListFile, ec)) return {};
+  const Result<Json> list = readJsonFile(folder / kListFile);
+  // What is broken in it is said by who imports it.
+  if (!list || !list->is_object() || !list->contains("format")) return {};
+  return list->at("format") == "trephine.exercise" ? folder / kSceneFile : fs::path();
+}
+
+bool isOfOwnExercise(const fs::path& storage, const fs::path& file) {
+  const fs::path below = file.lexically_normal().lexically_relative(storage / "exercises");
+  return !below.empty() && below.begin()->string() != ".." && below.has_parent_path();
+}
+
+bool isOwnExercise(const fs::path& storage, const fs::path& exercise) {
+  return exercise.parent_path().parent_path() == storage / "exercises";
+}
+
 Result<ExerciseCheck> checkExercise(const fs::path& folder, const Progress& progress) {
   Result<ExerciseCheck> check = listOf(folder);
   if (!check) return check;

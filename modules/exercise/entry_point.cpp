@@ -69,6 +69,24 @@ std::optional<Vec3> outwardAt(const Volume& volume, const TissueSet& tissues,
   }));
 }
 
+double depthInTissue_mm(const Volume& volume, const TissueSet& tissues, const LabelMap* labels,
+                        const Vec3& at_mm, const Vec3& outward) {
+  constexpr double kStep_mm = 0.5;
+  const GridGeometry& g = volume.geometry;
+  const glm::dmat4 to_voxel = g.patientToVoxel();
+  const TissueTable table = tissueTable(tissues);
+  double last_mm = 0.0;
+  for (double way_mm = kStep_mm; way_mm < std::min(kDeepest_mm, last_mm + kClear_mm);
+       way_mm += kStep_mm) {
+    const Vec3 voxel = glm::round(Vec3(to_voxel * glm::dvec4(at_mm + way_mm * outward, 1.0)));
+    const int i = int(voxel.x), j = int(voxel.y), k = int(voxel.z);
+    if (!g.contains(i, j, k)) break;
+    const std::uint8_t label = labels ? labels->labels[g.indexOf(i, j, k)] : 0;
+    if (classify(table, volume.at(i, j, k), label) >= 0) last_mm = way_mm;
+  }
+  return last_mm;
+}
+
 Landmark placedAt(const Landmark& landmark, const Vec3& at_mm, const Vec3& outward) {
   Landmark placed = landmark;
   placed.is_place = true;

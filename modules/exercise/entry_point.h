@@ -19,6 +19,12 @@ constexpr double kEntryBall_mm = 8.0;
 std::optional<Vec3> outwardAt(const Volume& volume, const TissueSet& tissues,
                               const LabelMap* labels, const std::string& tissue, const Vec3& at_mm);
 
+// How far [mm] a tool that comes out of a place along `outward` is in tissue, any of the set: to
+// the first kClear_mm without. 0 at a surface and in air; at most kDeepest_mm. Pure.
+constexpr double kClear_mm = 5.0, kDeepest_mm = 150.0;
+double depthInTissue_mm(const Volume& volume, const TissueSet& tissues, const LabelMap* labels,
+                        const Vec3& at_mm, const Vec3& outward);
+
 // The exercise's landmark at that place instead.
 Landmark placedAt(const Landmark& landmark, const Vec3& at_mm, const Vec3& outward);
 

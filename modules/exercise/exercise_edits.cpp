@@ -146,12 +146,7 @@ bool isEntry(const Landmark& landmark, const Exercise& opened) {
 }
 
 bool isEdited(const Exercise& exercise, const Exercise& opened, bool elsewhere) {
-  Exercise same = withLiveOf(opened, exercise, elsewhere);
-  for (Landmark& landmark : same.landmarks) {  // a clicked place is of preparing a case
-    const Landmark* now = exercise.findLandmarkById(landmark.id);
-    if (now && isEntry(*now, opened)) landmark = *now;
-  }
-  return same != exercise;
+  return withLiveOf(opened, exercise, elsewhere) != exercise;
 }
 
 Exercise forAnotherCase(Exercise exercise, const Exercise& opened) {

@@ -109,7 +109,7 @@ void findByBulk(Landmark& landmark);
 
 // The landmark is a place in this patient that a person has clicked.
 bool isEntry(const Landmark& landmark, const Exercise& opened);
-// Anything but the tissues in force, the controller and a clicked place is another.
+// Anything but the tissues in force and the controller is another.
 bool isEdited(const Exercise& exercise, const Exercise& opened, bool elsewhere);
 // Places in one patient go: they are again where the exercise was opened with them.
 Exercise forAnotherCase(Exercise exercise, const Exercise& opened);

@@ -173,7 +173,7 @@ Policy policyAtStart(const fs::path& file) {
   return policy;
 }
 
-std::vector<fs::path> exercisesOfWorkstation(const Policy& policy) {
+std::vector<fs::path> exercisesOfWorkstation(const Policy& policy, bool for_research) {
   std::vector<fs::path> all;
   const auto add = [&](auto entries) {
     const auto first = std::ptrdiff_t(all.size());
@@ -185,6 +185,7 @@ std::vector<fs::path> exercisesOfWorkstation(const Policy& policy) {
   };
   std::error_code ec;
   add(fs::directory_iterator(resourceFolder() / "scenes", ec));
+  if (for_research) add(fs::directory_iterator(resourceFolder() / "scenes" / "research", ec));
   const auto own = std::ptrdiff_t(all.size());
   add(fs::recursive_directory_iterator(policy.folder, fs::directory_options::skip_permission_denied,
                                        ec));

@@ -48,10 +48,11 @@ std::string unlocking(const Policy& policy);
 // What is locked while this exercise is practised.
 Locks locksOf(const Policy& policy, const Exercise& exercise);
 
-// The exercises of this workstation: the product's exercises, then those below the policy's folder
-// that this user could not have written, each in the order of their names. Of what is no exercise:
-// none.
-std::vector<std::filesystem::path> exercisesOfWorkstation(const Policy& policy);
+// The exercises of this workstation: the product's exercises, `for_research` also those that are
+// for comparison with others' work, then those below the policy's folder that this user could not
+// have written, each in the order of their names. Of what is no exercise: none.
+std::vector<std::filesystem::path> exercisesOfWorkstation(const Policy& policy,
+                                                          bool for_research = false);
 
 // LOCKED where the exercise would bring what the workstation locks: a controller or a rate other
 // than the one that is prescribed, or, from a file that is neither the product's (resourceFolder())

@@ -23,6 +23,7 @@
 #include "imaging/series/detail/series.h"
 #include "imaging/series/detail/series_findings.h"
 #include "imaging/series/detail/series_geometry.h"
+#include "imaging/series_state.h"
 #include "imaging/steps/detail/volume_steps.h"
 #include "volume/codes.h"
 
@@ -63,7 +64,9 @@ Provenance provenanceOf(const SeriesReport& series, const ImportRequest& request
     if (!provenance.answers.contains(code)) provenance.unused_answers.push_back(code);
   }
   std::ranges::copy_if(series.findings, std::back_inserter(provenance.changes),
-                       [](const Finding& f) { return f.severity == Severity::repair; });
+                       [](const Finding& f) {
+                         return f.severity == Severity::repair || f.severity == Severity::edit;
+                       });
   provenance.crop = request.crop;
   provenance.reduction = request.reduction;
   provenance.build = buildName();
@@ -153,6 +156,21 @@ struct CtFolder::Contents {
       return s.modality == "CT" && !looksLikeLabels(s) &&
              (s.verdict != Verdict::refused || !s.choices.empty());
     });
+  }
+  // Empty where there are several, or none.
+  std::string onlyCtOf(const DicomHeader& segmentation) const {
+    std::string only;
+    for (const Source& source : sources) {
+      if (!source.file.empty() || source.series.report.modality != "CT") continue;
+      const DicomHeader& ct = source.series.slices.front();
+      if (ct.study_uid != segmentation.study_uid ||
+          ct.frame_of_reference != segmentation.frame_of_reference) {
+        continue;
+      }
+      if (!only.empty()) return {};
+      only = source.series.report.uid;
+    }
+    return only;
   }
   // The report's copy of what the source says of itself.
   void publish(const Source& source) {
@@ -373,6 +391,11 @@ std::vector<CtFolder::LabelFile> CtFolder::labelFiles() const {
     const SeriesReport& series = source.series.report;
     if (!source.file.empty() && looksLikeLabels(series)) {
       files.push_back({series.description, source.file});
+    } else if (source.file.empty() && seriesState(series, {}) == SeriesState::structures) {
+      const DicomHeader& first = source.series.slices.front();
+      const std::string name =
+          series.description.empty() ? first.file.filename().string() : series.description;
+      files.push_back({name, first.file, contents_->onlyCtOf(first)});
     }
   }
   return files;

@@ -40,10 +40,12 @@ class CtFolder {
   // in: for the screen, and so that no case is called after any of it. Empty where there is no such
   // series.
   SourceIdentity sourceIdentity(const std::string& uid) const;
-  // The volume files that look like label maps of a CT beside them. None without such a CT.
+  // The volume files that look like label maps of a CT beside them, and the DICOM Segmentations.
+  // None without such a CT.
   struct LabelFile {
-    std::string name;  // below the folder
+    std::string name;  // below the folder; of DICOM the series's description, for the screen
     std::filesystem::path file;
+    std::string of{};  // uid of the only CT of its study and frame of reference; empty: not known
   };
   std::vector<LabelFile> labelFiles() const;
   // The DICOM CT with most slices that is not refused once `answers` are given, else the largest

@@ -4,6 +4,8 @@
 #include <numeric>
 #include <tuple>
 
+#include "imaging/codes.h"
+
 namespace trephine {
 
 namespace {
@@ -17,6 +19,10 @@ bool refusesUnanswered(const Choice& choice) {
 SeriesState seriesState(const SeriesReport& series, const Answers& answers) {
   if (series.verdict == Verdict::pass) return SeriesState::pass;
   if (series.verdict == Verdict::repaired) return SeriesState::repaired;
+  const bool by_kind = std::ranges::any_of(series.findings, [](const Finding& finding) {
+    return finding.code == code::kNotCt || finding.code == code::kLabelMap;
+  });
+  if (series.modality == "SEG" && by_kind) return SeriesState::structures;
   bool asks = false, open = false;
   for (const Choice& choice : series.choices) {
     if (!refusesUnanswered(choice)) continue;
@@ -29,7 +35,8 @@ SeriesState seriesState(const SeriesReport& series, const Answers& answers) {
 }
 
 bool mayBeRead(SeriesState state) {
-  return state != SeriesState::asks && state != SeriesState::refused;
+  return state != SeriesState::asks && state != SeriesState::refused &&
+         state != SeriesState::structures;
 }
 
 const Answers& answersOf(const std::map<std::string, Answers>& answers, const std::string& uid) {

@@ -11,8 +11,9 @@
 namespace trephine {
 
 // A verdict, and whether questions are open. `answered`: refused as it is, but all that it asks has
-// been answered. Whether that is enough is for the reader to say.
-enum class SeriesState { pass, repaired, answered, asks, refused };
+// been answered. Whether that is enough is for the reader to say. `structures`: no CT, but a
+// segmentation of one.
+enum class SeriesState { pass, repaired, answered, asks, structures, refused };
 
 SeriesState seriesState(const SeriesReport& series, const Answers& answers);
 bool mayBeRead(SeriesState state);

@@ -28,7 +28,10 @@ inline const std::string kPlainLookUps = R"(
 vec3 lastBrick() { return vec3(textureSize(in_leaps, 0)) - 1.0; }
 float leapsAt(vec3 brick) { return texelFetch(in_leaps, ivec3(brick), 0).r; }
 float lookOf(float hu) { return hu; }
+float uncut(float opacity) { return opacity; }
 )";
+// The same of labelled voxels where removed ones cannot be told.
+inline const std::string kNoCuts = "float uncut(float opacity) { return opacity; }\n";
 inline const std::string kPlainShape = "float shapeAt(vec3 place, float hu) { return 0.0; }\n";
 
 // The same texture holds the labels first, the leaps in the slices above, and above these the row
@@ -66,6 +69,31 @@ float lookOf(float hu)
   }
 )";
 }
+
+// A tissue that is known by its label alone may have any HU: between it and a removed voxel all are
+// its own, and it ends half-way.
+inline const std::string kLabelledCuts = R"(
+float uncut(float opacity)
+  {
+  if (g_row == 0.0 || g_hu > in_half || in_cut.x > 1.5)
+    {
+    return opacity;
+    }
+  ivec3 l_last = textureSize(in_volume[0], 0) - 1;
+  ivec3 l_low = ivec3(floor(g_dataPos * voxels() - 0.5));
+  for (int i = 0; i < 8; ++i)
+    {
+    ivec3 l_voxel = clamp(l_low + ivec3(i & 1, (i >> 1) & 1, i >> 2), ivec3(0), l_last);
+    float l_hu = texelFetch(in_volume[0], l_voxel, 0).r * in_volume_scale[0].r +
+                 in_volume_bias[0].r;
+    if (abs(l_hu - in_cut.x) < in_cut.y)
+      {
+      return 0.0;
+      }
+    }
+  return opacity;
+  }
+)";
 
 inline const std::string kLabelledShape = R"(
 // What a labelled structure still has of its shape at a place: nothing where it was cut.
@@ -126,6 +154,7 @@ inline std::string leapTo(const std::string& visible) {
         {
         g_hu = texture3D(in_volume[0], g_dataPos).r * in_volume_scale[0].r + in_volume_bias[0].r;
         g_opacity = texture2D(in_opacityTransferFunc_0[0], vec2(lookOf(g_hu), 0.0)).r;
+        g_opacity = g_opacity > 0.0 ? uncut(g_opacity) : 0.0;
         if (g_opacity > 0.0)
           {)" +
          visible + R"(
@@ -305,7 +334,7 @@ inline const std::string kTruthShading = R"(
       g_runGain = 1.0;
       if (l_ghost)
         {
-        l_alpha = l_begins && g_sure ? 0.03 + 0.5 * pow(1.0 - abs(l_towards), 3.0) : 0.0;
+        l_alpha = l_begins && g_sure ? 0.05 + 0.5 * pow(1.0 - abs(l_towards), 2.5) : 0.0;
         g_runGain = 0.0;
         }
       if (in_shows != 0 && g_sure)

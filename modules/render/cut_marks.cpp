@@ -8,7 +8,9 @@ std::int16_t cutMark(std::int16_t lowest_HU) {
   // Some scanners fill what they did not see with -2000 or less; the noise of air ends before this.
   constexpr std::int16_t kFarthest = -1100;
   if (lowest_HU <= kFarthest) return kFarthest;
-  return std::int16_t(std::min(lowest_HU, kAirHu) - 1);
+  // Below the ramp of a tissue that begins right above removed voxels, as finely as tables tell it.
+  constexpr std::int16_t kBelowAir = 15;
+  return std::int16_t(std::min<int>(lowest_HU, kAirHu - kBelowAir) - 1);
 }
 
 VoxelBox boxOfCuts(const VolumeMirror& mirror, const Index3& factors) {

@@ -11,8 +11,8 @@
 
 namespace trephine {
 
-// A HU that no voxel of a volume has whose lowest is this, or hardly one: as near to air as may be,
-// since what lies beside it is interpolated with it.
+// A HU that no voxel of a volume has whose lowest is this, or hardly one: near to air, since what
+// lies beside it is interpolated with it.
 std::int16_t cutMark(std::int16_t lowest_HU);
 
 // What was touched since the mirror was whole, in a copy whose voxels stand for `factors` of its.

@@ -27,7 +27,9 @@ std::vector<TissueShade> tissueShades(const TissueSet& seen, const TissueLooks& 
 
 Vec3 cutColour(const Vec3& colour) {
   const double light = std::clamp(glm::dot(colour, Vec3(0.3, 0.59, 0.11)), 0.0, 1.0);
-  return glm::min(Vec3(1.0), colour * glm::mix(Vec3(0.8, 0.45, 0.45), Vec3(1.1, 0.8, 0.76), light));
+  const Vec3 pink = colour * Vec3(1.1, 0.8, 0.76),
+             pale = glm::mix(colour, Vec3(1.0, 0.72, 0.62), 0.6);
+  return glm::min(Vec3(1.0), glm::mix(pale, pink, glm::smoothstep(0.3, 0.7, light)));
 }
 
 Vec3 ballRadii_mm(const Vec3& spacing_mm) {

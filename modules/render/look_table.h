@@ -26,8 +26,8 @@ struct TissueShade {
 std::vector<TissueShade> tissueShades(const TissueSet& seen, const TissueLooks& looks,
                                       double highest_HU);
 
-// The same tissue where a tool has cut it: light ones, as bone, in a warm pink, dark ones darker
-// and redder.
+// The same tissue where a tool has cut it: light ones, as bone, in a warm pink, dark ones, as
+// liver, paler.
 Vec3 cutColour(const Vec3& colour);
 
 // A place around a sample, in mm along the grid's axes, and what its HU adds to the normal there.

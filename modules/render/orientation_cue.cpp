@@ -30,18 +30,37 @@ void addOrientationCue(const ViewCamera& camera, int width, int height, ScreenLi
     order.emplace_back(-glm::dot(kDirections[i], camera.forward()), i);
   }
   std::sort(order.begin(), order.end());
-  for (const auto& [nearness, i] : order) {
-    const Vec3& direction = kDirections[i];
-    const glm::dvec2 way(glm::dot(direction, camera.right()), glm::dot(direction, camera.up()));
+  const auto wayOf = [&](std::size_t i) {
+    return glm::dvec2(glm::dot(kDirections[i], camera.right()),
+                      glm::dot(kDirections[i], camera.up()));
+  };
+  const auto middleOf = [&](std::size_t i) {
+    const glm::dvec2 way = wayOf(i);
+    return centre + way * (radius + 0.95 * letter);
+  };
+  // Its letter would lie on the cross, or behind the letter of what is nearer.
+  const auto hasLetter = [&](std::size_t row) {
+    if (glm::length(wayOf(order[row].second)) < 0.4) return false;
+    for (std::size_t nearer = row + 1; nearer < order.size(); ++nearer) {
+      if (glm::length(wayOf(order[nearer].second)) < 0.4) continue;
+      const glm::dvec2 apart =
+          glm::abs(middleOf(order[row].second) - middleOf(order[nearer].second));
+      if (apart.x < 0.8 * letter && apart.y < 1.2 * letter) return false;
+    }
+    return true;
+  };
+  for (std::size_t row = 0; row < order.size(); ++row) {
+    const auto [nearness, i] = order[row];
+    const glm::dvec2 way = wayOf(i);
     // What points away from the eye is dimmer.
     const Vec3 colour = glm::mix(kFar, kNear, 0.5 + 0.5 * nearness);
     const double length = glm::length(way);
     if (length >= 0.2 || nearness > 0.0) {
       to.push_back({centre, centre + way * radius, 0.75 * colour, line});
     }
-    if (length < 0.4) continue;  // its letter would lie on the cross
-    const glm::dvec2 middle = centre + way * (radius + 0.95 * letter);
-    addWords(kNames.substr(i, 1), middle - glm::dvec2(0.3, 0.5) * letter, letter, colour, line, to);
+    if (!hasLetter(row)) continue;
+    addWords(kNames.substr(i, 1), middleOf(i) - glm::dvec2(0.3, 0.5) * letter, letter, colour, line,
+             to);
   }
 }
 

@@ -19,6 +19,9 @@ constexpr double kEdge_HU = 25.0;
 // Between these a labelled structure fades into the air of a cut.
 constexpr double kAirEnds_HU = -950.0, kTissueBegins_HU = -100.0;
 
+// Half-way from soft tissue to a removed voxel.
+constexpr double kHalfCut_HU = -450.0;
+
 void set(float (&to_three)[3], const Vec3& v) {
   for (int axis = 0; axis < 3; ++axis) to_three[axis] = float(v[axis]);
 }
@@ -37,6 +40,7 @@ void RayShading::build(vtkShaderProperty& shader) const {
   const bool by_label = rows > 1;
   if (!leaping && !by_label && !isTrue()) return;
   std::string declarations = kLeapDeclarations + (by_label ? labelledLookUps(rows) : kPlainLookUps);
+  if (by_label) declarations += isTrue() ? kLabelledCuts : kNoCuts;
   if (by_label) {
     replace("//VTK::ComputeOpacity::Dec", kLabelledOpacity);
     replace("//VTK::ComputeColor::Dec", kLabelledColour);
@@ -85,6 +89,7 @@ void RayShading::tellTissues(vtkShaderProperty& shader) const {
   const float air[2] = {scaled(kAirEnds_HU),
                         float((kTissueBegins_HU - kAirEnds_HU) / (high_HU - low_HU))};
   to->SetUniform2f("in_air", air);
+  to->SetUniformf("in_half", scaled(kHalfCut_HU));
   to->SetUniformf("in_edge", float(kEdge_HU / (high_HU - low_HU)));
   to->SetUniformi("in_shows", shows);
 }

@@ -13,8 +13,14 @@
 #include "base/tr.h"
 #include "render/codes.h"
 #include "render/scene_parts.h"
+#include "render/seen_box.h"
 
 namespace trephine {
+
+const VoxelBox& SceneRenderer::Parts::seenBox() {
+  if (!seen_box) seen_box = trephine::seenBox(voxels(), mirror->labels().get(), seen_tissues);
+  return *seen_box;
+}
 
 void SceneRenderer::Parts::show() {
   reduced.reset();
@@ -36,6 +42,7 @@ void SceneRenderer::Parts::showReduced() {
 }
 
 void SceneRenderer::Parts::otherLabels() {
+  seen_box.reset();
   const std::shared_ptr<const LabelMap> labels = mirror->labels();
   reduced_labels = reduced && labels ? reduced->labels(*labels) : nullptr;
   volume.setLabels(reduced ? reduced_labels : labels);

@@ -102,6 +102,8 @@ struct SceneRenderer::Parts {
   CarveVolume volume;
   TissueLooks looks;
   std::vector<std::string> visible;      // ids of the tissues that are drawn
+  TissueSet seen_tissues;                // asSeen()
+  std::optional<VoxelBox> seen_box;      // none: to be found anew
   std::optional<DisplayVolume> reduced;  // stands in for the mirror's on the graphics card
   std::shared_ptr<LabelMap> reduced_labels;
   Index3 reduction{1, 1, 1};
@@ -141,6 +143,7 @@ struct SceneRenderer::Parts {
   }
 
   const Volume& voxels() const { return mirror->volume(); }
+  const VoxelBox& seenBox();
   bool drawsVolume() const { return !mirror->empty() && !refused; }
 
   // ---- Fitting the volume to the graphics card: scene_fitting.cpp.

@@ -143,6 +143,7 @@ bool SceneRenderer::takeChanges() {
   p.spoil();
   p.volume.remove(*p.renderer);
   if (!hasVolume()) return true;
+  p.seen_box.reset();
   const bool same_place = p.voxels().geometry == p.place_shown;
   p.place_shown = p.voxels().geometry;
   p.show();
@@ -159,6 +160,7 @@ void SceneRenderer::setTissues(const TissueSet& tissues, const TissueLooks& look
   p.spoilLooks();
   // What is seen through and what is not says how long a picture takes.
   TissueSet seen = asSeen(tissues, looks);
+  if (!(std::exchange(p.seen_tissues, seen) == seen)) p.seen_box.reset();
   std::vector<std::string> visible;
   for (const Tissue& tissue : seen.tissues) {
     if (tissue.opacity > 0.0) visible.push_back(tissue.id);
@@ -331,7 +333,16 @@ Picture SceneRenderer::picture() {
 void SceneRenderer::resetCamera(const Vec3& direction, const Vec3& up) {
   Parts& p = *parts_;
   if (!hasVolume()) return;
-  p.panel.camera.fit(p.voxels().geometry, direction, up, p.panel.width, p.panel.height);
+  const GridGeometry& g = p.voxels().geometry;
+  p.panel.camera.fit(g, {{0, 0, 0}, g.size}, direction, up, p.panel.width, p.panel.height);
+  p.spoil();
+}
+
+void SceneRenderer::showAll(const Vec3& direction, const Vec3& up, int covered) {
+  Parts& p = *parts_;
+  if (!hasVolume()) return;
+  const int free = std::max(p.panel.width - 2 * covered, p.panel.width / 2);
+  p.panel.camera.fit(p.voxels().geometry, p.seenBox(), direction, up, free, p.panel.height);
   p.spoil();
 }
 
@@ -342,7 +353,11 @@ void SceneRenderer::lookAt(const Vec3& focus_mm, const Vec3& direction, const Ve
 }
 
 void SceneRenderer::orbit(double azimuth_deg, double elevation_deg) {
-  parts_->panel.camera.orbit(azimuth_deg, elevation_deg);
+  orbit(azimuth_deg, elevation_deg, parts_->panel.camera.focus());
+}
+
+void SceneRenderer::orbit(double azimuth_deg, double elevation_deg, const Vec3& about_mm) {
+  parts_->panel.camera.orbit(azimuth_deg, elevation_deg, about_mm);
   parts_->spoil();
 }
 
@@ -358,12 +373,15 @@ void SceneRenderer::pan(double dx_pixels, double dy_pixels) {
   p.spoil();
 }
 
-void SceneRenderer::lookFrom(StandardView side) {
-  ViewCamera& camera = parts_->panel.camera;
-  const Vec3 forward = camera.forward(), up = camera.up();
-  camera.lookFrom(side);
-  parts_->spoil();
-  if (camera.forward() == forward && camera.up() == up) resetCamera(forward, up);
+SceneRenderer::Seen SceneRenderer::seen() const {
+  Parts& p = *parts_;
+  if (!hasVolume()) return {};
+  const GridGeometry& g = p.voxels().geometry;
+  const VoxelBox box = p.seenBox();
+  const Vec3 low(box.low[0], box.low[1], box.low[2]);
+  const Vec3 high(box.high[0] - 1, box.high[1] - 1, box.high[2] - 1);
+  return {g.toPatient_mm(0.5 * (low + high)),
+          0.5 * glm::distance(g.toPatient_mm(low), g.toPatient_mm(high))};
 }
 
 void SceneRenderer::setParallel(bool parallel) {

@@ -146,14 +146,23 @@ class SceneRenderer {
   // Renders at full quality and reads it back.
   Picture picture();
 
-  // Camera. `direction` points from the eye to the focus, patient frame.
+  // Camera. `direction` points from the eye to the focus, patient frame. resetCamera() fits the
+  // volume into the picture, showAll() what can be seen of it, as tissues and looks have it,
+  // beside `covered` pixels at the left and at the right edge.
   void resetCamera(const Vec3& direction, const Vec3& up);
+  void showAll(const Vec3& direction, const Vec3& up, int covered = 0);
   void lookAt(const Vec3& focus_mm, const Vec3& direction, const Vec3& up, double distance_mm);
-  void orbit(double azimuth_deg, double elevation_deg);
+  void orbit(double azimuth_deg, double elevation_deg);  // about the focus
+  void orbit(double azimuth_deg, double elevation_deg, const Vec3& about_mm);
   void zoom(double factor);
   void pan(double dx_pixels, double dy_pixels);  // the picture moves right and down, as a mouse
-  // At the focus; from a side from which it looks already, at the whole volume.
-  void lookFrom(StandardView side);
+  // Of the voxels that can be seen: the middle of the smallest box around them, patient frame, and
+  // half of its diagonal [mm]. The volume's own where nothing can be seen.
+  struct Seen {
+    Vec3 middle_mm{0.0};
+    double radius_mm = 0.0;
+  };
+  Seen seen() const;
   void setParallel(bool parallel);
   const ViewCamera& camera() const;
   // Over the picture, in its pixels, until others are set.

@@ -79,6 +79,7 @@ void SceneRenderer::View::drawSolids(vtkRenderer& solids, double opacity,
 }
 
 void SceneRenderer::View::addGuides(const Canvas& shown, const Span& span, ScreenLines& to) const {
+  std::vector<WordsBox> words;
   for (const ToolView& tool : of.tool_views) {
     const PixelRect reach = guideReach(tool, camera, width, height);
     std::optional<double> ahead_mm;
@@ -96,7 +97,7 @@ void SceneRenderer::View::addGuides(const Canvas& shown, const Span& span, Scree
       }
     }
     const bool first_of_more = of.tool_views.size() > 1 && &tool == &of.tool_views.front();
-    addGuide(tool, ahead_mm, camera, width, height, first_of_more, to);
+    addGuide(tool, ahead_mm, camera, width, height, first_of_more, words, to);
   }
 }
 

@@ -19,6 +19,15 @@ struct ScreenLine {
 
 using ScreenLines = std::vector<ScreenLine>;
 
+// Where words stand.
+struct WordsBox {
+  glm::dvec2 low{0.0}, high{0.0};
+  bool overlaps(const WordsBox& other) const {
+    return low.x < other.high.x && other.low.x < high.x && low.y < other.high.y &&
+           other.low.y < high.y;
+  }
+};
+
 // Words in strokes, `height` pixels high, their left lower corner at `at`: digits, point, hyphen,
 // blank and the letters L R A P S I m; what else it holds is left blank.
 void addWords(std::string_view words, const glm::dvec2& at, double height, const Vec3& colour,

@@ -28,7 +28,7 @@ namespace trephine {
 
 namespace {
 
-constexpr double kBladeWidth_mm = 3.0;
+constexpr double kBladeWidth_mm = 4.5;
 constexpr double kBladeHalfThickness_mm = 0.3;
 constexpr double kNeedleRadius_mm = 0.6;
 constexpr double kNeedlePoint_mm = 4.0;
@@ -73,29 +73,55 @@ void addRevolved(const std::vector<Ring>& rings, vtkPoints* points, vtkCellArray
   faces->InsertNextCell(kSides, cap);
 }
 
-// A flat bar in the y-z plane, its end ground to an edge at the tip.
-void addBlade(double length, double half_thickness, vtkPoints* points, vtkCellArray* faces) {
-  const double half_width = kBladeWidth_mm / 2.0;
-  const double bevel = std::min(3.0, length / 3.0);
-  const double outline[5][2] = {{0.0, 0.0},
-                                {half_width, bevel},
-                                {half_width, length},
-                                {-half_width, length},
-                                {-half_width, bevel}};
+// A flat solid between x = -half and half through an outline in the y-z plane, which runs
+// anticlockwise seen from x > 0.
+void addFlat(const std::vector<glm::dvec2>& outline, double half, vtkPoints* points,
+             vtkCellArray* faces) {
+  const auto count = vtkIdType(outline.size());
   const vtkIdType first = points->GetNumberOfPoints();
-  for (const double x : {-half_thickness, half_thickness}) {
-    for (const auto& [y, z] : outline) points->InsertNextPoint(x, y, z);
+  for (const double x : {-half, half}) {
+    for (const glm::dvec2& yz : outline) points->InsertNextPoint(x, yz.x, yz.y);
   }
-  vtkIdType back[5], front[5];
-  for (vtkIdType i = 0; i < 5; ++i) {
-    back[i] = first + 4 - i;
-    front[i] = first + 5 + i;
-    const vtkIdType next = (i + 1) % 5;
-    const vtkIdType side[4] = {first + i, first + next, first + 5 + next, first + 5 + i};
+  std::vector<vtkIdType> back, front;
+  for (vtkIdType i = 0; i < count; ++i) {
+    back.push_back(first + count - 1 - i);
+    front.push_back(first + count + i);
+    const vtkIdType next = (i + 1) % count;
+    const vtkIdType side[4] = {first + i, first + next, first + count + next, first + count + i};
     faces->InsertNextCell(4, side);
   }
-  faces->InsertNextCell(5, back);
-  faces->InsertNextCell(5, front);
+  faces->InsertNextCell(count, back.data());
+  faces->InsertNextCell(count, front.data());
+}
+
+// The edge runs along z from the tip; the back of the blade rises from the tip to its width.
+void addBlade(double length, double half_thickness, vtkPoints* points, vtkCellArray* faces) {
+  const double slope = std::min(3.0 * kBladeWidth_mm, 0.6 * length);
+  addFlat({{0.0, 0.0},
+           {0.7 * kBladeWidth_mm, 0.5 * slope},
+           {kBladeWidth_mm, slope},
+           {kBladeWidth_mm, length},
+           {0.0, length}},
+          half_thickness, points, faces);
+}
+
+// A neck and a flat handle with a rounded end, from this z on.
+void addFlatHandle(double z, vtkPoints* points, vtkCellArray* faces) {
+  constexpr double kHalf_mm = 2.0, kNeck_mm = 12.0, kWide_mm = 5.2;
+  const double middle = kBladeWidth_mm / 2.0, end = z + kHandleLength_mm;
+  addFlat({{middle - 1.6, z},
+           {middle + 1.6, z},
+           {middle + 2.2, z + 0.6 * kNeck_mm},
+           {middle + kWide_mm, z + kNeck_mm + 6.0},
+           {middle + kWide_mm, z + 32.0},
+           {middle + 0.8 * kWide_mm, end - 4.0},
+           {middle + 0.5 * kWide_mm, end},
+           {middle - 0.5 * kWide_mm, end},
+           {middle - 0.8 * kWide_mm, end - 4.0},
+           {middle - kWide_mm, z + 32.0},
+           {middle - kWide_mm, z + kNeck_mm + 6.0},
+           {middle - 2.2, z + 0.6 * kNeck_mm}},
+          kHalf_mm, points, faces);
 }
 
 // A ball, or a rod with round ends, whose far end is the tip, on a shaft.
@@ -116,32 +142,62 @@ std::vector<Ring> burr(double length, double radius, double head) {
   return rings;
 }
 
-vtkNew<vtkPolyData> builtIn(const ToolView& view) {
-  vtkNew<vtkPoints> points;
-  vtkNew<vtkCellArray> faces;
+struct BuiltIn {
+  vtkNew<vtkPolyData> work, handle;  // the part that cuts, of steel; what the hand holds
+};
+
+BuiltIn builtIn(const ToolView& view) {
+  struct Solid {
+    vtkNew<vtkPoints> points;
+    vtkNew<vtkCellArray> faces;
+    void into(vtkPolyData* solid) const {
+      solid->SetPoints(points);
+      solid->SetPolys(faces);
+    }
+  } work, handle;
   const bool known = isFinite(view.radius_mm) && view.radius_mm > 0.0;
   const auto radius = [&](double usual) { return known ? view.radius_mm : usual; };
-  double handle = view.length_mm;
+  double from = view.length_mm;
   if (view.shape == ToolShape::blade) {
-    addBlade(view.length_mm, radius(kBladeHalfThickness_mm), points, faces);
+    addBlade(view.length_mm, radius(kBladeHalfThickness_mm), work.points, work.faces);
+    addFlatHandle(from, handle.points, handle.faces);
   } else if (view.shape == ToolShape::burr) {
     const std::vector<Ring> rings = burr(view.length_mm, radius(kBurrRadius_mm), view.head_mm);
-    handle = rings.back().z;
-    addRevolved(rings, points, faces);
+    from = rings.back().z;
+    addRevolved(rings, work.points, work.faces);
   } else {
     const double r = radius(kNeedleRadius_mm), point = std::min(kNeedlePoint_mm, view.length_mm);
-    addRevolved({{0.0, 0.0}, {point, r}, {view.length_mm, r}}, points, faces);
+    addRevolved({{0.0, 0.0}, {point, r}, {view.length_mm, r}}, work.points, work.faces);
+    const double end = from + kHandleLength_mm;
+    // A hub, the barrel of a syringe with its rim, and the plunger.
+    addRevolved({{from, 1.5},
+                 {from + 7.0, 2.1},
+                 {from + 7.6, 3.4},
+                 {from + 11.0, 6.2},
+                 {from + 47.0, 6.2},
+                 {from + 47.3, 9.0},
+                 {from + 49.5, 9.0},
+                 {from + 49.8, 2.4},
+                 {end - 2.5, 2.4},
+                 {end - 2.3, 7.0},
+                 {end, 7.0}},
+                handle.points, handle.faces);
   }
-  const double end = handle + kHandleLength_mm;
-  addRevolved({{handle, kHandleRadius_mm * 0.6},
-               {handle + 6.0, kHandleRadius_mm},
-               {end - 3.0, kHandleRadius_mm},
-               {end, kHandleRadius_mm * 0.7}},
-              points, faces);
-  vtkNew<vtkPolyData> solid;
-  solid->SetPoints(points);
-  solid->SetPolys(faces);
-  return solid;
+  if (view.shape == ToolShape::burr) {
+    const double end = from + kHandleLength_mm;
+    addRevolved({{from, kHandleRadius_mm * 0.6},
+                 {from + 6.0, kHandleRadius_mm},
+                 {from + 9.0, 1.6 * kHandleRadius_mm},
+                 {from + 24.0, 1.6 * kHandleRadius_mm},
+                 {from + 30.0, 2.2 * kHandleRadius_mm},
+                 {end - 3.0, 2.2 * kHandleRadius_mm},
+                 {end, kHandleRadius_mm}},
+                handle.points, handle.faces);
+  }
+  BuiltIn made;
+  work.into(made.work);
+  handle.into(made.handle);
+  return made;
 }
 
 // What VTK does for normals grows with the square of the faces around a corner. Beyond this, as
@@ -236,15 +292,19 @@ void setSolid(vtkActor* actor, vtkPolyData* solid) {
 }  // namespace
 
 struct ToolDrawing::Tool {
-  vtkNew<vtkActor> body;    // a mesh's working part, or the whole built-in tool
-  vtkNew<vtkActor> handle;  // of a mesh
+  vtkNew<vtkActor> body;    // the working part, of steel
+  vtkNew<vtkActor> handle;  // in the arm's colour
   vtkNew<vtkActor> mark;
   vtkNew<vtkMatrix4x4> place;
   std::optional<ToolView> solid;  // what the actors hold
-  bool meshed = false;
 
   Tool() {
     for (vtkActor* actor : {body.Get(), handle.Get(), mark.Get()}) actor->SetUserMatrix(place);
+    vtkProperty* steel = body->GetProperty();
+    steel->SetAmbient(0.1);
+    steel->SetDiffuse(0.68);
+    steel->SetSpecular(0.6);
+    steel->SetSpecularPower(40.0);
     handle->GetProperty()->SetAmbient(0.2);
     handle->GetProperty()->SetDiffuse(0.8);
     handle->GetProperty()->SetSpecular(0.25);
@@ -262,19 +322,15 @@ struct ToolDrawing::Tool {
 
   void shape(const ToolView& view, const std::optional<ToolMesh>& mesh) {
     solid = view;
-    meshed = mesh.has_value();
-    if (meshed) {
+    if (mesh) {
       const vtkNew<vtkPolyData> whole = withNormals(*mesh);
       setSolid(body, partOf(whole, view.length_mm, true));
       setSolid(handle, partOf(whole, view.length_mm, false));
     } else {
-      setSolid(body, builtIn(view));
+      const BuiltIn made = builtIn(view);
+      setSolid(body, made.work);
+      setSolid(handle, made.handle);
     }
-    vtkProperty* look = body->GetProperty();
-    look->SetAmbient(meshed ? 0.1 : 0.25);
-    look->SetDiffuse(meshed ? 0.68 : 0.8);
-    look->SetSpecular(meshed ? 0.6 : 0.4);
-    look->SetSpecularPower(meshed ? 40.0 : 30.0);
   }
 
   void update(const ToolView& view) {
@@ -284,13 +340,13 @@ struct ToolDrawing::Tool {
       place->SetElement(row, 3, view.pose_mm.position[row]);
     }
     place->Modified();
-    setColour(body, meshed ? glm::mix(kSteel, view.colour, 0.15) : view.colour);
+    setColour(body, glm::mix(kSteel, view.colour, 0.15));
     setColour(handle, view.colour);
   }
 
   void setVisible(bool shown, bool contact) {
     body->SetVisibility(shown);
-    handle->SetVisibility(shown && meshed);
+    handle->SetVisibility(shown);
     mark->SetVisibility(shown && contact);
   }
 };

@@ -67,7 +67,7 @@ std::optional<double> surfaceAhead_mm(const ToolView& tool, const DepthPatch& de
 }
 
 void addGuide(const ToolView& tool, std::optional<double> ahead_mm, const ViewCamera& camera,
-              int width, int height, bool at_left, ScreenLines& to) {
+              int width, int height, bool at_left, std::vector<WordsBox>& taken, ScreenLines& to) {
   if (!usable(tool)) return;
   const auto tip = camera.pixelOf(tool.pose_mm.position, width, height);
   if (!tip) return;
@@ -94,7 +94,18 @@ void addGuide(const ToolView& tool, std::optional<double> ahead_mm, const ViewCa
   std::snprintf(words, sizeof words, "%.0f mm", *ahead_mm);
   const double letter = std::clamp(0.016 * height, 10.0, 24.0);
   const double aside = at_left ? -6.0 * line - widthOfWords(words, letter) : 6.0 * line;
-  addWords(words, *met + glm::dvec2(aside, -0.5 * letter), letter, kAhead, line, to);
+  constexpr double kRoom = 0.4;  // around words, of a letter's height
+  const glm::dvec2 room(kRoom * letter), size(widthOfWords(words, letter), letter);
+  glm::dvec2 at = *met + glm::dvec2(aside, -0.5 * letter);
+  const auto box = [&] { return WordsBox{at - 0.5 * room, at + size + 0.5 * room}; };
+  for (std::size_t n = 0; n < taken.size(); ++n) {  // each may be in the way once
+    const auto in_the_way =
+        std::ranges::find_if(taken, [&](const WordsBox& one) { return one.overlaps(box()); });
+    if (in_the_way == taken.end()) break;
+    at.y = in_the_way->low.y - size.y - 0.6 * room.y;
+  }
+  taken.push_back(box());
+  addWords(words, at, letter, kAhead, line, to);
 }
 
 }  // namespace trephine

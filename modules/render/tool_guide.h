@@ -33,8 +33,8 @@ std::optional<double> surfaceAhead_mm(const ToolView& tool, const DepthPatch& de
                                       const ViewCamera& camera, int width, int height);
 
 // In contact: a ring at the tip, in the arm's colour. Else a line to the surface with its length in
-// mm at its right, or at its left, so that two tools' stay apart.
+// mm at its right, or at its left, and below the words that are there (`taken`, which gets these).
 void addGuide(const ToolView& tool, std::optional<double> ahead_mm, const ViewCamera& camera,
-              int width, int height, bool at_left, ScreenLines& to);
+              int width, int height, bool at_left, std::vector<WordsBox>& taken, ScreenLines& to);
 
 }  // namespace trephine

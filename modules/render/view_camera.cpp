@@ -46,33 +46,39 @@ FieldOfView ViewCamera::sees(int width, int height) const {
   return {-aside, aside, -kTan, kTan};
 }
 
-void ViewCamera::lookFrom(StandardView side) {
+ViewCamera::Direction ViewCamera::from(StandardView side) {
   switch (side) {
     case StandardView::anterior:
-      return lookAt(focus_mm_, Vec3(0, 1, 0), Vec3(0, 0, 1), distance_mm_);
+      return {Vec3(0, 1, 0), Vec3(0, 0, 1)};
     case StandardView::posterior:
-      return lookAt(focus_mm_, Vec3(0, -1, 0), Vec3(0, 0, 1), distance_mm_);
+      return {Vec3(0, -1, 0), Vec3(0, 0, 1)};
     case StandardView::left:
-      return lookAt(focus_mm_, Vec3(-1, 0, 0), Vec3(0, 0, 1), distance_mm_);
+      return {Vec3(-1, 0, 0), Vec3(0, 0, 1)};
     case StandardView::right:
-      return lookAt(focus_mm_, Vec3(1, 0, 0), Vec3(0, 0, 1), distance_mm_);
+      return {Vec3(1, 0, 0), Vec3(0, 0, 1)};
     case StandardView::superior:
-      return lookAt(focus_mm_, Vec3(0, 0, -1), Vec3(0, -1, 0), distance_mm_);
+      return {Vec3(0, 0, -1), Vec3(0, -1, 0)};
     case StandardView::inferior:
-      return lookAt(focus_mm_, Vec3(0, 0, 1), Vec3(0, -1, 0), distance_mm_);
+      return {Vec3(0, 0, 1), Vec3(0, -1, 0)};
   }
+  return {Vec3(0, 1, 0), Vec3(0, 0, 1)};
 }
 
-void ViewCamera::fit(const GridGeometry& geometry, const Vec3& direction, const Vec3& view_up,
-                     int width, int height) {
-  const Vec3 centre = geometry.centre_mm();
+void ViewCamera::fit(const GridGeometry& geometry, const VoxelBox& box, const Vec3& direction,
+                     const Vec3& view_up, int width, int height) {
+  const auto voxel = [&](std::size_t axis, bool last) {
+    return last ? double(box.high[axis] - 1) : double(box.low[axis]);
+  };
+  const Vec3 centre =
+      geometry.toPatient_mm(0.5 * (Vec3(voxel(0, false), voxel(1, false), voxel(2, false)) +
+                                   Vec3(voxel(0, true), voxel(1, true), voxel(2, true))));
   lookAt(centre, direction, view_up, 1.0);
   const double tan_right = kTan * double(width) / double(height);
   double distance = 1.0;
   for (int corner = 0; corner < 8; ++corner) {
-    const Vec3 voxel(corner & 1 ? geometry.size[0] - 1 : 0, corner & 2 ? geometry.size[1] - 1 : 0,
-                     corner & 4 ? geometry.size[2] - 1 : 0);
-    const Vec3 at = geometry.toPatient_mm(voxel) - centre;
+    const Vec3 at = geometry.toPatient_mm(
+                        Vec3(voxel(0, corner & 1), voxel(1, corner & 2), voxel(2, corner & 4))) -
+                    centre;
     const double beside =
         std::max(std::abs(glm::dot(at, right())) / tan_right, std::abs(glm::dot(at, up())) / kTan);
     distance = std::max(distance, beside - glm::dot(at, forward()));
@@ -80,11 +86,11 @@ void ViewCamera::fit(const GridGeometry& geometry, const Vec3& direction, const 
   distance_mm_ = distance * 1.02;
 }
 
-void ViewCamera::orbit(double azimuth_deg, double elevation_deg) {
-  if (!isFinite(azimuth_deg) || !isFinite(elevation_deg)) return;
+void ViewCamera::orbit(double azimuth_deg, double elevation_deg, const Vec3& about_mm) {
+  if (!isFinite(azimuth_deg) || !isFinite(elevation_deg) || !isFinite(about_mm)) return;
   const Quat turn = glm::angleAxis(glm::radians(azimuth_deg), up_) *
                     glm::angleAxis(glm::radians(-elevation_deg), right());
-  lookAt(focus_mm_, turn * forward_, turn * up_, distance_mm_);
+  lookAt(about_mm + turn * (focus_mm_ - about_mm), turn * forward_, turn * up_, distance_mm_);
 }
 
 void ViewCamera::zoom(double factor, double farthest_mm) {

@@ -25,14 +25,17 @@ class ViewCamera {
   bool offAxis() const { return off_axis_.has_value(); }
   // In a picture of this shape, in perspective.
   FieldOfView sees(int width, int height) const;
-  // From this side at the same focus, as near as before; the patient upright, seen from above and
-  // below with the face up.
-  void lookFrom(StandardView side);
-  // As near as every corner of the volume allows, in a picture of this shape.
-  void fit(const GridGeometry& geometry, const Vec3& direction, const Vec3& up, int width,
-           int height);
-  // To the right and upwards around the focus.
-  void orbit(double azimuth_deg, double elevation_deg);
+  // Where the eye looks and what is up in its picture, from this side: the patient upright, seen
+  // from above and below with the face up.
+  struct Direction {
+    Vec3 forward, up;
+  };
+  static Direction from(StandardView side);
+  // As near as every corner of this box of the volume's voxels allows, in a picture of this shape.
+  void fit(const GridGeometry& geometry, const VoxelBox& box, const Vec3& direction, const Vec3& up,
+           int width, int height);
+  // To the right and upwards around this place, which stays where it is in the picture.
+  void orbit(double azimuth_deg, double elevation_deg, const Vec3& about_mm);
   // Nearer by the factor, between 1 mm and `farthest_mm` from the focus.
   void zoom(double factor, double farthest_mm);
   // The picture moves right and down by pixels, in a picture of this height.

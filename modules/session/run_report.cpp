@@ -79,11 +79,15 @@ Json toJson(const RunReport& report) {
           {"arms", arms},
           {"removed_mm3", removed},
           {"removed_voxels", report.done.removed_voxels},
+          {"undos", report.done.undos},
+          {"rewinds", report.done.rewinds},
+          {"brought_back_mm3", report.done.brought_back_mm3},
           {"structures_cut", toJson(report.structures_cut)},
           {"missed_deadlines", report.machine.missed_deadlines},
           {"faults", faults},
           {"warnings", warnings},
-          {"memory_locked", report.machine.memory_locked ? Json(*report.machine.memory_locked) : Json(nullptr)},
+          {"memory_locked",
+           report.machine.memory_locked ? Json(*report.machine.memory_locked) : Json(nullptr)},
           {"nonfinite", report.machine.nonfinite},
           {"events_dropped", report.machine.events_dropped},
           {"recorder_behind_ms", report.machine.recorder_behind_ms},
@@ -122,6 +126,11 @@ std::string toText(const RunReport& report) {
   }
   for (const auto& [tissue, mm3] : report.done.removed_mm3) {
     if (mm3 > 0.0) add("  removed of %s: %.0f mm3\n", tissue.c_str(), mm3);
+  }
+  if (const std::uint64_t back = report.done.undos + report.done.rewinds; back > 0) {
+    add("  taken back %llu times (%llu by undo): %.0f mm3 were cut and put back\n",
+        static_cast<unsigned long long>(back), static_cast<unsigned long long>(report.done.undos),
+        report.done.brought_back_mm3);
   }
   for (const std::string& cut : linesOf(report.structures_cut)) text += "  " + cut + "\n";
   add("  a tick took %.1f us (median), %.1f us (99 %%); %llu deadlines missed\n",

@@ -37,18 +37,26 @@ void EditHistory::forgetUndone() {
   }
 }
 
+void EditHistory::begin(Step step) {
+  step.before = version_;
+  steps_.push_back(std::move(step));
+}
+
 void EditHistory::addRow(const std::string& name, const Structure& before, const Structure& after) {
   if (before == after) return;
   forgetUndone();
-  steps_.push_back({name, {}, 0, Step::Row{before, after}});
+  begin({name, {}, 0, Step::Row{before, after}});
+  steps_.back().after = version_ = ++last_version_;
   done_ = steps_.size();
 }
 
-void EditHistory::add(const std::string& name, LabelEdit edit, bool joins) {
+void EditHistory::add(const std::string& name, LabelEdit edit, bool joins, bool counts) {
   if (edit.empty()) return;
   forgetUndone();
-  if (!joins || steps_.empty() || steps_.back().row) steps_.push_back({name, {}, 0, {}});
+  if (!joins || steps_.empty() || steps_.back().row) begin({name, {}, 0, {}});
   Step& step = steps_.back();
+  if (counts) version_ = ++last_version_;
+  step.after = version_;
   edit.runs.shrink_to_fit();
   step.bytes += edit.bytes();
   bytes_ += edit.bytes();
@@ -64,6 +72,7 @@ void EditHistory::add(const std::string& name, LabelEdit edit, bool joins) {
 std::optional<VoxelBox> EditHistory::undo(LabelMap& map) {
   if (done_ == 0) return std::nullopt;
   const Step& step = steps_[--done_];
+  version_ = step.before;
   for (auto edit = step.edits.rbegin(); edit != step.edits.rend(); ++edit) {
     trephine::undo(map, *edit);
   }
@@ -74,13 +83,16 @@ std::optional<VoxelBox> EditHistory::undo(LabelMap& map) {
 std::optional<VoxelBox> EditHistory::redo(LabelMap& map) {
   if (done_ == steps_.size()) return std::nullopt;
   const Step& step = steps_[done_++];
+  version_ = step.after;
   for (const LabelEdit& edit : step.edits) apply(map, edit);
   if (step.row) setRow(map, step.row->after);
   return editedBox(step.edits);
 }
 
 void EditHistory::clear() {
+  const std::uint64_t last = last_version_;
   *this = EditHistory(most_bytes_);
+  version_ = last_version_ = last + 1;
 }
 
 }  // namespace trephine

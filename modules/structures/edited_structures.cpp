@@ -124,7 +124,6 @@ bool EditedStructures::rename(const std::string& step, int label, const std::str
   const Structure before = of;
   of.name = name;
   history_.addRow(step, before, of);
-  ++changes_;
   return true;
 }
 
@@ -133,7 +132,6 @@ void EditedStructures::recolour(const std::string& step, int label, const Vec3& 
   const Structure before = of;
   of.colour = colour;
   history_.addRow(step, before, of);
-  ++changes_;
 }
 
 // --- Voxels ---
@@ -160,12 +158,18 @@ void EditedStructures::count(const LabelEdit& edit, bool added) {
   }
 }
 
+bool EditedStructures::isOfWallAlone(const LabelEdit& edit) const {
+  const auto isNothing = [&](std::uint8_t label) { return label == 0 || label == wall_; };
+  return std::ranges::all_of(edit.runs, [&](const LabelEdit::Run& run) {
+    return isNothing(run.before) && isNothing(run.after);
+  });
+}
+
 std::size_t EditedStructures::put(const std::string& step, const LabelEdit& edit, bool joins) {
   apply(*own_, edit);
   count(edit, true);
-  ++changes_;
   const std::size_t dropped = history_.dropped();
-  history_.add(step, edit, joins);
+  history_.add(step, edit, joins, !isOfWallAlone(edit));
   return history_.dropped() - dropped;
 }
 
@@ -187,9 +191,7 @@ Result<LabelEdit> EditedStructures::removalOf(int label) const {
 }
 
 std::optional<VoxelBox> EditedStructures::stepped(const std::optional<VoxelBox>& box) {
-  if (!box) return box;
-  countAll();
-  ++changes_;
+  if (box) countAll();
   return box;
 }
 
@@ -201,7 +203,6 @@ void EditedStructures::tryOut(const LabelEdit& edit, int row) {
 
 void EditedStructures::takeTried(const std::string& step) {
   history_.add(step, std::exchange(tried_, {}).edit);
-  ++changes_;
 }
 
 VoxelBox EditedStructures::leaveTried() {

@@ -29,8 +29,9 @@ class EditedStructures {
   std::shared_ptr<const LabelMap> map() const { return own_ ? own_ : given_; }
   bool isOwn() const { return own_ != nullptr; }
   Status makeOwn(const GridGeometry& grid);
-  // How often anything was changed, of whatever case.
-  std::uint64_t changes() const { return changes_; }
+  // Stands for what they are now: another number with every change but of the wall alone, of
+  // whatever case, and the same again where undo or redo leads back to it.
+  std::uint64_t version() const { return history_.version(); }
   // A copy without the wall; null where nothing else has a row. Error: OUT_OF_MEMORY.
   Result<std::shared_ptr<LabelMap>> withoutWall() const;
 
@@ -81,6 +82,7 @@ class EditedStructures {
  private:
   Structure* row(int label);
   void count(const LabelEdit& edit, bool added);
+  bool isOfWallAlone(const LabelEdit& edit) const;
   void countAll();
   std::optional<VoxelBox> stepped(const std::optional<VoxelBox>& box);
 
@@ -95,7 +97,6 @@ class EditedStructures {
   Tried tried_;
   int wall_ = 0;
   std::map<int, int> layer_of_;
-  std::uint64_t changes_ = 0;
 };
 
 }  // namespace trephine

@@ -23,7 +23,8 @@ bool operator==(const RunMetrics& a, const RunMetrics& b) {
   return a.rate_hz == b.rate_hz && a.ticks == b.ticks && a.arms == b.arms &&
          a.controllers == b.controllers && a.strokes == b.strokes && a.faults == b.faults &&
          std::ranges::equal(a.warnings, b.warnings, same) && a.removed_mm3 == b.removed_mm3 &&
-         a.removed_voxels == b.removed_voxels;
+         a.removed_voxels == b.removed_voxels && a.undos == b.undos && a.rewinds == b.rewinds &&
+         a.brought_back_mm3 == b.brought_back_mm3;
 }
 
 Warning startsInTissue(const std::string& arm, bool barrier) {
@@ -61,6 +62,10 @@ void RunMeter::event(const Event& event) {
       metrics_.controllers.size() < kMostFaults) {
     const std::string name(controllerName(ControllerKind(command.value)));
     if (name != metrics_.controllers.back()) metrics_.controllers.push_back(name);
+  }
+  if (event.kind == EventKind::command && !metrics_.strokes.empty()) {
+    metrics_.undos += command.kind == CommandKind::undo;
+    metrics_.rewinds += command.kind == CommandKind::rewind || command.kind == CommandKind::reset;
   }
   paused_.add(event);
   if (event.arm < 0 || std::size_t(event.arm) >= metrics_.arms.size()) return;
@@ -109,6 +114,7 @@ void setRemoved(RunMetrics& metrics, const Exercise& exercise, const CarveJourna
     }
     metrics.arms[i].removed_mm3 = double(journal.paid(int(i))) * voxel_mm3 / kVoxelShares;
   }
+  metrics.brought_back_mm3 = double(journal.entryCount() - metrics.removed_voxels) * voxel_mm3;
 }
 
 Result<RunMetrics> metricsOf(const SessionReader& recording, const Progress& progress) {

@@ -54,6 +54,10 @@ struct RunMetrics {
   // What is removed at the end, by tissue in the exercise's order: setRemoved().
   std::vector<std::pair<std::string, double>> removed_mm3;
   std::uint64_t removed_voxels = 0;
+  // Once something had been cut: how often undo was asked for, and a rewind or reset; and how much
+  // was cut and put back, cut again afterwards or not: setRemoved().
+  std::uint64_t undos = 0, rewinds = 0;
+  double brought_back_mm3 = 0.0;
   friend bool operator==(const RunMetrics& a, const RunMetrics& b);
 };
 

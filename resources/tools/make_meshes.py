@@ -61,7 +61,7 @@ def grooved(start, end, radius, depth, grooves):
 
 
 def needle():
-    """60 mm, 1.2 mm across, ground to three facets; the origin is where the hub begins."""
+    """60 mm, 1.2 mm across, ground to three facets, on a syringe; the origin is where the hub begins."""
     sides, radius, point, tip = 36, 0.6, 4.0, -60.0
     rings = []
     for part in (0.15, 0.35, 0.5, 0.6, 0.7, 0.8, 0.9, 1.0):
@@ -70,9 +70,13 @@ def needle():
             return min(radius, inner / math.cos(third))
         rings.append(ring(tip + part * point, ground, sides))
     rings += revolved([(0.0, radius), (0.0, 1.5), (0.4, 1.8), (7.0, 2.1)], sides)
-    rings += revolved([(8.0, 3.3), (9.0, 3.5)] + grooved(10.0, 44.0, 3.5, 0.35, 8), sides)
-    rings += revolved([(46.0, 3.5), (47.0, 4.2), (49.4, 4.2), (50.0, 3.6)], sides)
-    return loft((tip, 0.0, 0.0), rings, (50.0, 0.0, 0.0))
+    # A barrel with rings as of a scale, two wings for the fingers, a plunger for the thumb.
+    rings += revolved([(7.6, 3.4), (10.0, 6.2), (11.0, 6.6)], sides)
+    rings += revolved(grooved(14.0, 44.0, 6.6, 0.25, 6) + [(52.0, 6.6)], sides)
+    rings += [ring(x, wide, sides, z_radius=high) for x, wide, high in (
+        (52.3, 11.5, 6.9), (54.7, 11.5, 6.9), (55.0, 6.4, 6.4))]
+    rings += revolved([(55.2, 2.4), (78.0, 2.4), (78.3, 7.6), (80.6, 7.6), (81.0, 6.8)], sides)
+    return loft((tip, 0.0, 0.0), rings, (81.0, 0.0, 0.0))
 
 
 def blade():
@@ -98,17 +102,20 @@ def blade():
         rings.append(ring(tip + along, half_width, sides, y=centre, z_radius=half_thickness,
                           squareness=4.0))
 
+    # A flat handle, as wide as a thumb: its neck, ribs for the fingers, and a rounded end.
     cheek(edge, 1.3, 0.7)
-    cheek(edge + 0.4, 1.6, 0.9)
-    cheek(edge + 9.0, 1.9, 1.1)
-    cheek(edge + 20.0, 3.6, 1.8)
-    for x, half_width in grooved(24.0, 48.0, 4.0, 0.3, 8):
-        cheek(edge + x, half_width, 2.0 - (4.0 - half_width))
-    cheek(edge + 52.0, 3.9, 2.0)
-    cheek(edge + 98.0, 3.6, 1.9)
-    cheek(edge + 103.0, 3.0, 1.6)
-    cheek(edge + 105.0, 1.6, 0.9)
-    return triangles + loft((tip + edge, centre, 0.0), rings, (tip + edge + 105.0, centre, 0.0))
+    cheek(edge + 0.4, 1.8, 0.9)
+    cheek(edge + 9.0, 2.2, 1.2)
+    cheek(edge + 14.0, 3.0, 1.5)
+    cheek(edge + 22.0, 5.2, 2.0)
+    for x, half_width in grooved(26.0, 50.0, 5.6, 0.45, 8):
+        cheek(edge + x, half_width, 2.3 - (5.6 - half_width))
+    cheek(edge + 54.0, 5.4, 2.1)
+    cheek(edge + 104.0, 4.4, 1.9)
+    cheek(edge + 112.0, 4.2, 1.8)
+    cheek(edge + 115.0, 3.2, 1.6)
+    cheek(edge + 116.0, 1.6, 0.9)
+    return triangles + loft((tip + edge, centre, 0.0), rings, (tip + edge + 116.0, centre, 0.0))
 
 
 def burr(radius, shaft, straight=0.0):

@@ -62,7 +62,11 @@ Result<Picture> drawnVolume(const GoldenLine& line, const GoldenCase& shown, Vol
   const LandmarkFrame* landmark = landmarkOf(shown);
   if (line.side || !landmark) {
     renderer.resetCamera(Vec3(0, 1, 0), Vec3(0, 0, 1));
-    if (line.side) renderer.lookFrom(*line.side);
+    if (line.side) {  // as near as from the front
+      const ViewCamera::Direction from = ViewCamera::from(*line.side);
+      const ViewCamera& camera = renderer.camera();
+      renderer.lookAt(camera.focus(), from.forward, from.up, camera.distance_mm());
+    }
   } else {
     renderer.lookAt(landmark->position_mm, landmark->viewDirection(), landmark->viewUp(),
                     shown.exercise.view.distance_mm);

@@ -21,7 +21,8 @@ SERIES_KEYS = {
     "verdict", "size", "spacing_mm", "origin_mm", "direction",
     "hu_min", "hu_max", "tilt_deg", "transfer_syntax", "lossy", "findings", "volume_sha256"}
 RUN_KEYS = {
-    "schema", "build", "controller", "controllers", "ticks", "rate_hz", "arms", "removed_mm3", "removed_voxels",
+    "schema", "build", "controller", "controllers", "ticks", "rate_hz", "arms", "removed_mm3", "removed_voxels", "undos", "rewinds",
+    "brought_back_mm3",
     "structures_cut",
     "missed_deadlines", "faults", "warnings", "memory_locked", "nonfinite", "events_dropped",
     "recorder_behind_ms", "tick_ns", "volume_sha256_before", "volume_sha256", "recording",
@@ -180,10 +181,10 @@ class SeedScenes(LabTest):
     """The paper's mode: every tick in a table beside the recording."""
 
     def test_they_run_without_a_barrier_and_write_every_tick(self):
-        for name in ("seed-cranium", "seed-liver"):
+        for name in ("research/seed-cranium", "research/seed-liver"):
             with self.subTest(name):
                 self.assertIn("no barrier", lab("explain", SCENES / f"{name}.json")["barrier"])
-                table = self.folder / f"{name}.csv"
+                table = self.folder / f"{Path(name).name}.csv"
                 run = lab("run", SCENES / f"{name}.json", "--csv", table, "--seconds", 6,
                           "--out", self.folder)
                 self.assertEqual(run["controller"], "seed")
@@ -204,7 +205,7 @@ class SeedScenes(LabTest):
                         self.assertEqual(f_e, f_c)
 
     def test_a_table_needs_a_folder(self):
-        error = lab("run", SCENES / "seed-liver.json", "--csv", self.folder / "none" / "t.csv",
+        error = lab("run", SCENES / "research/seed-liver.json", "--csv", self.folder / "none" / "t.csv",
                     "--out", self.folder, expect=1)
         self.assert_error(error, "MISSING_FOLDER", "--csv")
 
@@ -238,9 +239,9 @@ class StartsInTissue(LabTest):
 
 class Run(LabTest):
     def test_no_shipped_scene_is_forgotten(self):
-        self.assertEqual({file.stem for file in SCENES.glob("*.json")},
+        self.assertEqual({str(file.relative_to(SCENES).with_suffix("")) for file in SCENES.rglob("*.json")},
                          {"cranium", "cranium-one-arm", "burr-hole", "liver", "liver-one-arm",
-                          "seed-cranium", "seed-liver"})
+                          "research/seed-cranium", "research/seed-liver"})
 
     def test_options_reach_the_run(self):
         run = lab("run", SCENES / "cranium.json", "--seconds", 0.5, "--rate", 2000, "--controller",

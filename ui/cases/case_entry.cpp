@@ -5,11 +5,17 @@
 #include <QDateTime>
 #include <QImageReader>
 #include <QLocale>
+#include <algorithm>
+#include <utility>
 
 #include "base/file.h"
 #include "base/system.h"
+#include "exchange/exercise_folder.h"
+#include "exercise/exercise.h"
+#include "library/case_folders.h"
 #include "ui/cases/import_words.h"
 #include "ui/common/words.h"
+#include "volume/volume_files.h"
 
 namespace trephine {
 
@@ -47,12 +53,55 @@ CaseEntry builtIn(const std::string& name) {
   return entry;
 }
 
+// Null where it is none of ours: another format, which a plugin would read, or a size that takes
+// seconds.
+QImage pictureIn(const std::filesystem::path& file) {
+  constexpr std::size_t kMostBytes = std::size_t{8} << 20;
+  constexpr int kMost_px = 2048;
+  const Result<std::string> bytes = readWholeFile(file, kMostBytes);
+  if (!bytes) return {};
+  QByteArray data = QByteArray::fromStdString(*bytes);
+  QBuffer buffer(&data);
+  QImageReader reader(&buffer, "png");
+  reader.setAutoDetectImageFormat(false);
+  const QSize size = reader.size();
+  if (size.isEmpty() || size.width() > kMost_px || size.height() > kMost_px) return {};
+  return reader.read();
+}
+
+// An exercise that has its case in its own folder; else nothing.
+std::optional<CaseEntry> broughtBy(const std::filesystem::path& file) {
+  const Result<Exercise> exercise = readExercise(file);
+  if (!exercise) return {};
+  const std::filesystem::path folder = file.parent_path(), source = exercise->case_source;
+  const auto parts = std::mismatch(folder.begin(), folder.end(), source.begin(), source.end());
+  if (source.empty() || parts.first != folder.end()) return {};
+  CaseEntry entry;
+  entry.id = "exercise:" + folder.filename().string();
+  entry.exercise = file;
+  entry.record.name = exercise->name;
+  entry.record.region = exercise->anatomy == exerciseAnatomy(BodyRegion::head) ? BodyRegion::head
+                        : exercise->anatomy == exerciseAnatomy(BodyRegion::abdomen)
+                            ? BodyRegion::abdomen
+                            : BodyRegion::not_sure;
+  const auto header = readVolumeFileHeader(source);
+  if (header) {
+    entry.record.grid = header->geometry;
+  } else {
+    entry.problem = header.error();
+  }
+  entry.picture = pictureIn(folder / case_folders::kPictureFile);
+  return entry;
+}
+
 }  // namespace
 
 QString cardWords(const CaseEntry& entry) {
   QStringList lines{shownName(entry.record.name.empty() ? entry.id : entry.record.name)};
   if (entry.problem) {
     lines << tr("Cannot be opened");
+  } else if (!entry.exercise.empty()) {
+    lines << tr("Exercise with its case");
   } else {
     if (entry.built_in) {
       lines << regionWords(entry.record.region);
@@ -70,6 +119,9 @@ QString detailWords(const CaseEntry& entry) {
   if (entry.problem) return toQt(entry.problem->sentence());
   const CaseRecord& record = entry.record;
   QStringList lines{regionWords(record.region) + '.', sizeWords(record.grid)};
+  if (!entry.exercise.empty()) {
+    lines.prepend(tr("An exercise of another workstation, with the case that it is made on."));
+  }
   const QDateTime imported = QDateTime::fromString(toQt(record.imported), Qt::ISODate);
   if (imported.isValid()) {
     lines << tr("Imported %1").arg(QLocale().toString(imported, QLocale::ShortFormat));
@@ -97,23 +149,7 @@ QString caseWords(const Case& of) {
   return about;
 }
 
-// Null where it is none of ours: another format, which a plugin would read, or a size that takes
-// seconds.
-QImage pictureIn(const std::filesystem::path& file) {
-  constexpr std::size_t kMostBytes = std::size_t{8} << 20;
-  constexpr int kMost_px = 2048;
-  const Result<std::string> bytes = readWholeFile(file, kMostBytes);
-  if (!bytes) return {};
-  QByteArray data = QByteArray::fromStdString(*bytes);
-  QBuffer buffer(&data);
-  QImageReader reader(&buffer, "png");
-  reader.setAutoDetectImageFormat(false);
-  const QSize size = reader.size();
-  if (size.isEmpty() || size.width() > kMost_px || size.height() > kMost_px) return {};
-  return reader.read();
-}
-
-std::vector<CaseEntry> listCases(const CaseLibrary& library) {
+std::vector<CaseEntry> listCases(const CaseLibrary& library, const std::filesystem::path& storage) {
   std::vector<CaseEntry> entries;
   for (const ListedCase& listed : library.list()) {
     CaseEntry entry;
@@ -122,6 +158,9 @@ std::vector<CaseEntry> listCases(const CaseLibrary& library) {
     entry.problem = listed.problem;
     entry.picture = pictureIn(listed.record.folder / case_folders::kPictureFile);
     entries.push_back(std::move(entry));
+  }
+  for (const std::filesystem::path& file : exercisesIn(storage)) {
+    if (std::optional<CaseEntry> entry = broughtBy(file)) entries.push_back(*std::move(entry));
   }
   for (const std::string& name : phantomNames()) entries.push_back(builtIn(name));
   return entries;

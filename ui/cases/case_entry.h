@@ -1,4 +1,5 @@
-// A case as the list of cases shows it: one of the library's, or a built-in one.
+// A case as the list of cases shows it: one of the library's, one that came with an exercise, or a
+// built-in one.
 #pragma once
 
 #include <QImage>
@@ -17,9 +18,11 @@ namespace trephine {
 struct CaseEntry {
   std::string id;  // the library's; of a built-in one its name, "cranium", "abdomen"
   bool built_in = false;
-  CaseRecord record;             // of the library; of a built-in one its name, grid and hash
+  std::filesystem::path exercise{};  // that brought the case along; empty: none did
+  CaseRecord record;                 // of the library; else name and grid, as far as they are known
   std::optional<Error> problem;  // why it cannot be opened
   QImage picture;                // null: there is none
+  bool isOfLibrary() const { return !built_in && exercise.empty(); }
   // ListedRecording::caseKey() of what was done on it; empty where nothing is known of it.
   std::string caseKey() const { return built_in ? phantomSource(id) : record.volume_sha256; }
 };
@@ -31,8 +34,9 @@ QString detailWords(const CaseEntry& entry);
 // What a case is and shows, in a few lines.
 QString caseWords(const Case& of);
 
-// All that there is to practise on: the library's, the newest first, then the built-in ones. Takes
-// some hundredths of a second a case. Any thread.
-std::vector<CaseEntry> listCases(const CaseLibrary& library);
+// All that there is to practise on: the library's, the newest first, then those of the exercises
+// below `storage` that brought theirs, then the built-in ones. Takes some hundredths of a second a
+// case. Any thread.
+std::vector<CaseEntry> listCases(const CaseLibrary& library, const std::filesystem::path& storage);
 
 }  // namespace trephine

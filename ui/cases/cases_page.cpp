@@ -176,10 +176,10 @@ bool CasesPage::eventFilter(QObject* watched, QEvent* event) {
   if (watched == cards_ && event->type() == QEvent::KeyPress) {
     switch (static_cast<QKeyEvent*>(event)->key()) {
       case Qt::Key_Delete:
-        if (delete_->isEnabled()) delete_->click();
+        if (!delete_->isHidden() && delete_->isEnabled()) delete_->click();
         return true;
       case Qt::Key_F2:
-        if (rename_->isEnabled()) rename_->click();
+        if (!rename_->isHidden() && rename_->isEnabled()) rename_->click();
         return true;
       default:
         break;
@@ -232,7 +232,9 @@ void CasesPage::showOpen(const std::string& id, const QString& about, bool saved
 }
 
 void CasesPage::setRecent(const std::string& id) {
+  const bool first = recent_.empty() && open_.empty();
   recent_ = id;
+  if (first && !id.empty()) select(id);  // what the heading offers
   showStrip();
 }
 
@@ -263,11 +265,13 @@ void CasesPage::showChosen() {
   const bool whole = !entry->problem;
   train_->setEnabled(whole && allowed_);
   prepare_->setEnabled(whole && allowed_);
-  rename_->setVisible(!entry->built_in);
+  rename_->setVisible(entry->isOfLibrary());
   rename_->setEnabled(whole);
-  report_->setVisible(!entry->built_in);
+  report_->setVisible(entry->isOfLibrary());
   report_->setEnabled(whole && entry->record.verdict);
-  delete_->setVisible(!entry->built_in);
+  delete_->setVisible(entry->isOfLibrary());
+  exercises_->setVisible(entry->exercise.empty());
+  done_->setVisible(entry->exercise.empty());
 }
 
 void CasesPage::showExercises(const CaseEntry& entry) {

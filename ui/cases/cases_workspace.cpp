@@ -8,6 +8,7 @@
 #include "base/codes.h"
 #include "base/file.h"
 #include "base/tr.h"
+#include "exchange/exercise_folder.h"
 #include "exercise/exercise.h"
 #include "library/codes.h"
 #include "library/stored_case.h"
@@ -56,7 +57,8 @@ CasesWorkspace::CasesWorkspace(AppContext& app)
                           tr("Open a DICOMDIR or a volume file (NIfTI, NRRD, MetaImage, raw)"));
   open_exercise_ =
       makeAction(window, Symbol::open, "openScene", tr("Open exercise\u2026"),
-                 QKeySequence(Qt::CTRL | Qt::SHIFT | Qt::Key_O), tr("Open an exercise's file"));
+                 QKeySequence(Qt::CTRL | Qt::SHIFT | Qt::Key_O),
+                 tr("Open an exercise: its file, or any file of one that was exported"));
   page_ = new CasesPage;
   import_ = new ImportPage(workstation_.import());
   pages_ = new QStackedWidget;
@@ -108,10 +110,11 @@ void CasesWorkspace::connectParts() {
   connect(import_, &ImportPage::fileWanted, this, &CasesWorkspace::askForFile);
   connect(import_, &ImportPage::pathDropped, this,
           [this](const QString& path) { open(toPath(path)); });
-  connect(import_, &ImportPage::reportWanted, this, [this] {
+  connect(import_, &ImportPage::reportWanted, this, [this](const QString& uid) {
     QFileDialog* dialog = messages_.saveDialog(tr("Save report"), "import-report.pdf",
                                                tr("PDF (*.pdf);;Web page (*.html *.htm)"));
-    connect(dialog, &QFileDialog::fileSelected, this, &CasesWorkspace::saveReport);
+    connect(dialog, &QFileDialog::fileSelected, this,
+            [this, uid](const QString& file) { saveReport(file, uid); });
     dialog->open();
   });
   connect(import_, &ImportPage::caseRead, this, &CasesWorkspace::caseRead);
@@ -123,7 +126,9 @@ void CasesWorkspace::connectParts() {
     open_deleted_ = false;
     page_->sayInStrip({});
     showCase();
-    if (import_to_save_) saveCase();
+    const bool imported =
+        import_to_save_ && import_to_save_->volume == workstation_.currentCase()->volume;
+    imported ? saveCase() : import_to_save_.reset();
     const std::string& id = workstation_.currentCase()->stored;
     if (id.empty()) return;
     QStringList recent = read(settings::kRecentCases);
@@ -166,21 +171,23 @@ void CasesWorkspace::askForExercise() {
 }
 
 void CasesWorkspace::open(const std::filesystem::path& path) {
-  const auto go_on = [this, path] {
-    app_.goOnceOpen(Workstation::isExercise(path) ? Place::train : Place::prepare);
-    workstation_.openPath(path);
-  };
-  if (!Workstation::isExercise(path)) return go_on();
-  guards_.unlessLost({UnsavedWork::structures, UnsavedWork::cuts, UnsavedWork::tissues}, go_on);
+  const std::filesystem::path exported = exportedExercise(path);
+  if (!exported.empty()) {
+    if (isOwnExercise(app_.storage(), exported))
+      return app_.openUnlessLost(exported, Place::train, true);
+    return app_.takeInExercise(exported.parent_path(), Place::train);
+  }
+  if (Workstation::isExercise(path)) return app_.openUnlessLost(path, Place::train, true);
+  app_.goOnceOpen(Place::prepare);
+  workstation_.openPath(path);
 }
 
 // --- The library ---
 
 void CasesWorkspace::list() {
   const bool begun = listing_.run(
-      [library = app_.library()](const Progress&) -> Result<std::vector<CaseEntry>> {
-        return listCases(*library);
-      },
+      [library = app_.library(), storage = app_.storage()](const Progress&)
+          -> Result<std::vector<CaseEntry>> { return listCases(*library, storage); },
       [this](Result<std::vector<CaseEntry>> entries) {
         if (!entries) return;
         page_->showCases(*entries);
@@ -211,17 +218,18 @@ void CasesWorkspace::listRecordings() {
 
 void CasesWorkspace::openEntry(const CaseEntry& entry, Place then) {
   const Case* open = workstation_.currentCase();
-  if (open && !entry.built_in && open->stored == entry.id) return app_.go(then);
+  if (open && entry.isOfLibrary() && open->stored == entry.id) return app_.go(then);
   const auto begin = [this, then](auto go_on) {
     return [this, then, go_on] {
       app_.goOnceOpen(then);
-      import_to_save_.reset();
       go_on();
     };
   };
-  std::vector<UnsavedWork> losses{UnsavedWork::structures, UnsavedWork::cuts};
+  if (!entry.exercise.empty()) return app_.openUnlessLost(entry.exercise, then, true);
+  std::vector<UnsavedWork> losses = WorkGuards::ofTheCase();
   const std::string anatomy = entry.built_in ? entry.id : exerciseAnatomy(entry.record.region);
-  if (anatomy.empty() || !workstation_.exerciseFits(anatomy))
+  // A place that was clicked is of the patient who goes.
+  if (anatomy.empty() || !workstation_.exerciseFits(anatomy) || workstation_.entry())
     losses.push_back(UnsavedWork::tissues);
   if (entry.built_in) {
     return guards_.unlessLost(losses, begin([this, name = entry.id] {
@@ -251,7 +259,7 @@ void CasesWorkspace::saveCase() {
   made.tissues = toJson(workstation_.tissues());
   const auto done = std::make_shared<SavedCase>();
   workstation_.save(
-      tr("The case is saved. You may remove the stick."),
+      tr("The case is saved."),
       [library = app_.library(), made, done](const Progress& progress) -> Status {
         Result<SavedCase> written = library->save(made, progress);
         if (!written) return written.error();
@@ -273,7 +281,8 @@ void CasesWorkspace::saved(const SavedCase& saved) {
         (QStringList{toQt(saved.record.id)} + read(settings::kRecentCases)).mid(0, kMostRecent));
   showCase();
   const QString words =
-      tr("Saved as \"%1\", without a word of who the patient is. You may remove the stick.")
+      tr("Saved as \"%1\", without a word of who the patient is. What it was imported from is not "
+         "needed any more.")
           .arg(name);
   page_->sayInStrip(words);
   page_->selectOnceThere(saved.record.id);
@@ -379,8 +388,11 @@ void CasesWorkspace::caseRead(Case read, const std::filesystem::path& labels) {
   NewCase to_save;
   to_save.report = workstation_.import().report();
   to_save.source = workstation_.import().identity();
+  to_save.volume = read.volume;
   read.identity = std::make_shared<const SourceIdentity>(to_save.source);
-  guards_.unlessLost({UnsavedWork::structures, UnsavedWork::cuts}, [this, read, labels, to_save] {
+  std::vector<UnsavedWork> losses = WorkGuards::ofTheCase();
+  if (workstation_.entry()) losses.push_back(UnsavedWork::tissues);
+  guards_.unlessLost(losses, [this, read, labels, to_save] {
     guards_.setCaseSource(workstation_.import().source());
     app_.goOnceOpen(Place::prepare);
     import_to_save_ = to_save;
@@ -388,10 +400,11 @@ void CasesWorkspace::caseRead(Case read, const std::filesystem::path& labels) {
   });
 }
 
-void CasesWorkspace::saveReport(const QString& file) {
+void CasesWorkspace::saveReport(const QString& file, const QString& uid) {
+  const auto only = uid.isEmpty() ? std::nullopt : std::optional(uid.toStdString());
   workstation_.save(tr("The report is saved."),
-                    [report = workstation_.import().report(),
-                     path = toPath(file)](const Progress&) { return writeReport(report, path); });
+                    [report = workstation_.import().report(), only, path = toPath(file)](
+                        const Progress&) { return writeReport(report, path, only); });
 }
 
 void CasesWorkspace::showCase() {
@@ -399,7 +412,8 @@ void CasesWorkspace::showCase() {
   if (!of) return;
   const bool phantom = of->built_in;
   const std::string id = phantom ? workstation_.exercise()->anatomy : of->stored;
-  page_->showOpen(id, caseWords(*of), phantom || open_deleted_ || !of->stored.empty());
+  const bool kept = !of->stored.empty() || isOfOwnExercise(app_.storage(), of->source);
+  page_->showOpen(id, caseWords(*of), phantom || open_deleted_ || kept);
 }
 
 void CasesWorkspace::showPhase() {

@@ -30,7 +30,7 @@ class CasesWorkspace : public Workspace {
   bool mayOpen() const { return open_->isEnabled(); }
   QList<QAction*> openActions() const { return {open_, open_file_, open_exercise_}; }
   // Of the folder that was scanned last: PDF or HTML.
-  void saveReport(const QString& file);
+  void saveReport(const QString& file, const QString& uid = {});
 
  signals:
   void caseSaved(const QString& name);  // what was imported, under this name
@@ -62,7 +62,8 @@ class CasesWorkspace : public Workspace {
   QStackedWidget* pages_;
   CasesPage* page_;
   ImportPage* import_;
-  std::optional<NewCase> import_to_save_;  // of what is being opened: what the importer knows of it
+  // What the importer knows of the volume that is being opened, until that is saved.
+  std::optional<NewCase> import_to_save_;
   bool open_deleted_ = false;  // the open case was; it is not offered to be saved
   bool list_again_ = false, read_again_ = false;
   BackgroundTask listing_, reading_, changing_;  // last: joined before what they use goes

@@ -121,7 +121,8 @@ void ImportPage::connectParts() {
   connect(bar_, &ImportBar::foundTaken, this, &ImportPage::takeFound);
   connect(bar_, &ImportBar::importWanted, this, &ImportPage::import);
   connect(bar_, &ImportBar::openCaseWanted, this, &ImportPage::answered);
-  connect(bar_, &ImportBar::reportWanted, this, &ImportPage::reportWanted);
+  connect(bar_, &ImportBar::reportWanted, this,
+          [this] { emit reportWanted(toQt(list_->selectedUid())); });
   connect(bar_, &ImportBar::backWanted, this, &ImportPage::back);
   connect(bar_, &ImportBar::closeWanted, this, &ImportPage::reject);
   connect(bar_, &ImportBar::cancelWanted, &task_, &ImportTask::cancel);
@@ -353,7 +354,7 @@ void ImportPage::showKept() {
   const bool grid_known = series && series->verdict != Verdict::refused;
   const bool as_stored = grid_known && isAsStored(*series, canvas.image());
   const bool choosing = step_ == Step::choosing;
-  canvas.setDrawable(choosing && as_stored);
+  preview_->setCroppable(choosing && as_stored);
   const std::optional<VoxelBox> crop = series_->size().crop();
   QString note;
   if (series && !grid_known) {
@@ -414,7 +415,7 @@ void ImportPage::ask(const SeriesReport& after, const std::vector<Choice>& quest
   showStep(Step::asking);
   bar_->setAnswered(late_->allAnswered());
   preview_->canvas().setKept({});
-  preview_->canvas().setDrawable(false);
+  preview_->setCroppable(false);
   preview_->showStack(after.geometry.size[2], after.geometry.direction);
   if (!late_->focusFirst()) bar_->focusOpenCase();
 }

@@ -37,7 +37,7 @@ class ImportPage : public QWidget {
   void folderWanted();
   void fileWanted();
   void pathDropped(const QString& path);
-  void reportWanted();
+  void reportWanted(const QString& uid);  // of the selected series; empty: there is none
   // `labels`: the file to take as its label map; empty for none.
   void caseRead(const trephine::Case& read, const std::filesystem::path& labels);
 

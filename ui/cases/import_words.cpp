@@ -40,22 +40,36 @@ struct SeverityWords {
 const SeverityWords kRefusedRepairs{
     Severity::repair, QT_TRANSLATE_NOOP("trephine", "What would be put right"),
     QT_TRANSLATE_NOOP("trephine", "Nothing was changed so far."), colours::kCaution};
+const SeverityWords kOfStructures{
+    Severity::refusal, QT_TRANSLATE_NOOP("trephine", "How it is used"),
+    QT_TRANSLATE_NOOP("trephine", "It is no volume by itself: choose it beside its CT."),
+    colours::kQuiet};
 const SeverityWords kSeverities[] = {
     {Severity::refusal, QT_TRANSLATE_NOOP("trephine", "Why it cannot be used as it is"),
      QT_TRANSLATE_NOOP("trephine", "A volume made of it as it is could be wrong."), colours::kBad},
     {Severity::repair, QT_TRANSLATE_NOOP("trephine", "What is put right"),
      QT_TRANSLATE_NOOP("trephine", "Here the volume differs from the files, in this way only."),
      colours::kCaution},
+    {Severity::edit, QT_TRANSLATE_NOOP("trephine", "What was changed as you asked"),
+     QT_TRANSLATE_NOOP("trephine",
+                       "Here the volume differs from the files, because you wanted it."),
+     colours::kQuiet},
     {Severity::notice, QT_TRANSLATE_NOOP("trephine", "Good to know"),
      QT_TRANSLATE_NOOP("trephine", "This takes nothing from the volume."), colours::kQuiet},
 };
+
+// Slices by their numbers, or where along the stack they lie.
+QString placesWords(const std::vector<std::string>& slices) {
+  return slices.front().ends_with(" mm") ? tr("Where along the stack: %1.").arg(slicesWords(slices))
+                                         : tr("Slices: %1.").arg(slicesWords(slices));
+}
 
 QString findingHtml(const Finding& finding) {
   QString html = "<p style='margin-top:3px; margin-bottom:7px; line-height:115%;'>" +
                  sentence(toQt(finding.text)).toHtmlEscaped();
   if (!finding.slices.empty()) {
     html += QString(" <span style='color:%1'>").arg(colours::kQuiet.name()) +
-            tr("Slices: %1.").arg(slicesWords(finding.slices)).toHtmlEscaped() + "</span>";
+            placesWords(finding.slices).toHtmlEscaped() + "</span>";
   }
   if (!finding.action.empty()) {
     html += "<br>\u2192 " + sentence(toQt(finding.action)).toHtmlEscaped();
@@ -109,6 +123,8 @@ QString stateWord(SeriesState state) {
       return tr("As answered");
     case SeriesState::asks:
       return tr("Has a question");
+    case SeriesState::structures:
+      return tr("Structures");
     case SeriesState::refused:
       return verdictWord(Verdict::refused);
   }
@@ -124,6 +140,8 @@ QColor stateColour(SeriesState state) {
       return colours::kCaution;
     case SeriesState::asks:
       return colours::kAccent;
+    case SeriesState::structures:
+      return colours::kText;
     case SeriesState::refused:
       return colours::kBad;
   }
@@ -143,6 +161,8 @@ QString verdictSentence(const SeriesReport& series, const Answers& answers) {
       return tr("Can be used as you answered.");
     case SeriesState::asks:
       return tr("Can be used once you have answered.");
+    case SeriesState::structures:
+      return tr("Structures of a CT: they come with it, or are opened later.");
     case SeriesState::refused:
       break;
   }
@@ -210,7 +230,9 @@ QString reportHtml(const SeriesReport& series) {
   for (const SeverityWords& severity : kSeverities) {
     if (countOf(series, severity.severity) == 0) continue;
     const bool undone = series.verdict == Verdict::refused && severity.severity == Severity::repair;
-    const SeverityWords& words = undone ? kRefusedRepairs : severity;
+    const bool structures = seriesState(series, {}) == SeriesState::structures &&
+                            severity.severity == Severity::refusal;
+    const SeverityWords& words = undone ? kRefusedRepairs : structures ? kOfStructures : severity;
     html += QString(
                 "<p style='margin-top:12px; margin-bottom:0px; line-height:115%;'>"
                 "<b style='color:%1'>%2</b><br><span style='color:%3'>%4</span></p>")

@@ -52,7 +52,7 @@ void ReportCard::showSeries(const SeriesReport& series, const Answers& answers, 
   sentence_->setText(verdictSentence(series, answers));
   report_->setText(reportHtml(series));
   memory_->setText(memoryWords(needed_mb, free_mb));
-  memory_->setVisible(!memory_->text().isEmpty() && state != SeriesState::refused);
+  memory_->setVisible(!memory_->text().isEmpty() && mayBeRead(state));
   const bool short_of = needed_mb >= free_mb;
   QPalette palette = this->palette();
   palette.setColor(QPalette::WindowText, short_of ? colours::kCaution : colours::kText);

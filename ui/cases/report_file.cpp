@@ -7,8 +7,9 @@
 
 namespace trephine {
 
-Status writeReport(const ImportReport& report, const std::filesystem::path& file) {
-  const std::string html = reportPage(report);
+Status writeReport(const ImportReport& report, const std::filesystem::path& file,
+                   const std::optional<std::string>& only) {
+  const std::string html = reportPage(report, only);
   if (toQt(file).endsWith(".pdf", Qt::CaseInsensitive)) {
     const QByteArray bytes = pdfOf(QString::fromStdString(html));
     return writeTextFile(file, std::string_view(bytes.constData(), std::size_t(bytes.size())));

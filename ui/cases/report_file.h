@@ -9,7 +9,9 @@
 namespace trephine {
 
 // HTML, or for a name ending in .pdf an A4 page of the same text; it is printed smaller, down to
-// 60 %, before it takes a second page. Any thread, with a QGuiApplication. Errors: CANNOT_WRITE.
-Status writeReport(const ImportReport& report, const std::filesystem::path& file);
+// 60 %, before it takes a second page. `only`: as of reportPage(). Any thread, with a
+// QGuiApplication. Errors: CANNOT_WRITE.
+Status writeReport(const ImportReport& report, const std::filesystem::path& file,
+                   const std::optional<std::string>& only = {});
 
 }  // namespace trephine

@@ -1,6 +1,8 @@
 #include "ui/cases/series_page.h"
 
 #include <QVBoxLayout>
+#include <algorithm>
+#include <utility>
 
 #include "ui/cases/import_words.h"
 #include "ui/common/making.h"
@@ -33,6 +35,7 @@ SeriesPage::SeriesPage(QWidget* parent) : QWidget(parent) {
   labels_->setObjectName("labelFile");
   labels_->setAccessibleName(tr("Label map that is opened with the CT"));
   labels_->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon);
+  connect(labels_, &QComboBox::activated, this, [this](int row) { chosen_[shown_] = row; });
   labels_box_ = titled(tr("Label map beside this CT"), {labels_});
   auto* layout = tight(new QVBoxLayout(this), 10, {8, 0, 8, 0});
   layout->addWidget(card_);
@@ -43,10 +46,12 @@ SeriesPage::SeriesPage(QWidget* parent) : QWidget(parent) {
 
 void SeriesPage::show(const SeriesReport* series, const SeriesReport* before,
                       const Answers& answers) {
-  const bool may = series && seriesState(*series, answers) != SeriesState::refused;
+  const SeriesState state = series ? seriesState(*series, answers) : SeriesState::refused;
+  const bool may = state != SeriesState::refused && state != SeriesState::structures;
   card_->setVisible(series);
   labels_box_->setVisible(may && series->source == "DICOM" && series->modality == "CT" &&
                           labels_->count() > 1);
+  if (series) offerLabelsOf(series->uid);
   size_box_->setVisible(may);
   if (!series) return choices_->ask({}, {});
   size_->setGrid(before->verdict != Verdict::refused ? before->geometry : GridGeometry{});
@@ -55,8 +60,23 @@ void SeriesPage::show(const SeriesReport* series, const SeriesReport* before,
 
 void SeriesPage::showLabelFiles(const std::vector<CtFolder::LabelFile>& files) {
   labels_->clear();
+  shown_.clear();
+  chosen_.clear();
   labels_->addItem(tr("None"));
+  files_ = files;
   for (const CtFolder::LabelFile& one : files) labels_->addItem(toQt(one.name), toQt(one.file));
+}
+
+// That a segmentation is of this CT alone, its study and place say; else a person says it.
+void SeriesPage::offerLabelsOf(const std::string& uid) {
+  if (std::exchange(shown_, uid) == uid) return;
+  if (const auto chosen = chosen_.find(uid); chosen != chosen_.end()) {
+    return labels_->setCurrentIndex(chosen->second);
+  }
+  const auto of_it = [&](const CtFolder::LabelFile& one) { return one.of == uid; };
+  const auto found = std::ranges::find_if(files_, of_it);
+  const bool one = std::ranges::count_if(files_, of_it) == 1;
+  labels_->setCurrentIndex(one ? 1 + int(found - files_.begin()) : 0);
 }
 
 std::filesystem::path SeriesPage::labelFile() const {

@@ -6,6 +6,8 @@
 #include <QLabel>
 #include <QWidget>
 #include <filesystem>
+#include <map>
+#include <string>
 #include <vector>
 
 #include "imaging/importer.h"
@@ -38,10 +40,15 @@ class SeriesPage : public QWidget {
   const SizePanel& size() const { return *size_; }
 
  private:
+  void offerLabelsOf(const std::string& uid);
+
   ReportCard* card_;
   ChoicePanel* choices_;
   SizePanel* size_;
   QWidget *size_box_, *labels_box_;
+  std::vector<CtFolder::LabelFile> files_;
+  std::string shown_;                  // uid of the series
+  std::map<std::string, int> chosen_;  // rows, by a person, by the series's uid
   QComboBox* labels_;
   QLabel* size_note_;
 };

@@ -61,6 +61,13 @@ void paintStateMark(QPainter& painter, const QRectF& box, SeriesState state) {
       painter.drawPoint(QPointF(12, 17.6));
       break;
     }
+    case SeriesState::structures:  // a shape over another
+      painter.setBrush(Qt::NoBrush);
+      painter.setPen(QPen(colour, 2.0));
+      painter.drawRect(QRectF(2.5, 2.5, 13, 13));
+      painter.setBrush(colours::kPanel);
+      painter.drawEllipse(QRectF(9, 9, 12.5, 12.5));
+      break;
     case SeriesState::refused:
       painter.drawPolygon(octagon());
       painter.setPen(sign);

@@ -5,6 +5,7 @@
 #include <QCoreApplication>
 #include <QEvent>
 #include <QHBoxLayout>
+#include <QKeyEvent>
 #include <QLineEdit>
 #include <QListWidget>
 #include <QPlainTextEdit>
@@ -31,6 +32,10 @@ QString capital(QString words) {
 
 std::vector<std::string> textsOf(const FieldValue& value) {
   return std::get<std::vector<std::string>>(value);
+}
+
+bool isTyped(const FieldShape& field) {
+  return field.kind == FieldKind::text || field.kind == FieldKind::lines;
 }
 
 void setRows(QWidget& box, int rows) {
@@ -170,11 +175,56 @@ struct FieldEditor::Line : Part {
   QLineEdit* edit;
 };
 
+// A text that is read over several lines and has none of its own: Return leaves the field.
+struct FieldEditor::Paragraph : Part, QObject {
+  Paragraph(FieldEditor& of, const QString& name, QVBoxLayout& column) : Part(of, name) {
+    edit = made(new QPlainTextEdit(&of));
+    edit->setTabChangesFocus(true);
+    edit->setMinimumWidth(34);  // of a narrow column
+    edit->setFixedHeight(of.field_.row.lines * edit->fontMetrics().lineSpacing() + 12);
+    edit->installEventFilter(this);
+    column.addWidget(edit);
+  }
+  bool eventFilter(QObject* watched, QEvent* event) override {
+    if (event->type() == QEvent::FocusOut) takeTyped();
+    if (event->type() == QEvent::KeyPress) {
+      const int key = static_cast<QKeyEvent*>(event)->key();
+      if (key == Qt::Key_Return || key == Qt::Key_Enter) {
+        takeTyped();
+        QCoreApplication::sendEvent(&of, event);  // as a line edit hands it on
+        return true;
+      }
+    }
+    return QObject::eventFilter(watched, event);
+  }
+  void take() {
+    QString line = edit->toPlainText();  // what was pasted may have several
+    const std::string typed = cleanUtf8(line.replace('\n', ' ').trimmed().toStdString());
+    edit->document()->setModified(false);
+    const bool needed = of.field_.row.range.low >= 1.0;
+    if (typed == std::get<std::string>(of.value_) || (typed.empty() && needed)) {
+      return show(of.value_);
+    }
+    of.want(typed);
+  }
+  void takeTyped() override {
+    if (edit->document()->isModified()) take();
+  }
+  void forgetTyped() override { edit->document()->setModified(false); }
+  void show(const FieldValue& value) override {
+    if (edit->hasFocus() && edit->document()->isModified()) return;
+    const QString text = toQt(std::get<std::string>(value));
+    if (edit->toPlainText() != text) edit->setPlainText(text);
+  }
+  QPlainTextEdit* edit;
+};
+
 // A list of texts, one a line.
 struct FieldEditor::Lines : Part, QObject {
   Lines(FieldEditor& of, const QString& name, QVBoxLayout& column) : Part(of, name) {
     edit = made(new QPlainTextEdit(&of));
     edit->setTabChangesFocus(true);
+    edit->setMinimumWidth(34);  // of a narrow column
     edit->setFixedHeight(6 * edit->fontMetrics().height());
     edit->installEventFilter(this);
     column.addWidget(edit);
@@ -367,7 +417,11 @@ FieldEditor::FieldEditor(const FieldShape& field, const QString& name, QWidget* 
       break;
     case FieldKind::text:
       value_ = std::string();
-      part_ = std::make_unique<Line>(*this, name, *column);
+      if (field.row.lines > 1) {
+        part_ = std::make_unique<Paragraph>(*this, name, *column);
+      } else {
+        part_ = std::make_unique<Line>(*this, name, *column);
+      }
       break;
     case FieldKind::lines:
       value_ = std::vector<std::string>();
@@ -395,19 +449,30 @@ FieldEditor::FieldEditor(const FieldShape& field, const QString& name, QWidget* 
                        : number        ? shortMeaningOf(field.row)
                                        : QString();
   if (!help.isEmpty()) column->addWidget(settingHint(help, this));
+  if (!isTyped(field)) return;
+  not_applied_ = problemLabel(qPrintable(name + "NotApplied"), this);
+  not_applied_->setText(
+      QCoreApplication::translate("Setting", "Not applied: shorten or change it."));
+  column->addWidget(not_applied_);
 }
 
 FieldEditor::~FieldEditor() = default;
 
 void FieldEditor::want(const FieldValue& value) {
   if (showing_ || !entered) return;
+  const FieldValue before = value_;
   entered(value);
-  const bool typed = field_.kind == FieldKind::text || field_.kind == FieldKind::lines;
-  if (!typed) show(FieldValue(value_));  // what was refused; a text stays to be mended
+  if (!isTyped(field_)) return show(FieldValue(value_));  // what was refused
+  setRefused(value_ == before);
+}
+
+void FieldEditor::setRefused(bool refused) {
+  refused_ = refused;
+  if (not_applied_) not_applied_->setVisible(refused);
 }
 
 bool FieldEditor::isRefused() const {
-  return part_->isRefused();
+  return refused_ || part_->isRefused();
 }
 
 void FieldEditor::takeTyped() {
@@ -416,6 +481,8 @@ void FieldEditor::takeTyped() {
 
 void FieldEditor::show(const FieldValue& value, bool same_owner) {
   if (!same_owner) part_->forgetTyped();
+  if (same_owner && refused_ && value == value_) return;
+  setRefused(false);
   const bool before = std::exchange(showing_, true);
   value_ = value;
   part_->show(value);

@@ -26,10 +26,11 @@ class FieldEditor : public QWidget {
   // A person wants this value.
   std::function<void(const FieldValue& wanted)> entered;
 
-  // A text of one line that is being typed stays, unless `same_owner` is false; lines that have the
-  // focus stay in any case; a number that is being typed or refused goes.
+  // A text of one line that is being typed stays, and a text that was not taken while the value is
+  // as it was, unless `same_owner` is false; lines that have the focus stay in any case; a number
+  // that is being typed or refused goes.
   void show(const FieldValue& value, bool same_owner = true);
-  // A number was typed that is out of its range, which it says.
+  // A number was typed that is out of its range, or a text that was not taken; it says so.
   bool isRefused() const;
   // A text of one line that is being typed counts as entered. Numbers and lines do so when the
   // focus leaves them: WorkGuards::takeTyped().
@@ -54,17 +55,21 @@ class FieldEditor : public QWidget {
   struct Flag;
   struct Line;
   struct Lines;
+  struct Paragraph;
   struct Reference;
   struct References;
   struct Choice;
   struct Choices;
 
   void want(const FieldValue& value);
+  void setRefused(bool refused);
 
   FieldShape field_;
   FieldValue value_;
   std::unique_ptr<Part> part_;
   bool showing_ = false;
+  bool refused_ = false;  // a text, which stays to be mended
+  QLabel* not_applied_ = nullptr;
 };
 
 }  // namespace trephine

@@ -32,6 +32,7 @@ struct Preferences {
   MainHand main_hand = MainHand::right;  // that the mouse takes first
   double push_step_N = 0.2;   // a notch of the wheel
   double key_step_mm = 1.0;   // an arrow key
+  bool research = false;      // exercises for comparison with others' work are listed
   // Where the patient stands before the eyes in a headset, and how large.
   double headset_ahead_m = 0.4, headset_below_m = 0.2, headset_scale = 1.0;
   bool headset_mirror = false;  // the window shows the left eye
@@ -63,6 +64,8 @@ inline constexpr FieldOf<Preferences> kWorkFields[] = {
      &Preferences::push_step_N},
     {preferenceRow("keys/step_mm", {0.1, 5, "mm"}, trLater("An &arrow key moves by"), 0.5, 1),
      &Preferences::key_step_mm},
+    {preferenceRow("exercises/research", {}, trLater("List exercises for &research")),
+     &Preferences::research},
 };
 inline constexpr FieldOf<Preferences> kHeadsetFields[] = {
     {preferenceRow("headset/ahead_m", {0.2, 2, "m"},

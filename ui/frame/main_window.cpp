@@ -8,6 +8,7 @@
 #include <QTabWidget>
 #include <QTimer>
 #include <algorithm>
+#include <memory>
 #include <utility>
 
 #include "ui/commission/fitness_line.h"
@@ -92,7 +93,7 @@ void MainWindow::buildActions() {
   volume_ = makeAction(*this, Symbol::save, "saveVolume", tr("Save volume\u2026"),
                        QKeySequence::Save, tr("Save the volume as it is now, with what was cut"));
   look_ = makeAction(*this, Symbol::view, "resetView", tr("Reset view"), Qt::Key_Home,
-                     tr("Look at the case as at the start"));
+                     tr("All of the patient"));
   left_panel_ = makeAction(*this, Symbol::view, "leftPanel", tr("Left panel"), Qt::CTRL | Qt::Key_B,
                            tr("Show or hide the left panel"));
   right_panel_ = makeAction(*this, Symbol::view, "rightPanel", tr("Right panel"),
@@ -189,9 +190,9 @@ void MainWindow::connectParts() {
     show(Place::review);
     review_->replayNewest();
   });
-  connect(look_, &QAction::triggered, &app_.caseViews(), &CaseViews::lookAtCase);
+  connect(look_, &QAction::triggered, &app_.caseViews(), &CaseViews::lookAtAll);
   connect(picture_, &QAction::triggered, &app_.caseViews(), &CaseViews::askToSavePicture);
-  connect(volume_, &QAction::triggered, this, [this] { app_.caseViews().askToSaveVolume({}); });
+  connect(volume_, &QAction::triggered, &app_.caseViews(), &CaseViews::wantVolume);
   for (QAction* panel : {left_panel_, right_panel_}) {
     connect(panel, &QAction::toggled, this, &MainWindow::showPanels);
   }
@@ -353,10 +354,8 @@ void MainWindow::restore() {
   if (!geometry.isEmpty()) (void)restoreGeometry(geometry);
   left_panel_->setChecked(read(settings::kLeftPanel));
   right_panel_->setChecked(read(settings::kRightPanel));
-  const QString name = read(settings::kWorkspace);
-  for (const Room& one : rooms_) {
-    if (name == QLatin1String(one.name)) place_ = one.place;
-  }
+  // Without a case there is nothing to be done in Prepare and Train.
+  if (read(settings::kWorkspace) == QLatin1String("review")) place_ = Place::review;
 }
 
 void MainWindow::keep() {
@@ -385,25 +384,38 @@ void MainWindow::closeEvent(QCloseEvent* event) {
     close_when_saved_ = true;
     return app_.messages().say(tr("A file is being saved; the window closes when it is written."));
   }
-  app_.guards().takeTyped();
-  const bool running = phase != Phase::empty && phase != Phase::ready;
-  const bool unsaved = app_.caseViews().cutsUnsaved() || workstation().tissuesEdited() ||
-                       workstation().exerciseEdited() || prepare_->structuresEdited();
-  if (may_close_ || !(running || unsaved)) {
+  if (may_close_) {
     keep();
     return QMainWindow::closeEvent(event);
   }
   event->ignore();
-  const auto for_good = [this] {
-    app_.guards().unlessLost({UnsavedWork::structures, UnsavedWork::tissues}, [this] {
-      may_close_ = true;
-      close();
-    });
+  // Where nothing is to be asked it closes within this call.
+  const auto within = std::make_shared<bool>(true);
+  const auto for_good = [this, within] {
+    may_close_ = true;
+    if (!*within) close();
   };
-  if (!running) return app_.guards().unlessLost({UnsavedWork::cuts}, for_good);
-  ask(this, "closeQuestion", tr("An exercise is running."),
-      tr("Closing ends it. Its recording is kept; what was cut is not saved as a volume."),
-      tr("&End it and close"), for_good);
+  const bool running = phase != Phase::empty && phase != Phase::ready;
+  if (running) {
+    QMessageBox* question =
+        ask(this, "closeQuestion", tr("An exercise is running."),
+            tr("Closing ends it. Its recording is kept; what was cut is not saved as a volume."),
+            tr("&End it and close"), [this, for_good] {
+              app_.guards().unlessLost(
+                  {UnsavedWork::structures, UnsavedWork::measures, UnsavedWork::tissues}, for_good);
+            });
+    orElse(*question, "saveVolumeFirst", tr("&Save volume\u2026"),
+           [this] { app_.caseViews().wantVolume(); });
+  } else {
+    std::vector<UnsavedWork> losses = WorkGuards::ofTheCase();
+    losses.push_back(UnsavedWork::tissues);
+    app_.guards().unlessLost(losses, for_good);
+  }
+  *within = false;
+  if (!may_close_) return;
+  keep();
+  event->accept();
+  QMainWindow::closeEvent(event);
 }
 
 // --- Saying ---

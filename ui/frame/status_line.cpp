@@ -133,8 +133,11 @@ void StatusLine::showLocks() {
   const bool unlocked = app_.workstation().isUnlocked();
   locked_->setVisible(unlocked || app_.workstation().anyLocked());
   locked_->setText(unlocked ? tr("Unlocked") : tr("Locked"));
+  const Policy& policy = app_.workstation().policy();
   locked_->setToolTip(unlocked ? tr("Until it is locked again (menu File), or Trephine is closed")
-                               : unlockWords(app_.workstation().policy()));
+                      : policy.locks.empty() ? tr("This exercise keeps what it was saved with. It "
+                                                  "is changed in Prepare.")
+                                             : unlockWords(policy));
 }
 
 }  // namespace trephine

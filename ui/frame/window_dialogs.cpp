@@ -136,6 +136,7 @@ void WindowDialogs::offerLeftBehind(const LeftBehind& left,
 void WindowDialogs::showSettings() {
   auto* dialog =
       new SettingsDialog(toQt(app_.storage()), !workstation_.policy().storage.empty(), &window_);
+  connect(dialog, &SettingsDialog::changed, &app_, &AppContext::tellExercises);
   helpByF1(dialog, "settings");
   dialog->open();
 }

@@ -78,11 +78,20 @@ void EntryTool::place(const Vec3& at_mm, const Vec3& from_mm) {
     outward = out ? *out : before ? before->rotation * Vec3(0.0, 0.0, 1.0) : Vec3(0.0, -1.0, 0.0);
   }
   const Landmark entry = placedAt(*landmark, at_mm, glm::normalize(outward));
-  guards_.unlessLost({UnsavedWork::cuts}, [this, entry] {
+  const double deep_mm =
+      depthInTissue_mm(*of->volume, workstation_.placedTissues(),
+                       workstation_.placed()->labels.get(), at_mm, entry.outward);
+  constexpr double kSurface_mm = 6.0;  // a click is that exact
+  const QString done = deep_mm <= kSurface_mm
+                           ? tr("The exercise enters here now. Del: back to its own place.")
+                           : tr("The exercise enters here now, %1 mm inside of tissue. A tool that "
+                                "begins in tissue has "
+                                "no force: click nearer to the surface.")
+                                 .arg(deep_mm, 0, 'f', 0);
+  guards_.unlessLost({UnsavedWork::cuts}, [this, entry, done] {
     asked_ = workstation_.placeEntry(entry);
     if (asked_ && once_) toolbox_.putDown();
-    messages_.say(asked_ ? tr("The exercise enters here now. Del: back to its own place.")
-                         : tr("Busy: try again in a moment."));
+    messages_.say(asked_ ? done : tr("Busy: try again in a moment."));
   });
 }
 

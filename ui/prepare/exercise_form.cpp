@@ -288,6 +288,8 @@ std::unique_ptr<FieldRows<CardText>> ExerciseForm::cardFields(const QString& pre
                                                               CardText* (*text)(ExerciseCard&)) {
   auto made = card_->addFields<CardText>(kCardFields, prefix);
   made->entered = [this, text](const CardText& wanted_text, const char*) {
+    const bool chinese = exercise_.card && text(*exercise_.card) != &exercise_.card->en;
+    if (chinese) chinese_of_ = exercise_.card->en;
     card_->edit("card", [&](Exercise& exercise) {
       CardText* of = exercise.card ? text(*exercise.card) : nullptr;
       if (of) *of = wanted_text;
@@ -316,9 +318,20 @@ void ExerciseForm::buildCard() {
         chinese.reset();
         if (on) chinese = kept_chinese_ ? *kept_chinese_ : exercise.card->en;
       });
+  chinese_old_ = problemLabel("chineseOld", card_->fields());
+  chinese_old_->setText(tr("The English text was changed after this one: change it, too."));
+  card_->form().addRow(chinese_old_);
   zh_ = cardFields("cardChinese:", [](ExerciseCard& card) {
     return card.zh_TW ? &*card.zh_TW : nullptr;
   });
+}
+
+void ExerciseForm::forgetCard() {
+  chinese_of_.reset();
+  const ExerciseCard card = exercise_.card.value_or(ExerciseCard{});
+  en_->show(card.en, false);
+  zh_->show(card.zh_TW.value_or(CardText{}), false);
+  showCard();
 }
 
 void ExerciseForm::showCard() {
@@ -329,6 +342,9 @@ void ExerciseForm::showCard() {
   chinese_on_->setChecked(chinese);
   en_->show(card ? card->en : CardText{});
   zh_->show(chinese ? *chinese : CardText{});
+  if (!chinese) chinese_of_.reset();
+  if (chinese && !chinese_of_) chinese_of_ = card->en;
+  chinese_old_->setVisible(chinese && *chinese_of_ != card->en);
   en_->setVisible(card);
   zh_->setVisible(chinese);
 }

@@ -34,7 +34,11 @@ class ExerciseForm : public QWidget {
   void setElsewherePossible(bool possible) {
     for (QWidget* of : {choose_elsewhere_, no_elsewhere_}) of->setEnabled(possible);
   }
-  // What it is called where it is saved, and whether it is as it was saved.
+  // Another exercise comes: its Chinese text is of its English one, and nothing of it is refused.
+  void forgetCard();
+  // A text of it stands there and was not taken.
+  bool anyRefused() const { return en_->anyRefused() || zh_->anyRefused(); }
+  // Whether it is one of this workstation's own, and as it was saved.
   void showSaved(const QString& words);
   // Clicks on the surface add points.
   void showDrawing(bool drawing) { outline_->showDrawing(drawing); }
@@ -102,6 +106,8 @@ class ExerciseForm : public QWidget {
   QToolButton *choose_elsewhere_, *no_elsewhere_;
   QCheckBox *card_on_, *chinese_on_;
   std::optional<CardText> kept_chinese_;  // that was taken out
+  std::optional<CardText> chinese_of_;    // the English text that the Chinese one was made of
+  QLabel* chinese_old_;
   OutlineForm* outline_;
 };
 

@@ -2,10 +2,12 @@
 
 #include <QFileDialog>
 #include <QMessageBox>
+#include <algorithm>
 #include <set>
 
 #include "base/file.h"
 #include "base/json.h"
+#include "base/system.h"
 #include "base/tr.h"
 #include "exchange/exercise_folder.h"
 #include "library/case_folders.h"
@@ -17,31 +19,6 @@
 #include "volume/phantom.h"
 
 namespace trephine {
-
-namespace {
-
-std::string list(const std::vector<std::string>& files) {
-  std::string words;
-  for (const std::string& file : files) words += (words.empty() ? "" : ", ") + file;
-  return words;
-}
-
-// Why nothing was imported, part by part.
-Error notVerified(const ExerciseCheck& check) {
-  const std::string missing = list(check.missing), changed = list(check.changed);
-  const std::string what =
-      missing.empty() && changed.empty() ? trephine::tr("The exercise is not as it was exported")
-      : changed.empty()
-          ? trephine::tr("The exercise is not as it was exported; missing: {}", missing)
-      : missing.empty()
-          ? trephine::tr("The exercise is not as it was exported; changed: {}", changed)
-          : trephine::tr("The exercise is not as it was exported; missing: {}; changed: {}",
-                         missing, changed);
-  return {code::kNotVerified, what, trephine::tr("the folder"),
-          trephine::tr("Export it anew, or copy the whole folder again")};
-}
-
-}  // namespace
 
 ExerciseTab::ExerciseTab(Workstation& workstation, Messages& messages, WorkGuards& guards,
                          Toolbox& toolbox, const std::filesystem::path& storage, ExerciseForm& form,
@@ -93,7 +70,10 @@ ExerciseTab::ExerciseTab(Workstation& workstation, Messages& messages, WorkGuard
   connect(&toolbox_, &Toolbox::taken, this,
           [this](ViewTool* tool) { form_->showDrawing(tool == &outline_); });
   connect(&workstation_, &Workstation::exerciseOpening, this,
-          [this](const Exercise&, const std::filesystem::path& file) { opened_ = onDisk(file); });
+          [this](const Exercise&, const std::filesystem::path& file) {
+            opened_ = onDisk(file);
+            form_->forgetCard();
+          });
   connect(&workstation_, &Workstation::caseOpened, this, &ExerciseTab::refresh);
   connect(&workstation_, &Workstation::caseNamed, this, &ExerciseTab::refresh);
   connect(&workstation_, &Workstation::structuresChanged, this, &ExerciseTab::refresh);
@@ -120,13 +100,17 @@ void ExerciseTab::refresh() {
                        : QString());
   form_->setElsewherePossible(!workstation_.isElsewhere());
   const std::optional<Placement>& placed = workstation_.placed();
+  if (std::exchange(shown_, workstation_.exerciseFile()) != shown_) form_->forgetCard();
   form_->setExercise(*workstation_.exercise(),
                      placed ? placed->landmarks : std::vector<PlacedLandmark>());
   form_->showCase(caseWords());
-  const bool edited = workstation_.exerciseEdited() || workstation_.tissuesEdited();
-  form_->showSaved(isOwn() ? edited ? tr("Changed since it was saved.")
-                                    : tr("Saved on this workstation.")
-                           : tr("It came from elsewhere: saving makes one of your own of it."));
+  const bool edited = workstation_.exerciseEdited() || workstation_.tissuesUnlikeExercise();
+  const QString from =
+      isShipped() ? tr("It comes with Trephine: saving makes a copy of yours, and it stays.")
+                  : tr("It is none of this workstation's exercises: saving makes a copy of yours.");
+  form_->showSaved(!isOwn() ? from
+                   : edited ? tr("Changed since it was saved.")
+                            : tr("Saved on this workstation."));
 }
 
 QString ExerciseTab::caseWords() const {
@@ -150,9 +134,27 @@ void ExerciseTab::draw(bool on) {
 
 // --- Saving, trying ---
 
+bool ExerciseTab::isShipped() const {
+  std::error_code ec;
+  const auto path = [&](const std::filesystem::path& of) {
+    return std::filesystem::weakly_canonical(of, ec);
+  };
+  const std::filesystem::path file = path(workstation_.exerciseFile()),
+                              shipped = path(resourceFolder() / "scenes");
+  return std::mismatch(shipped.begin(), shipped.end(), file.begin(), file.end()).first ==
+         shipped.end();
+}
+
+bool ExerciseTab::anyRefused() const {
+  return form_->anyRefused();
+}
+
+void ExerciseTab::forgetRefused() {
+  form_->forgetCard();
+}
+
 bool ExerciseTab::isOwn() const {
-  const std::filesystem::path& file = workstation_.exerciseFile();
-  return file.parent_path().parent_path() == storage_ / "exercises";
+  return isOwnExercise(storage_, workstation_.exerciseFile());
 }
 
 // With the case that is open, as it lies in the library.
@@ -165,6 +167,11 @@ std::optional<Exercise> ExerciseTab::exerciseToSave() {
   exercise.tissues = made.tissues;
   exercise.tissues_elsewhere = made.tissues_elsewhere;
   if (of.built_in) return exercise;
+  if (of.stored.empty() && isOfOwnExercise(storage_, of.source)) {  // it came with its case
+    exercise.case_source = of.source;
+    exercise.labels_file = made.labels_file;
+    return exercise;
+  }
   if (of.stored.empty()) {
     messages_.report(
         {code::kCaseNotSaved, trephine::tr("The case of the exercise is not in the library"), "",
@@ -281,7 +288,8 @@ void ExerciseTab::exportIt() {
 }
 
 void ExerciseTab::exportSaved() {
-  const bool saved = isOwn() && !workstation_.exerciseEdited() && !workstation_.tissuesEdited();
+  const bool saved =
+      isOwn() && !workstation_.exerciseEdited() && !workstation_.tissuesUnlikeExercise();
   if (!saved) return save(false, [this] { exportSaved(); });
   messages_.askForNewFolder(
       "exportExerciseDialog", tr("Export the exercise as a new folder"),
@@ -301,23 +309,8 @@ void ExerciseTab::importIt() {
       messages_.fileDialog("importExerciseDialog", tr("Import an exercise: its folder"));
   dialog->setFileMode(QFileDialog::Directory);
   dialog->setOption(QFileDialog::ShowDirsOnly);
-  connect(dialog, &QFileDialog::fileSelected, this, [this](const QString& folder) {
-    auto exercise = std::make_shared<std::filesystem::path>();
-    workstation_.save(
-        tr("The exercise is imported."),
-        [from = toPath(folder), storage = storage_, exercise](const Progress& progress) -> Status {
-          const auto imported = trephine::importExercise(from, storage, progress);
-          if (!imported) return imported.error();
-          if (!imported->check.verified()) return notVerified(imported->check);
-          *exercise = imported->exercise;
-          return {};
-        },
-        [this, exercise] {
-          emit exercisesChanged();
-          guards_.unlessLost({UnsavedWork::structures, UnsavedWork::cuts, UnsavedWork::tissues},
-                             [this, exercise] { emit openWanted(*exercise); });
-        });
-  });
+  connect(dialog, &QFileDialog::fileSelected, this,
+          [this](const QString& folder) { emit takeInWanted(toPath(folder)); });
   dialog->open();
 }
 

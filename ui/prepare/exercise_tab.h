@@ -34,10 +34,16 @@ class ExerciseTab : public QObject {
   std::function<bool()> structuresInCase;
   std::function<void(WorkGuards::Next then)> saveInCase;
 
+  // A text that was typed and not taken, and that it goes.
+  bool anyRefused() const;
+  void forgetRefused();
+  // One of this workstation: saving writes the file that it was opened from.
+  bool isOwn() const;
+
  signals:
   void saved();
   void exercisesChanged();  // in the storage folder
-  void openWanted(const std::filesystem::path& exercise);
+  void takeInWanted(const std::filesystem::path& folder);  // of another workstation's exercise
   void tryWanted();
   void labelsWanted();  // structures of the case from a file
   void entryWanted();   // the tool that places it, to be used once
@@ -45,10 +51,10 @@ class ExerciseTab : public QObject {
  private:
   void refresh();
   QString caseWords() const;
+  bool isShipped() const;
   void takeElsewhere(const std::filesystem::path& file);
   void draw(bool on);
   std::optional<Exercise> exerciseToSave();
-  bool isOwn() const;
   std::string freeName(const std::string& wanted) const;
   struct OnDisk {
     std::filesystem::path file;
@@ -70,6 +76,7 @@ class ExerciseTab : public QObject {
   OutlineTool outline_;
   ExerciseForm* form_;
   bool in_front_ = false;
+  std::filesystem::path shown_;  // the file of what the form shows
   OnDisk opened_;  // the exercise's file as it was opened, or saved, here
 };
 

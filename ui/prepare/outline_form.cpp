@@ -43,8 +43,8 @@ OutlineForm::OutlineForm(const ExerciseEdited& wanted, QWidget* parent)
   point_ = new WholeNumberField("outlinePoint", fields());
   point_->setAccessibleName(tr("Point of the outline"));
   point_->entered = [this] { showPoint(); };
-  point_off_ = settingButton("outlinePointOff", tr("Take it off"), tr("Takes this point away"),
-                             fields());
+  point_off_ =
+      settingButton("outlinePointOff", tr("Remove"), tr("Takes this point away"), fields());
   connect(point_off_, &QToolButton::clicked, this, [this] {
     point_->interpretText();  // a click leaves the field as it was typed
     takeOff(std::size_t(point_->wanted() - 1));
@@ -67,7 +67,8 @@ QWidget* OutlineForm::buildButtons() {
   draw_ = settingButton("drawOutline", tr("Draw it"), tr("Each click on the surface adds a point"),
                         fields());
   draw_->setCheckable(true);
-  back_ = settingButton("outlineBack", tr("Last off"), tr("Takes the last point away"), fields());
+  back_ =
+      settingButton("outlineBack", tr("Remove last"), tr("Takes the last point away"), fields());
   clear_ = settingButton("clearOutline", tr("Clear"), tr("No outline"), fields());
   connect(draw_, &QToolButton::toggled, this, &OutlineForm::drawingWanted);
   connect(clear_, &QToolButton::clicked, this, [this] { editOutline("outline off", {}); });

@@ -8,6 +8,7 @@
 #include "ui/common/actions.h"
 #include "ui/common/making.h"
 #include "ui/common/placing.h"
+#include "ui/common/question.h"
 #include "ui/common/words.h"
 
 namespace trephine {
@@ -91,8 +92,9 @@ void PrepareWorkspace::connectTabs() {
   connect(exercise_, &ExerciseTab::entryWanted, &structures_->entry(), &EntryTool::useOnce);
   exercise_->exercises = [this] { return app_.exercises(); };
   connect(exercise_, &ExerciseTab::exercisesChanged, &app_, &AppContext::tellExercises);
-  connect(exercise_, &ExerciseTab::openWanted, this,
-          [this](const std::filesystem::path& file) { app_.openExercise(file, Place::prepare); });
+  connect(exercise_, &ExerciseTab::takeInWanted, this, [this](const std::filesystem::path& folder) {
+    app_.takeInExercise(folder, Place::prepare);
+  });
   connect(exercise_, &ExerciseTab::tryWanted, this, [this] {
     app_.go(Place::train);
     app_.setTrying(true);
@@ -196,8 +198,20 @@ void PrepareWorkspace::showUndo() {
 }
 
 void PrepareWorkspace::unlessTissuesStay(WorkGuards::Next go_on) {
-  const bool exercise = workstation_.exerciseEdited();
-  if (!exercise && !workstation_.tissuesEdited()) return go_on();
+  if (exercise_->anyRefused()) {
+    ask(app_.messages().window(), "textNotApplied",
+        tr("A text of the exercise's card is too long and not applied."),
+        tr("Going on leaves it out."), tr("&Go on without it"), [this, go_on = std::move(go_on)] {
+          exercise_->forgetRefused();
+          unlessTissuesStay(go_on);
+        });
+    return;
+  }
+  // One of this workstation's own has its tissues in its own file.
+  const bool tissues =
+      exercise_->isOwn() ? workstation_.tissuesUnlikeExercise() : workstation_.tissuesEdited();
+  if (!workstation_.exerciseEdited() && !tissues) return go_on();
+  const bool exercise = workstation_.exerciseEdited() || exercise_->isOwn();
   auto* box = named(new QMessageBox(QMessageBox::Question, tr("Trephine"),
                                     exercise ? tr("The exercise has been changed and not saved.")
                                              : tr("The tissues have been changed and not saved."),

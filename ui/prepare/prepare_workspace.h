@@ -31,7 +31,7 @@ class PrepareWorkspace : public Workspace {
 
   // The structure that the exercise needs and the case lacks: with the tool that makes it.
   void makeMissing();
-  bool structuresEdited() const { return editor_.edited(); }
+  bool structuresUnsaved() const { return structures_->unsaved(); }
   QAction* saveInCaseAction() const { return save_in_case_; }
   QAction* pokeAction() const { return poke_->action(); }
 

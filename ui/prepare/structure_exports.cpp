@@ -68,7 +68,6 @@ void StructureExports::saveDicom(const std::filesystem::path& folder, bool for_s
   if (!of || !editor_.map() || (for_source && !sourceAtHand())) return;
   const std::shared_ptr<const LabelMap> map = editor_.finished();
   if (!map) return;
-  const std::uint64_t changes = editor_.changes();
   auto notes = std::make_shared<std::vector<std::string>>();
   const std::optional<std::filesystem::path> source =
       for_source ? std::optional(guards_.caseSource()) : std::nullopt;
@@ -89,8 +88,7 @@ void StructureExports::saveDicom(const std::filesystem::path& folder, bool for_s
         *notes = written->notes;
         return {};
       },
-      [this, notes, changes] {
-        editor_.markSaved(changes);
+      [this, notes] {
         QStringList words;
         for (const std::string& note : *notes) words << toQt(note);
         structures_.say(words.join('\n'));

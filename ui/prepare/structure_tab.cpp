@@ -132,7 +132,7 @@ void StructureTab::showPlaced() {
   if (case_views_.carved() && !case_views_.cutsUnsaved()) case_views_.showWholeCase();
   showViews();
   emit entry_.changed();
-  if (entry_.takeAsked()) case_views_.lookAtCase();
+  if (entry_.takeAsked()) case_views_.lookAtEntry();
   // Not by a dialog: it would come with every stroke.
   if (const auto& why = workstation_.placed()->error) structures_.say(toQt(why->sentence()));
   settled_.start();  // what was changed meanwhile
@@ -163,13 +163,15 @@ void StructureTab::showReport() {
 // Of a case that was opened.
 void StructureTab::showOpened() {
   const Case& of = *workstation_.currentCase();
-  if (of.structures != own_structures_) showReport();
+  // Of a case that came with its exercise they are as they were sent.
+  if (of.structures != own_structures_ && of.source.empty()) showReport();
   if (of.structures != own_structures_ || !editor_.isOf(of.volume)) {  // not another exercise alone
     picture_.forgetLooks();
     toolbox_.putDown();  // what was in hand was for another case
     structures_.suitVoxels(of.volume->geometry.spacing_mm);
     editor_.setCase(of.volume, of.structures);
-    in_case_ = editor_.changes();
+    in_case_ = editor_.version();
+    case_has_any_ = of.structures && !of.structures->structures.empty();
     tissues_touched_ = false;
   }
   own_structures_ = of.structures;
@@ -182,7 +184,8 @@ void StructureTab::showOpened() {
 
 // What is missing is offered to be made at once. False: the exercise lacks nothing that could be.
 bool StructureTab::offerMissing() {
-  if (!workstation_.placed() || workstation_.session()) return false;
+  if (!workstation_.placed() || workstation_.session() || workstation_.opensAnotherCase())
+    return false;
   const std::optional<FitQuestion> question = fitQuestion(*workstation_.placed());
   if (!question || question->mend != FitQuestion::Mend::make_structure) return false;
   emit frontWanted();
@@ -318,14 +321,16 @@ void StructureTab::saveThen(WorkGuards::Next then) {
   // As they are now: another case may come while the dialog stands.
   const std::shared_ptr<const LabelMap> copy = editor_.finished();
   if (!copy) return messages_.say(tr("There is no structure to save."));
-  const std::uint64_t changes = editor_.changes();
+  const auto made = [this, version = editor_.version(), of = workstation_.currentCase()->volume] {
+    if (editor_.isOf(of)) editor_.markSaved(version);
+  };
   QFileDialog* dialog = messages_.saveDialog(
       tr("Save structures"), "structures.nii.gz",
       tr("NIfTI with names beside it (*.nii.gz *.nii);;3D Slicer (*.seg.nrrd *.nrrd);;MetaImage "
          "with names beside it (*.mha)"));
   connect(
       dialog, &QFileDialog::fileSelected, this,
-      [this, copy, changes, then = std::move(then)](const QString& file) {
+      [this, copy, made, then = std::move(then)](const QString& file) {
         if (!guards_.keepsTheCase(structuresFile(toPath(file))) ||
             !guards_.keepsTheCase(toPath(file)))
           return;
@@ -334,8 +339,8 @@ void StructureTab::saveThen(WorkGuards::Next then) {
             [copy, path = toPath(file)](const Progress& progress) {
               return writeSegmentation(*copy, path, false, progress);
             },
-            [this, changes, then] {
-              editor_.markSaved(changes);
+            [made, then] {
+              made();
               if (then) then();
             });
       });
@@ -351,8 +356,9 @@ void StructureTab::saveInCase(WorkGuards::Next then) {
   if (!isStored()) {
     return messages_.say(tr("This case is not one of the library's: save to a file instead."));
   }
+  editor_.takePreview();
   std::shared_ptr<const LabelMap> map;  // null: as it was
-  if (in_case_ != editor_.changes()) {
+  if (in_case_ != editor_.version()) {
     map = editor_.finished();
     if (!map) {  // none is left
       LabelMap none;
@@ -360,7 +366,7 @@ void StructureTab::saveInCase(WorkGuards::Next then) {
       map = std::make_shared<const LabelMap>(std::move(none));
     }
   }
-  const std::uint64_t changes = editor_.changes();
+  const std::uint64_t version = editor_.version();
   std::optional<TissueSet> tissues;
   if (tissues_touched_ || workstation_.tissuesEdited()) tissues = workstation_.tissues();
   if (!map && !tissues) {
@@ -369,7 +375,9 @@ void StructureTab::saveInCase(WorkGuards::Next then) {
     return;
   }
   workstation_.save(
-      tr("Structures and tissues are saved in the case."),
+      map && tissues ? tr("Structures and tissues are saved in the case.")
+      : map          ? tr("The structures are saved in the case.")
+                     : tr("The tissues are saved in the case."),
       [library = library_, id = workstation_.currentCase()->stored, map,
        tissues](const Progress& progress) -> Status {
         if (map) {
@@ -378,9 +386,13 @@ void StructureTab::saveInCase(WorkGuards::Next then) {
         }
         return tissues ? library->saveTissues(id, toJson(*tissues)) : Status();
       },
-      [this, changes, tissues, then = std::move(then)] {
-        editor_.markSaved(changes);
-        in_case_ = changes;
+      [this, version, map, tissues, of = workstation_.currentCase()->volume,
+       then = std::move(then)] {
+        if (editor_.isOf(of)) {
+          editor_.markSaved(version);
+          in_case_ = version;
+          if (map) case_has_any_ = !map->structures.empty();
+        }
         if (tissues) {
           workstation_.tissuesSaved(*tissues);
           tissues_touched_ = *tissues != workstation_.tissues();
@@ -389,11 +401,40 @@ void StructureTab::saveInCase(WorkGuards::Next then) {
       });
 }
 
+// "liver, spleen, and 3 more"; empty: there are none.
+QString StructureTab::names() const {
+  constexpr qsizetype kMost = 6;
+  QStringList names;
+  if (const std::shared_ptr<const LabelMap> map = editor_.map()) {
+    for (const Structure& one : map->structures) {
+      const bool any = editor_.millilitres(one.label) > 0.0 && !editor_.isWall(one.label);
+      if (any) names << toQt(one.name);
+    }
+  }
+  const qsizetype more = names.size() - kMost;
+  if (more > 0) names = names.mid(0, kMost) << tr("and %1 more").arg(more);
+  return names.join(QStringLiteral(", "));
+}
+
+bool StructureTab::unsaved() const {
+  if (editor_.preview()) return true;
+  if (names().isEmpty() && !(isStored() && case_has_any_)) return false;  // nothing could go
+  return isStored() ? !inCase() : editor_.edited();
+}
+
 void StructureTab::unlessLost(WorkGuards::Next go_on) {
-  if (!editor_.edited()) return go_on();
-  QMessageBox* question = ask(messages_.window(), "structuresUnsaved",
-                              tr("The structures have been made or changed and not saved."),
-                              tr("Going on takes them away."), tr("&Go on without them"), go_on);
+  if (!unsaved()) return go_on();
+  const QString what = names();
+  QMessageBox* question = ask(
+      messages_.window(), "structuresUnsaved",
+      what.isEmpty() ? tr("All structures have been deleted, and the case still has them.")
+      : isStored()   ? tr("The case does not hold its structures as they are now: %1.").arg(what)
+                     : tr("The structures have been made or changed and not saved: %1.").arg(what),
+      what.isEmpty() ? tr("Going on leaves the case as it was saved.")
+      : isStored()   ? tr("Going on leaves the case as it was saved. A file that they were "
+                            "exported to, or came from, is a copy.")
+                     : tr("Going on takes them away."),
+      tr("&Go on without them"), go_on);
   if (isStored()) {
     orElse(*question, "saveInCaseFirst", tr("Save in the &case"),
            [this, go_on] { saveInCase(go_on); });

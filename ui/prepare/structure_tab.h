@@ -37,7 +37,10 @@ class StructureTab : public QObject {
 
   // Structures and tissues, where they have been changed, into the case of the library.
   bool isStored() const;
-  bool inCase() const { return in_case_ == editor_.changes(); }
+  bool inCase() const { return in_case_ == editor_.version(); }
+  // Made, changed or read and in no place from where they come back by themselves: the case of the
+  // library, or, of a case that has none, a file. What was exported is a copy.
+  bool unsaved() const;
   void saveInCase(WorkGuards::Next then);
   void noteTissues(bool touched) { tissues_touched_ = touched; }
   void askForLabels();
@@ -60,6 +63,7 @@ class StructureTab : public QObject {
   void askAboutPreview(WorkGuards::Next go_on);
   void saveThen(WorkGuards::Next then);
   void unlessLost(WorkGuards::Next go_on);
+  QString names() const;
 
   Workstation& workstation_;
   Messages& messages_;
@@ -76,9 +80,10 @@ class StructureTab : public QObject {
   StructureQuestions questions_;
   EntryTool entry_;
   std::shared_ptr<const LabelMap> own_structures_;  // of the case, as the editor gave or got them
-  // What the library's case has, whatever was saved to files: the editor's changes() then, nothing
+  // What the library's case has, whatever was saved to files: the editor's version() then, nothing
   // for structures of another file; and whether tissues have been edited since.
   std::optional<std::uint64_t> in_case_ = 0;
+  bool case_has_any_ = false;  // structures, as it was opened or saved
   bool tissues_touched_ = false;
   QTimer settled_;
   WorkGuards::Next start_when_placed_;  // an exercise waits for its structures

@@ -8,6 +8,7 @@
 #include <QVBoxLayout>
 #include <algorithm>
 #include <chrono>
+#include <iterator>
 
 #include "ui/common/making.h"
 #include "ui/common/words.h"
@@ -56,6 +57,15 @@ ReviewPage::ReviewPage(QWidget* parent) : QWidget(parent) {
   progress_row->addWidget(cancel_);
   progress_box_->hide();
 
+  only_box_ = new QWidget;
+  only_words_ = namedLabel("onlyOf");
+  auto* all = namedButton("showAllRecordings", tr("Show &all"));
+  auto* only_row = tight(new QHBoxLayout(only_box_));
+  only_row->addWidget(only_words_);
+  only_row->addWidget(all);
+  only_row->addStretch(1);
+  connect(all, &QPushButton::clicked, this, [this] { showOnly({}); });
+
   auto* buttons = new QHBoxLayout;
   buttons->addWidget(replay_);
   buttons->addWidget(progress_box_, 1);
@@ -64,6 +74,7 @@ ReviewPage::ReviewPage(QWidget* parent) : QWidget(parent) {
   layout->setContentsMargins(16, 12, 16, 12);
   layout->setSpacing(10);
   layout->addWidget(title);
+  layout->addWidget(only_box_);
   layout->addWidget(reading_);
   layout->addWidget(empty_, 1);
   layout->addWidget(list_, 1);
@@ -92,24 +103,44 @@ void ReviewPage::showRecordings(const std::vector<ListedRecording>& rows, bool a
                                 const std::string& in_use,
                                 const std::map<std::string, QString>& cases) {
   reading_->setVisible(!all);
-  empty_->setText(all ? tr("No exercise has been recorded yet. Each one that is done in Train is.")
-                      : QString());
+  all_read_ = all;
   cases_ = cases;
+  in_use_ = in_use;
+  all_rows_ = rows;
+  fill();
+}
+
+void ReviewPage::showOnly(const std::string& case_key) {
+  only_ = case_key;
+  fill();
+}
+
+void ReviewPage::fill() {
+  const auto of_only = cases_.find(only_);
+  only_box_->setVisible(!only_.empty());
+  only_words_->setText(of_only == cases_.end() ? tr("Those of one case")
+                                               : tr("Those of \"%1\"").arg(of_only->second));
+  empty_->setText(!all_read_      ? QString()
+                  : only_.empty() ? tr("No exercise has been recorded yet. Each one that is done "
+                                       "in Train is.")
+                                  : tr("No exercise has been recorded on this case yet."));
   const ListedRecording* before = chosen();
   const std::filesystem::path file = before ? before->file : std::filesystem::path();
   const QString outcome = outcome_->text();
   const int scrolled = list_->verticalScrollBar()->value();
-  in_use_ = in_use;
   const QSignalBlocker unmoved(list_);
   list_->clear();
-  rows_ = rows;
+  rows_.clear();
+  std::ranges::copy_if(all_rows_, std::back_inserter(rows_), [&](const ListedRecording& row) {
+    return only_.empty() || row.caseKey() == only_;
+  });
   for (const ListedRecording& row : rows_) {
     auto* item = new QTreeWidgetItem(list_);
     item->setText(kTimeColumn, QLocale().toString(timeOf(row), QLocale::ShortFormat));
     item->setText(kExerciseColumn, toQt(row.exercise));
-    const auto name = cases.find(row.caseKey());
+    const auto name = cases_.find(row.caseKey());
     if (!row.caseKey().empty()) {
-      item->setText(kCaseColumn, name != cases.end() ? name->second : tr("not here"));
+      item->setText(kCaseColumn, name != cases_.end() ? name->second : tr("not here"));
     }
     item->setText(kLengthColumn, timeWords(std::uint32_t(row.seconds)));
     item->setTextAlignment(kLengthColumn, Qt::AlignRight | Qt::AlignVCenter);
@@ -130,13 +161,6 @@ void ReviewPage::showRecordings(const std::vector<ListedRecording>& rows, bool a
 
 bool ReviewPage::select(const std::filesystem::path& file) {
   const auto row = std::ranges::find(rows_, file, &ListedRecording::file);
-  if (row == rows_.end()) return false;
-  list_->setCurrentItem(list_->topLevelItem(int(row - rows_.begin())));
-  return true;
-}
-
-bool ReviewPage::selectNewestOf(const std::string& case_key) {
-  const auto row = std::ranges::find(rows_, case_key, &ListedRecording::caseKey);
   if (row == rows_.end()) return false;
   list_->setCurrentItem(list_->topLevelItem(int(row - rows_.begin())));
   return true;

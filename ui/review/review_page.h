@@ -29,12 +29,12 @@ class ReviewPage : public QWidget {
     reading_->setText(tr("Reading the recordings\u2026 %1 %").arg(int(fraction * 100.0)));
   }
   void showNoRecordings(const QString& why);
-  std::size_t count() const { return rows_.size(); }
+  // Those of one case (ListedRecording::caseKey()), until a person wants all again; empty: all.
+  void showOnly(const std::string& case_key);
+  std::size_t count() const { return all_rows_.size(); }
   void selectNewest() { list_->setCurrentItem(list_->topLevelItem(0)); }
   // False where it is not there.
   bool select(const std::filesystem::path& file);
-  // The newest of a case.
-  bool selectNewestOf(const std::string& case_key);
   void showProgress(double fraction, const QString& step);
   void endProgress();
   void showOutcome(const QString& words) { outcome_->setText(words); }
@@ -46,15 +46,20 @@ class ReviewPage : public QWidget {
  private:
   const ListedRecording* chosen() const;
   void showChosen();
+  void fill();
 
-  std::vector<ListedRecording> rows_;
+  std::vector<ListedRecording> all_rows_;
+  std::vector<ListedRecording> rows_;  // that are listed
+  std::string only_;                   // of this case; empty: all
+  bool all_read_ = false;
   std::string in_use_;
   std::map<std::string, QString> cases_;
   bool busy_ = false;
   QTreeWidget* list_;
   QLabel *empty_, *reading_, *outcome_, *step_;
   QPushButton *replay_, *cancel_;
-  QWidget* progress_box_;
+  QWidget *progress_box_, *only_box_;
+  QLabel* only_words_;
   QProgressBar* progress_;
 };
 

@@ -67,7 +67,6 @@ void ReviewWorkspace::list() {
     std::map<std::string, QString> cases;  // names
     std::filesystem::path opened;
   };
-  if (const std::string wanted = app_.takeReviewed(); !wanted.empty()) wanted_case_ = wanted;
   const bool begun = listing_.run(
       [this, folder = app_.recordings(), opened = opened_,
        library = app_.library()](const Progress& progress) -> Result<Listed> {
@@ -104,7 +103,6 @@ void ReviewWorkspace::list() {
         if (!listed) return page_->showNoRecordings(toQt(listed.error().sentence()));
         if (listed->opened != opened_) return list();  // chosen while this was made
         show(listed->rows, true, listed->cases);
-        wanted_case_.clear();
         choose_opened_ = false;
         if (std::exchange(replay_newest_, false) && !listed->rows.empty()) {
           page_->selectNewest();
@@ -119,7 +117,6 @@ void ReviewWorkspace::show(const std::vector<ListedRecording>& rows, bool all,
   const Case* of = app_.workstation().currentCase();
   page_->showRecordings(rows, all, of ? of->sha256 : "", cases);
   // Once, as soon as it is there: then a person chooses.
-  if (!wanted_case_.empty() && page_->selectNewestOf(wanted_case_)) wanted_case_.clear();
   if (choose_opened_ && page_->select(opened_)) choose_opened_ = false;
 }
 

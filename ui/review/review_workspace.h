@@ -18,6 +18,7 @@ class ReviewWorkspace : public Workspace {
   Parts parts() override;
   void enter() override {
     if (!replaying_.busy()) page_->showOutcome({});  // of the last time
+    page_->showOnly(app_.takeReviewed());
     list();
   }
   // One that a person has opened, wherever it lies: from the next enter() on it stands in the list,
@@ -38,7 +39,6 @@ class ReviewWorkspace : public Workspace {
   ReviewPage* page_;
   bool replay_newest_ = false;
   bool choose_opened_ = false, list_again_ = false;
-  std::string wanted_case_;  // of which the newest is to be chosen, once it is there
   std::filesystem::path opened_;  // not of the workstation's own
   BackgroundTask listing_, replaying_;
 };

@@ -34,7 +34,7 @@ void StructureEditor::setCase(std::shared_ptr<const Volume> volume,
   box_.reset();
   regrow_.reset();
   stroke_.reset();
-  saved_ = structures_.changes();
+  saved_ = structures_.version();
   taken_ = saved_;
   current_ =
       structures && !structures->structures.empty() ? structures->structures.front().label : 0;
@@ -51,13 +51,13 @@ void StructureEditor::setLocked(const QString& why) {
 }
 
 std::shared_ptr<const LabelMap> StructureEditor::takeEdited() {
-  if (preview_ || stroke_ || busy() || taken_ == changes()) return nullptr;
-  taken_ = changes();
-  return withoutWall();
+  if (preview_ || stroke_ || busy() || taken_ == version()) return nullptr;
+  taken_ = version();
+  return finished();  // what was undone is no structure
 }
 
 void StructureEditor::giveBack() {
-  taken_ = structures_.isOwn() ? std::nullopt : std::optional(changes());
+  taken_ = structures_.isOwn() ? std::nullopt : std::optional(version());
 }
 
 // Null where nothing but a wall was made, or for want of memory.

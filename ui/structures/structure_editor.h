@@ -44,19 +44,20 @@ class StructureEditor : public QObject {
   std::shared_ptr<const LabelMap> map() const { return structures_.map(); }
   double millilitres(int label) const { return structures_.millilitres(label); }
   // Since setCase() or markSaved().
-  bool edited() const { return structures_.changes() != saved_; }
-  // What was saved is as it was after so many changes.
-  std::uint64_t changes() const { return structures_.changes(); }
-  void markSaved(std::uint64_t changes) { saved_ = std::max(saved_, changes); }
+  bool edited() const { return structures_.version() != saved_; }
+  // EditedStructures::version(), and that of what was saved.
+  std::uint64_t version() const { return structures_.version(); }
+  void markSaved(std::uint64_t version) { saved_ = version; }
   // What was taken last could not be used: it is there to be taken again.
   void giveBack();
   bool isOf(const std::shared_ptr<const Volume>& volume) const { return volume_ == volume; }
-  // Since setCase() or the last call; a copy of the map then, without the wall, else null. Not
-  // while a preview stands.
+  // Since setCase() or the last call; a copy of the map then, as finished() gives it, else null.
+  // Not while a preview stands.
   std::shared_ptr<const LabelMap> takeEdited();
   // Such a copy, for a file: without rows that have no voxel either. Null without structures, or
   // memory for them.
   std::shared_ptr<const LabelMap> finished();
+  bool isWall(int label) const { return label == structures_.wall(); }
   bool hasAny() const { return structures_.first() != 0; }  // but the wall
 
   // The one that tools work on: its label; 0: none.
@@ -172,7 +173,7 @@ class StructureEditor : public QObject {
   std::optional<VoxelBox> box_;
   std::optional<Stroke> stroke_;
   QString locked_;
-  std::uint64_t saved_ = 0;                 // after so many changes
+  std::uint64_t saved_ = 0;                 // the version() that a file has
   std::optional<std::uint64_t> taken_ = 0;  // the same; none: it was given back
   BackgroundTask work_;                     // last: joined before what it reads goes
 };

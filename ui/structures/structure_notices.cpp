@@ -41,9 +41,9 @@ StructureNotices::StructureNotices(StructureEditor& editor, QWidget* parent)
 QWidget* StructureNotices::buildPreview() {
   auto* box = new QWidget(this);
   preview_ = wrappedLabel("structurePreview");
-  take_ = namedButton("takePreview", tr("&Take it"), false, box);
+  take_ = namedButton("takePreview", tr("&Keep it"), false, box);
   take_->setToolTip(tr("It counts from now on (Return in a slice)"));
-  auto* leave = namedButton("leavePreview", tr("&Leave it"), false, box);
+  auto* leave = namedButton("leavePreview", tr("&Discard it"), false, box);
   leave->setToolTip(tr("It goes again (Esc in a slice)"));
   auto* layout = tight(new QGridLayout(box));
   layout->addWidget(preview_, 0, 0, 1, 2);

@@ -7,6 +7,7 @@
 #include "desk/fit_question.h"
 #include "ui/common/question.h"
 #include "ui/common/words.h"
+#include "volume/phantom.h"
 
 namespace trephine {
 
@@ -28,7 +29,6 @@ ExerciseChoice::ExerciseChoice(AppContext& app, QObject* parent)
       app_(app),
       workstation_(app.workstation()),
       messages_(app.messages()),
-      guards_(app.guards()),
       list_(new QComboBox) {
   list_->setObjectName("scenes");
   list_->setToolTip(tr("The exercise"));
@@ -72,16 +72,8 @@ void ExerciseChoice::fill() {
 void ExerciseChoice::choose(int index) {
   const auto file = toPath(list_->itemData(index).toString());
   showInUse();  // until the other is on its way: it may be asked about, or not be had
-  // A built-in case changes with the exercise, and its structures with it.
-  const Case* of = workstation_.currentCase();
-  std::vector<UnsavedWork> losses{UnsavedWork::cuts, UnsavedWork::tissues};
-  if (of && of->built_in) losses.insert(losses.begin(), UnsavedWork::structures);
-  guards_.unlessLost(losses, [this, file] { open(file); });
+  app_.openUnlessLost(file, place_);
   app_.caseViews().view().setFocus();
-}
-
-void ExerciseChoice::open(const std::filesystem::path& file) {
-  app_.openExercise(file, place_);
 }
 
 void ExerciseChoice::showInUse() {
@@ -170,10 +162,7 @@ void ExerciseChoice::unlessItDoesNotFit(WorkGuards::Next go_on) {
     const std::filesystem::path file = defaultExercise(asked->anatomy);
     const int index = list_->findData(toQt(file));
     orElse(*question, "changeExercise", tr("&Change to \"%1\"").arg(list_->itemText(index)),
-           [this, file] {
-             guards_.unlessLost({UnsavedWork::cuts, UnsavedWork::tissues},
-                                [this, file] { open(file); });
-           });
+           [this, file] { app_.openUnlessLost(file, place_); });
   } else if (asked->mend == Mend::make_structure) {
     orElse(*question, "makeStructure", tr("&Make it"), [this] { emit structureWanted(); });
   }

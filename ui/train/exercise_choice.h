@@ -41,7 +41,6 @@ class ExerciseChoice : public QObject {
 
  private:
   void choose(int index);
-  void open(const std::filesystem::path& file);
   void showOpening(const Exercise& exercise, const std::filesystem::path& file);
   void showPhase();
   void showAllowed();
@@ -51,7 +50,6 @@ class ExerciseChoice : public QObject {
   AppContext& app_;
   Workstation& workstation_;
   Messages& messages_;
-  WorkGuards& guards_;
   QComboBox* list_;
   std::vector<std::pair<std::filesystem::path, Exercise>> listed_;  // the workstation's exercises
   Place place_ = Place::prepare;

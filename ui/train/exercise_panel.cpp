@@ -83,8 +83,11 @@ ExercisePanel::ExercisePanel(QWidget* parent) : QWidget(parent) {
   addAll(*layout, {title_, back_, card_, time_});
   layout->addWidget(heading(tr("Removed")));
   layout->addWidget(removed_);
-  layout->addWidget(heading(tr("Goal")));
-  layout->addWidget(goal_);
+  asked_ = new QWidget;
+  auto* asked = tight(new QVBoxLayout(asked_), 8);
+  asked->addWidget(heading(tr("Goal")));
+  asked->addWidget(goal_);
+  layout->addWidget(asked_);
   layout->addWidget(steps_);
   layout->addWidget(heading(tr("Hands")));
   addAll(*layout, {tools_, hands_, keys_});
@@ -97,9 +100,7 @@ void ExercisePanel::setExercise(const Exercise& exercise, const QString& languag
   const CardText* card = cardFor(exercise, language.toStdString());
   goal_->setText(card ? toQt(card->goal) : tr("Cut as the exercise's name says."));
   steps_->setText(card ? stepsWords(*card) : QString());
-  steps_->setVisible(card && !card->steps.empty());
   hands_->setText(card ? toQt(card->hands) : QString());
-  hands_->setVisible(!hands_->text().isEmpty());
   showTools(exercise, {});
 }
 
@@ -117,6 +118,12 @@ void ExercisePanel::showRemoved(const std::vector<RemovedOf>& tissues,
   const QString html = rows(tr("Tissue"), tissues) + rows(tr("Structure"), structures);
   removed_->setText(html.isEmpty() ? tr("nothing yet")
                                    : QStringLiteral("<table>%1</table>").arg(html));
+}
+
+void ExercisePanel::setSaidOnCard(bool goal, bool all) {
+  asked_->setVisible(!goal);
+  steps_->setVisible(!all && !steps_->text().isEmpty());
+  hands_->setVisible(!all && !hands_->text().isEmpty());
 }
 
 void ExercisePanel::offerCard(const QString& words) {

@@ -33,6 +33,8 @@ class ExercisePanel : public QWidget {
   // Rows of nothing removed are left out.
   void showRemoved(const std::vector<RemovedOf>& tissues, const std::vector<RemovedOf>& structures);
   void showIdle();
+  // The goal stands on a card over the views meanwhile, or all that is to be done.
+  void setSaidOnCard(bool goal, bool all);
   // A button with these words brings back the card or the result that was put aside; empty: none.
   void offerCard(const QString& words);
   // The way back to Prepare, of an exercise that is tried.
@@ -44,6 +46,7 @@ class ExercisePanel : public QWidget {
 
  private:
   QPushButton *card_, *back_;
+  QWidget* asked_;
   QLabel *title_, *goal_, *steps_, *tools_, *hands_, *time_, *removed_, *keys_;
 };
 

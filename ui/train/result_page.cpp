@@ -25,6 +25,10 @@ QString title(const QString& text) {
   return QStringLiteral("<tr><td colspan='2'><b>%1</b></td></tr>").arg(text.toHtmlEscaped());
 }
 
+QString timesWords(std::uint64_t times) {
+  return times == 1 ? ResultPage::tr("once") : ResultPage::tr("%1 times").arg(times);
+}
+
 // "12 mm3 of 1.2 L": of the structure, where it is one.
 QString cutWords(double mm3, const CutStructure* of) {
   if (!of) return volumeWords(mm3);
@@ -107,8 +111,13 @@ void ResultPage::setResult(const ExerciseResult& result) {
     html += row(way.hand,
                 tr("%1 cm, at most %2 N").arg(way.mm / 10.0, 0, 'f', 1).arg(way.most_N, 0, 'f', 1));
   }
-  if (result.late == 1) html += row(tr("Force came late"), tr("once"));
-  if (result.late > 1) html += row(tr("Force came late"), tr("%1 times").arg(result.late));
+  if (result.undos + result.rewinds > 0) {
+    html += title(tr("Taken back"));
+    if (result.undos > 0) html += row(tr("By undo"), timesWords(result.undos));
+    if (result.rewinds > 0) html += row(tr("By going back or reset"), timesWords(result.rewinds));
+    html += row(tr("Tissue that was cut and put back"), volumeWords(result.brought_back_mm3));
+  }
+  if (result.late > 0) html += row(tr("Force came late"), timesWords(result.late));
   rows_->setText(QStringLiteral("<table width='100%'>%1</table>").arg(html));
   replay_->setEnabled(result.recorded);
   place();

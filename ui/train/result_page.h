@@ -24,6 +24,8 @@ struct ExerciseResult {
   std::vector<Way> ways;
   bool recorded = true;  // whole
   std::uint64_t late = 0;
+  std::uint64_t undos = 0, rewinds = 0;
+  double brought_back_mm3 = 0.0;  // that was cut and put back
 };
 
 class ResultPage : public FloatingCard {

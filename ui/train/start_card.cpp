@@ -72,15 +72,21 @@ void StartCard::showExercise(const Exercise& exercise, const QString& language, 
   place();
 }
 
-// The panel at the left says all of it, too.
+// What has no room stands in the panel at the left.
 void StartCard::fit(int width, int most_height) {
   if (start_->isHidden()) return;
   for (QLabel* part : {steps_, hands_, keys_}) part->setVisible(!part->text().isEmpty());
   for (QLabel* part : {keys_, hands_, steps_}) {
     layout()->activate();
-    if (layout()->totalHeightForWidth(width) <= most_height) return;
+    if (layout()->totalHeightForWidth(width) <= most_height) break;
     part->hide();
   }
+  emit fitted();
+}
+
+bool StartCard::saysAll() const {
+  const auto said = [](const QLabel* part) { return part->text().isEmpty() || !part->isHidden(); };
+  return !isHidden() && !start_->isHidden() && said(steps_) && said(hands_);
 }
 
 }  // namespace trephine

@@ -18,11 +18,14 @@ class StartCard : public FloatingCard {
   void showNoCase();
   void showExercise(const Exercise& exercise, const QString& language, bool may_start);
   QPushButton& asideButton() { return *aside_; }
+  // Whether there is room for the steps and the hands beside the goal.
+  bool saysAll() const;
 
  signals:
   void startWanted();
   void caseWanted();
   void asideWanted();
+  void fitted();  // saysAll() may be another
 
  protected:
   void fit(int width, int most_height) override;

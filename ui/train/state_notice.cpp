@@ -55,7 +55,8 @@ ForceNotice forceNotice(const LoopState& state, const Exercise& exercise, double
     if (!state.paused && (arm.tool_state & kToolWaits)) {
       of_arm << StateNotice::tr(
           "The tool is in tissue that it did not come into. Draw it out to feel and to cut; the "
-          "mouse and the keys do so by themselves.");
+          "mouse and the keys do so by themselves. Where it does not come out: stop, and put the "
+          "exercise's entry at the surface.");
     }
     if (!state.paused && (arm.tool_state & kToolClutched)) {
       of_arm << StateNotice::tr(

@@ -45,6 +45,7 @@ TrainWorkspace::TrainWorkspace(AppContext& app)
   hands_ = new PointerHands(*view_);
   running_ = new RunningView(app, {*arms_, *notice_, *rewind_, *exercise_}, *hands_, this);
   connectParts();
+  showPractising();
   choice_->fill();
   frame_timer_.setObjectName("frame");
   frame_timer_.setInterval(kFrame_ms);
@@ -61,6 +62,7 @@ Workspace::Parts TrainWorkspace::parts() {
 
 void TrainWorkspace::enter() {
   here_ = true;
+  showPractising();
   choice_->stayIn(Place::train);
   showCard();
   showHand();
@@ -68,6 +70,7 @@ void TrainWorkspace::enter() {
 
 void TrainWorkspace::leave() {
   here_ = false;
+  showPractising();
   choice_->stayIn(Place::prepare);
   showCard();
   showHand();
@@ -77,6 +80,11 @@ bool TrainWorkspace::escape() {
   if (!card_->asideButton().isVisible() && !result_->isVisible()) return false;
   putAside(true);
   return true;
+}
+
+// What is tried from Prepare is still being made.
+void TrainWorkspace::showPractising() {
+  workstation_.setPractising(here_ && !app_.trying());
 }
 
 void TrainWorkspace::buildActions() {
@@ -141,9 +149,13 @@ void TrainWorkspace::connectParts() {
   connect(clutch_, &QAction::triggered, this, &TrainWorkspace::clutch);
   connect(recentre_, &QAction::triggered, this, &TrainWorkspace::recentre);
   connect(card_, &StartCard::startWanted, start_, &QAction::trigger);
+  connect(card_, &StartCard::fitted, this, &TrainWorkspace::showSaid);
   connect(card_, &StartCard::caseWanted, this, [this] { app_.go(Place::cases); });
   connect(card_, &StartCard::asideWanted, this, [this] { putAside(true); });
-  connect(&app_, &AppContext::tryingChanged, this, [this] { exercise_->offerBack(app_.trying()); });
+  connect(&app_, &AppContext::tryingChanged, this, [this] {
+    exercise_->offerBack(app_.trying());
+    showPractising();
+  });
   connect(exercise_, &ExercisePanel::backWanted, this, [this] {
     // Of a trial nothing is kept but its recording.
     if (workstation_.session()) {
@@ -211,8 +223,18 @@ void TrainWorkspace::showChosen() {
   showCard();
 }
 
-// What is said before it starts; nothing while one runs, or once one has ended and is looked at.
 void TrainWorkspace::showCard() {
+  putCard();
+  showSaid();
+}
+
+// In the panel, what no card over the views says.
+void TrainWorkspace::showSaid() {
+  exercise_->setSaidOnCard(!card_->isHidden() || !result_->isHidden(), card_->saysAll());
+}
+
+// What is said before it starts; nothing while one runs, or once one has ended and is looked at.
+void TrainWorkspace::putCard() {
   using Phase = Workstation::Phase;
   const Phase phase = workstation_.phase();
   const bool idle = phase == Phase::ready || phase == Phase::empty;
@@ -222,12 +244,13 @@ void TrainWorkspace::showCard() {
                        : result          ? tr("Show the &result")
                        : card            ? tr("Show &what to do")
                                          : QString());
-  if (!idle || !here_) {
+  const bool opening = workstation_.opensAnotherCase();
+  if (!idle || !here_ || opening) {
     card_->hide();
-    if (!here_ || phase == Phase::running) result_->hide();
+    if (opening || !here_ || phase == Phase::running) result_->hide();
     return;
   }
-  if (phase == Phase::empty) return workstation_.isOpening() ? card_->hide() : card_->showNoCase();
+  if (phase == Phase::empty) return card_->showNoCase();
   result_->setVisible(result && !aside_);
   if (!card || aside_) return card_->hide();
   card_->showExercise(*workstation_.exercise(), toQt(languageInUse()), start_->isEnabled());
@@ -249,9 +272,10 @@ void TrainWorkspace::showOutline() {
 }
 
 void TrainWorkspace::showLocks() {
-  arms_->setLocked(workstation_.isLocked(Lock::controller)
+  arms_->setLocked(!workstation_.isLocked(Lock::controller) ? QString()
+                   : workstation_.policy().isLocked(Lock::controller)
                        ? tr("Locked. %1.").arg(unlockWords(workstation_.policy()))
-                       : QString());
+                       : tr("This exercise keeps its controller. It is changed in Prepare."));
 }
 
 void TrainWorkspace::showReset() {
@@ -363,13 +387,17 @@ void TrainWorkspace::command(CommandKind kind) {
   if (!session->send(kind)) return messages_.say(tr("Busy: try again in a moment."));
 }
 
+bool TrainWorkspace::isRecorded(const Session& session, const RunReport& report) {
+  return session.recordingStatus() && report.machine.events_dropped == 0;
+}
+
 void TrainWorkspace::sessionEnded(Session& session) {
   frame_timer_.stop();
   hands_->begin(nullptr);
   running_->end(session);
   if (session.isPoke()) return;
   const RunReport report = session.report();
-  case_views_.exerciseEnded(report.done.removed_voxels > 0);
+  case_views_.exerciseEnded(report.done.removed_voxels > 0, isRecorded(session, report));
   if (std::exchange(back_from_trial_, false)) case_views_.showWholeCase();
   std::error_code ec;
   const bool any = std::filesystem::exists(report.recording, ec);
@@ -395,8 +423,11 @@ void TrainWorkspace::showResult(Session& session, const RunReport& report) {
     result.ways.push_back({handName(session.exercise().arms[i]), report.done.arms[i].path_mm,
                            report.done.arms[i].max_force_N});
   }
-  result.recorded = session.recordingStatus() && report.machine.events_dropped == 0;
+  result.recorded = isRecorded(session, report);
   result.late = report.machine.missed_deadlines;
+  result.undos = report.done.undos;
+  result.rewinds = report.done.rewinds;
+  result.brought_back_mm3 = report.done.brought_back_mm3;
   recorded_ = result.recorded;
   result_shown_ = true;
   aside_ = false;

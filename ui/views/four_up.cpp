@@ -7,6 +7,7 @@
 #include <QPainter>
 #include <QSignalBlocker>
 #include <algorithm>
+#include <cmath>
 
 #include "ui/common/colours.h"
 #include "ui/common/making.h"
@@ -117,8 +118,8 @@ QString FourUp::sliceHelp() {
 QList<QPair<QString, QString>> FourUp::helpOfViews() {
   return {{tr("In a slice"), sliceHelp()},
           {tr("In the 3-D view"),
-           tr("Drag: turn. Middle drag: shift. Wheel: zoom. Arrow keys: turn. Home: as at the "
-              "start. V: shown, ghosted, hidden.")}};
+           tr("Drag: turn. Middle drag: shift. Wheel: zoom. Arrow keys: turn. Home: all of the "
+              "patient. Shift and a letter: from a side. V: shown, ghosted, hidden.")}};
 }
 
 QWidget* FourUp::box(int view) const {
@@ -130,6 +131,7 @@ QWidget* FourUp::box(int view) const {
 void FourUp::showVolume(Volume copy, const std::shared_ptr<const LabelMap>& labels,
                         const std::shared_ptr<const Volume>& whole) {
   const bool same_place = copy.geometry == mirror_->volume().geometry;
+  for (const Slices& of : slices_) of.view->clearMeasures();  // they were of the one before
   mirror_->show(std::move(copy), labels, whole);
   changed();
   for (const Slices& of : slices_) {
@@ -138,6 +140,19 @@ void FourUp::showVolume(Volume copy, const std::shared_ptr<const LabelMap>& labe
     of.slider->setEnabled(of.view->slices() > 1);
   }
   setPoint(same_place || mirror_->empty() ? point_mm_ : mirror_->volume().geometry.centre_mm());
+}
+
+QStringList FourUp::measureWords() const {
+  QStringList words;
+  for (SliceAxis axis : kSliceAxes) {
+    const SliceView& view = *slices_[std::size_t(axis)].view;
+    for (const Measure& measure : view.measures()) {
+      const int slice = int(std::lround(toVoxel(view.stack(), measure.points_mm.front()).z)) + 1;
+      const QString what = measure.kind == Measure::Kind::angle ? tr("Angle") : tr("Ruler");
+      words << tr("%1 %2, %3 %4").arg(what, valueOf(measure), nameOf(axis)).arg(slice);
+    }
+  }
+  return words;
 }
 
 void FourUp::refill(const std::shared_ptr<const Volume>& whole,

@@ -64,6 +64,8 @@ class FourUp : public QWidget {
 
   // What the mouse does in the slices and in 3-D.
   Toolbox& toolbox() { return toolbox_; }
+  // Rulers and angles on the slices, as "Ruler 19.0 mm, Axial 12".
+  QStringList measureWords() const;
   // Where arms reach, in all four; the chosen one is dragged in the slices.
   void setWorkspaces(const std::vector<WorkspaceBox>& boxes);
   // Above the views: what lies over them stays below it.

@@ -62,7 +62,7 @@ SliceBar::SliceBar(Toolbox& toolbox, QWidget* parent)
                               .arg(i + 1),
                           Qt::ToolTipRole);
   }
-  windows_->setPlaceholderText(tr("own"));
+  windows_->setPlaceholderText(tr("Custom"));
   overlays_ = list("sliceOverlay", tr("What is coloured over the slices (O)"));
   overlays_->addItems({tr("Plain"), tr("Tissues"), tr("Structures")});
   opacity_ = named(new QSlider(Qt::Horizontal, this), "sliceOpacity");

@@ -104,14 +104,27 @@ void SliceCanvas::paintKept(QPainter& painter) const {
 
 void SliceCanvas::mousePressEvent(QMouseEvent* event) {
   pressed_.reset();
-  if (!drawable_ || image_.isNull() || event->button() != Qt::LeftButton) {
-    return SlicePane::mousePressEvent(event);
+  windowing_.reset();
+  SlicePane::mousePressEvent(event);
+  if (image_.isNull() || event->button() != Qt::LeftButton) return;
+  if (!drawable_) {
+    windowing_ = event->position();
+    window_before_ = window_;
+  } else if (target().contains(event->position())) {
+    pressed_ = pixelAt(event->position());
   }
-  if (target().contains(event->position())) pressed_ = pixelAt(event->position());
 }
 
 void SliceCanvas::mouseMoveEvent(QMouseEvent* event) {
-  if (!pressed_ || !(event->buttons() & Qt::LeftButton) || image_.isNull()) {
+  const bool left = event->buttons() & Qt::LeftButton;
+  if (windowing_ && left && !image_.isNull()) {
+    const QPointF moved = event->position() - *windowing_;
+    if (moved.isNull()) return;
+    setWindow(draggedWindow(window_before_, moved.x(), moved.y()));
+    emit windowDragged(window_);
+    return;
+  }
+  if (!pressed_ || !left || image_.isNull()) {
     return SlicePane::mouseMoveEvent(event);
   }
   const QPoint from = *pressed_, to = pixelAt(event->position());

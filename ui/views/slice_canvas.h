@@ -24,14 +24,16 @@ class SliceCanvas : public SlicePane {
   void setKept(std::optional<QRect> pixels);
   // What would be taken out: tinted where `mask` (Format_Alpha8, a value a pixel) is opaque.
   void setMarked(const QImage& mask);
-  // Whether dragging with the left button draws a box.
+  // Whether dragging with the left button draws a box; else it sets the window, as in all slices.
   void setDrawable(bool drawable);
+  const HuWindow& window() const { return window_; }
 
   const QImage& image() const { return image_; }  // as it is drawn
   const QImage& marked() const { return marked_; }
 
  signals:
   void boxDrawn(const QRect& pixels);
+  void windowDragged(const trephine::HuWindow& window);
 
  protected:
   void paintSlice(QPainter& painter) override;
@@ -51,6 +53,8 @@ class SliceCanvas : public SlicePane {
   Mirroring mirroring_;
   bool drawable_ = false;
   std::optional<QPoint> pressed_;
+  std::optional<QPointF> windowing_;  // where a drag of the window began
+  HuWindow window_before_;
 };
 
 }  // namespace trephine

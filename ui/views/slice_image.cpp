@@ -7,6 +7,16 @@
 
 namespace trephine {
 
+HuWindow draggedWindow(const HuWindow& before, double right, double down) {
+  constexpr double kWidthPerPixel = 0.006;        // natural logarithm
+  constexpr double kLevelPerPixel = 1.0 / 300.0;  // of the width
+  constexpr double kWidest_HU = 8000.0, kHighest_HU = 4000.0;
+  const double width = before.width_hu * std::exp(kWidthPerPixel * right);
+  const double centre = before.centre_hu + kLevelPerPixel * down * before.width_hu;
+  return {std::round(std::clamp(centre, -kHighest_HU, kHighest_HU)),
+          std::round(std::clamp(width, 1.0, kWidest_HU))};
+}
+
 namespace {
 
 struct GreyRamp {

@@ -20,6 +20,10 @@ struct HuWindow {
   friend bool operator==(const HuWindow&, const HuWindow&) = default;
 };
 
+// `before` after a drag of so many pixels to the right, which makes it wider, and down, which makes
+// the picture darker: whole numbers.
+HuWindow draggedWindow(const HuWindow& before, double right, double down);
+
 // The whole of a body from air to dense bone: for thumbnails.
 inline constexpr HuWindow kWideWindow{0.0, 2000.0};
 

@@ -55,6 +55,16 @@ std::vector<ToolMark> marksOf(const std::vector<ToolView>& tools, const ShownSli
 
 }  // namespace
 
+QString nameOf(SliceAxis axis) {
+  return SlicePane::tr(factsOf(axis).name);
+}
+
+QString valueOf(const Measure& measure) {
+  return measure.kind == Measure::Kind::angle
+             ? SlicePane::tr("%1\u00b0").arg(angle_deg(measure), 0, 'f', 1)
+             : SlicePane::tr("%1 mm").arg(length_mm(measure), 0, 'f', 1);
+}
+
 QColor colourOf(SliceAxis axis) {
   return factsOf(axis).colour;
 }
@@ -179,8 +189,7 @@ void paintMeasure(QPainter& painter, const ShownSlice& on, const Measure& measur
   });
   const bool angle = measure.kind == Measure::Kind::angle;
   if (angle && line.size() < 3) return;
-  const QString words = angle ? SlicePane::tr("%1\u00b0").arg(angle_deg(measure), 0, 'f', 1)
-                              : SlicePane::tr("%1 mm").arg(length_mm(measure), 0, 'f', 1);
+  const QString words = valueOf(measure);
   QRectF box((line[0] + line[1]) / 2.0 + QPointF(8.0, -20.0), QSizeF(90.0, 18.0));
   if (angle) {  // outside of its arms
     const QLineF a(line[1], line[0]), b(line[1], line[2]);
@@ -201,10 +210,8 @@ void paintFacts(QPainter& painter, const ShownSlice& on, const HuWindow& window,
   const bool narrow = wide < kNarrow_pixels;
   QRectF box = QRectF(QPointF(), on.widget)
                    .adjusted(7, 4 + (narrow ? line : 0), -7, -(6 + (narrow ? line : 0)));
-  const QString place = SlicePane::tr("%1 %2/%3")
-                            .arg(SlicePane::tr(facts.name))
-                            .arg(on.slice + 1)
-                            .arg(on.stack.size[2]);
+  const QString place =
+      SlicePane::tr("%1 %2/%3").arg(nameOf(on.axis)).arg(on.slice + 1).arg(on.stack.size[2]);
   paintWords(painter, box, Qt::AlignLeft | Qt::AlignTop, place, facts.colour);
   // The letters at the edges do not say from which side a slice is seen.
   const QString side =

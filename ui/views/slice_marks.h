@@ -29,6 +29,9 @@ struct ShownSlice {
   bool holds(const Measure& measure) const;
 };
 
+// "Axial", and "19.0 mm" or "30.5°".
+QString nameOf(SliceAxis axis);
+QString valueOf(const Measure& measure);
 // Of a view's name, and of its slices as lines in the other two.
 QColor colourOf(SliceAxis axis);
 

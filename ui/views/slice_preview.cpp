@@ -3,7 +3,6 @@
 #include <QCoreApplication>
 #include <QHBoxLayout>
 #include <QShortcut>
-#include <QToolButton>
 #include <QVBoxLayout>
 #include <QWheelEvent>
 
@@ -40,11 +39,21 @@ SlicePreview::SlicePreview(QWidget* parent) : QWidget(parent) {
     windows_->addButton(button, i);
     window_row->addWidget(button);
   }
-  window_row->addStretch(1);
+  window_ = named(new QLabel(this), "windowNumbers", {"quiet"});
+  box_ = named(new QToolButton(this), "cropTool", {"segment"});
+  box_->setText(tr("Crop"));
+  box_->setToolTip(
+      tr("While this is pressed, a drag over the slice chooses the part that is imported"));
+  box_->setCheckable(true);
+  window_->setSizePolicy(QSizePolicy::Ignored, QSizePolicy::Preferred);  // where there is room
+  window_row->addWidget(window_, 1);
   windows_->button(int(kFirstPreset))->setChecked(true);
+  connect(box_, &QAbstractButton::toggled, this, [this] { setCroppable(croppable_); });
+  connect(canvas_, &SliceCanvas::windowDragged, this, &SlicePreview::showWindow);
 
   slider_ = named(new QSlider(Qt::Horizontal, this), "sliceSlider");
   slider_->setAccessibleName(tr("Slice"));
+  slider_->setMinimumWidth(40);
   slider_->setPageStep(kPageOfSlices);
   position_ = named(new QLabel(this), "slicePosition");
   position_->setMinimumWidth(
@@ -53,6 +62,7 @@ SlicePreview::SlicePreview(QWidget* parent) : QWidget(parent) {
   auto* slider_row = new QHBoxLayout;
   slider_row->addWidget(slider_, 1);
   slider_row->addWidget(position_);
+  slider_row->addWidget(box_);
 
   auto* layout = new QVBoxLayout(this);
   layout->setContentsMargins(8, 0, 8, 0);
@@ -60,8 +70,10 @@ SlicePreview::SlicePreview(QWidget* parent) : QWidget(parent) {
   layout->addWidget(canvas_, 1);
   layout->addLayout(slider_row);
 
-  connect(windows_, &QButtonGroup::idClicked, this,
-          [this](int i) { canvas_->setWindow(kWindowPresets[std::size_t(i)].window); });
+  connect(windows_, &QButtonGroup::idClicked, this, [this](int i) {
+    canvas_->setWindow(kWindowPresets[std::size_t(i)].window);
+    showWindow();
+  });
   connect(slider_, &QSlider::valueChanged, this, [this](int index) {
     showPosition();
     emit sliceWanted(index);
@@ -73,11 +85,31 @@ SlicePreview::SlicePreview(QWidget* parent) : QWidget(parent) {
   pages(Qt::Key_PageUp, QAbstractSlider::SliderPageStepAdd);
   pages(Qt::Key_PageDown, QAbstractSlider::SliderPageStepSub);
   showNothing({});
+  setCroppable(false);
+  showWindow();
+}
+
+void SlicePreview::setCroppable(bool croppable) {
+  croppable_ = croppable;
+  box_->setVisible(croppable);
+  canvas_->setDrawable(croppable && box_->isChecked());
+}
+
+// A preset is one of them alone.
+void SlicePreview::showWindow() {
+  const HuWindow& now = canvas_->window();
+  window_->setText(tr("W %1 L %2").arg(now.width_hu).arg(now.centre_hu));
+  windows_->setExclusive(false);
+  for (int i = 0; i < int(kWindowPresets.size()); ++i) {
+    windows_->button(i)->setChecked(kWindowPresets[std::size_t(i)].window == now);
+  }
+  windows_->setExclusive(true);
 }
 
 void SlicePreview::showStack(int count, const std::optional<Mat3>& direction) {
   if (count <= 0) return showNothing(tr("There is nothing to show."));
   canvas_->setDirection(direction);
+  canvas_->fit();
   {
     const QSignalBlocker quiet(slider_);
     slider_->setRange(0, count - 1);

@@ -7,6 +7,7 @@
 #include <QButtonGroup>
 #include <QLabel>
 #include <QSlider>
+#include <QToolButton>
 
 #include "imaging/steps/couch.h"
 #include "ui/views/slice_canvas.h"
@@ -27,6 +28,8 @@ class SlicePreview : public QWidget {
   void showSlice(int index, const Result<SlicePicture>& picture);
   int index() const { return slider_->value(); }
   SliceCanvas& canvas() { return *canvas_; }
+  // Whether a part of the slices can be chosen: by a box that is drawn while its button is down.
+  void setCroppable(bool croppable);
 
  signals:
   void sliceWanted(int index);
@@ -37,11 +40,15 @@ class SlicePreview : public QWidget {
 
  private:
   void showPosition();
+  void showWindow();
 
   SliceCanvas* canvas_;
   QSlider* slider_;
   QLabel* position_;
   QButtonGroup* windows_;
+  QLabel* window_;
+  QToolButton* box_;
+  bool croppable_ = false;
   int turned_ = 0;  // of the wheel, since the last whole notch
 };
 

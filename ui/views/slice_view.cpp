@@ -322,7 +322,10 @@ bool SliceView::event(QEvent* event) {
 }
 
 void SliceView::keyPressEvent(QKeyEvent* event) {
-  const bool plain = !(event->modifiers() & (Qt::ControlModifier | Qt::AltModifier));
+  // Letters with Shift are the 3-D view's.
+  const bool letter = event->key() >= Qt::Key_A && event->key() <= Qt::Key_Z;
+  const bool plain = !(event->modifiers() & (Qt::ControlModifier | Qt::AltModifier)) &&
+                     !(letter && (event->modifiers() & Qt::ShiftModifier));
   if (!hasSlice() || !plain || !handleKey(event->key())) SlicePane::keyPressEvent(event);
 }
 

@@ -48,6 +48,7 @@ class SliceView : public SlicePane {
   QString readout() const;
   const std::vector<Measure>& measures() const { return measures_; }
   void addMeasure(const Measure& measure) { measures_.push_back(measure); }
+  void clearMeasures() { measures_.clear(); }
 
   // ---- For tools, while there is a case.
   const HuWindow& window() const { return colours_.window(); }

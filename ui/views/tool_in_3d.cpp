@@ -131,9 +131,10 @@ void ToolIn3D::release() {
 bool ToolIn3D::key(int key) {
   if (training_ || !renderer_.hasVolume()) return false;
   if (isInHand() && toolbox_.useKey(key, nullptr)) return true;
+  if (toolbox_.takeByKey(key, true)) return true;
   const bool of_tool = key == Qt::Key_Return || key == Qt::Key_Enter ||
                        key == Qt::Key_BracketLeft || key == Qt::Key_BracketRight;
-  return (key == Qt::Key_V || (of_tool && isInHand())) && toolbox_.other_keys(key);
+  return (!of_tool || isInHand()) && toolbox_.other_keys(key);
 }
 
 }  // namespace trephine

@@ -43,9 +43,9 @@ bool Toolbox::useKey(int key, const Vec3* point_mm) {
   return true;
 }
 
-bool Toolbox::takeByKey(int key) {
+bool Toolbox::takeByKey(int key, bool in_3d) {
   for (ViewTool* tool : tools_) {
-    if (tool->facts().key != key || key == 0) continue;
+    if (tool->facts().key != key || key == 0 || (in_3d && !tool->worksIn3D())) continue;
     take(*tool);
     return true;
   }

@@ -28,7 +28,7 @@ class Toolbox : public QObject {
 
   // Whether the tool in hand had a use for the key, Esc to put it down among them.
   bool useKey(int key, const Vec3* point_mm);
-  bool takeByKey(int key);
+  bool takeByKey(int key, bool in_3d = false);  // in 3-D those alone that work there
   // For keys that neither a view nor a tool has a use for: whether they were of use.
   std::function<bool(int key)> other_keys = [](int) { return false; };
 

@@ -35,40 +35,46 @@ ViewStrip::ViewStrip(SceneRenderer& renderer, QWidget* view)
       {StandardView::superior, "viewSuperior", Qt::Key_S, tr("S"), tr("From above")},
       {StandardView::inferior, "viewInferior", Qt::Key_I, tr("I"), tr("From below")}};
   for (const auto& side : sides) {
-    QAction* action = make(side.name, side.text, side.letter, side.key,
-                           tr("%1; again: all of it").arg(side.text));
+    QAction* action = make(side.name, side.text, side.letter, Qt::SHIFT | side.key,
+                           tr("%1: all of the patient").arg(side.text));
     connect(action, &QAction::triggered, this, [this, at = side.side] {
-      renderer_.lookFrom(at);
+      const ViewCamera::Direction from = ViewCamera::from(at);
+      renderer_.showAll(from.forward, from.up, covered());
       emit changed();
     });
   }
+  exercise_ = make("viewExercise", tr("As the exercise looks"), tr("Entry"), Qt::SHIFT | Qt::Key_E,
+                   tr("Where the exercise looks: at its entry"));
+  connect(exercise_, &QAction::triggered, this, &ViewStrip::exerciseViewWanted);
+  setExerciseView(false);
   all_.append(nullptr);
-  parallel_ = makeSwitch("viewParallel", tr("Orthographic"), tr("Ortho"), Qt::Key_O,
+  parallel_ = makeSwitch("viewParallel", tr("Orthographic"), tr("Ortho"), Qt::SHIFT | Qt::Key_O,
                          tr("Without perspective: the scale bar holds everywhere"));
   connect(parallel_, &QAction::toggled, this, [this](bool on) {
     renderer_.setParallel(on);
     emit changed();
   });
   all_.append(nullptr);
-  box_ = makeSwitch("cropBox", tr("Crop box"), tr("Box"), Qt::Key_B,
+  box_ = makeSwitch("cropBox", tr("Crop box"), tr("Box"), Qt::SHIFT | Qt::Key_B,
                     tr("Cut the picture to a box: drag its squares"));
   connect(box_, &QAction::toggled, this, [this](bool on) {
     clip_.showBox(on);
     showClip();
   });
-  plane_ = makeSwitch("clipPlane", tr("Clip plane"), tr("Plane"), Qt::Key_C,
+  plane_ = makeSwitch("clipPlane", tr("Clip plane"), tr("Plane"), Qt::SHIFT | Qt::Key_C,
                       tr("Cut the picture with a plane: drag its squares, or comma and period"));
   connect(plane_, &QAction::toggled, this, [this](bool on) {
     clip_.showPlane(on, renderer_.camera());
     showClip();
   });
-  through_ = make("clipThroughTool", tr("Clip through the tool"), tr("At tool"), Qt::Key_T,
-                  tr("The plane through the tool's tip, facing you; again: along the tool"));
+  through_ =
+      make("clipThroughTool", tr("Clip through the tool"), tr("At tool"), Qt::SHIFT | Qt::Key_T,
+           tr("The plane through the tool's tip, facing you; again: along the tool"));
   connect(through_, &QAction::triggered, this, &ViewStrip::throughTool);
-  light_ = makeSwitch("moveLight", tr("Move the light"), tr("Light"), Qt::SHIFT | Qt::Key_L,
+  light_ = makeSwitch("moveLight", tr("Move the light"), tr("Light"), Qt::SHIFT | Qt::Key_M,
                       tr("Drag to move the light"));
   connect(light_, &QAction::toggled, this, &ViewStrip::lightToggled);
-  connect(make("resetClip", tr("Reset box, plane and light"), tr("Reset"), Qt::Key_X,
+  connect(make("resetClip", tr("Reset box, plane and light"), tr("Unclip"), Qt::SHIFT | Qt::Key_X,
                tr("Show everything again, with the light back in its place")),
           &QAction::triggered, this, &ViewStrip::reset);
   for (const double way : {1.0, -1.0}) {
@@ -88,6 +94,10 @@ ViewStrip::ViewStrip(SceneRenderer& renderer, QWidget* view)
   setTools({});
   adjustSize();
   hide();
+}
+
+void ViewStrip::setExerciseView(bool has) {
+  exercise_->setEnabled(has);
 }
 
 QAction* ViewStrip::make(const char* name, const QString& text, const QString& word,
@@ -122,6 +132,10 @@ void ViewStrip::place() {
   const QWidget* view = parentWidget();
   move(view->width() - width() - kMargin, kMargin);
   setVisible(isEnabled() && view->height() >= height() + 2 * kMargin);
+}
+
+int ViewStrip::covered() const {
+  return isVisible() ? int((width() + 2 * kMargin) * devicePixelRatioF()) : 0;
 }
 
 void ViewStrip::showClip() {

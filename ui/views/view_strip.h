@@ -23,6 +23,7 @@ class ViewStrip : public QFrame {
   // view has no room for it.
   ViewStrip(SceneRenderer& renderer, QWidget* view);
 
+  int covered() const;  // pixels of the view from its edge; 0: it is hidden
   void place();
   // What the strip holds, a separator (null) between groups.
   const QList<QAction*>& all() const { return all_; }
@@ -35,6 +36,8 @@ class ViewStrip : public QFrame {
   void setVolume(const GridGeometry& geometry);
   // A tool's plane needs a tool: the right hand's, where there are two.
   void setTools(const std::vector<ToolView>& tools);
+  // Whether the exercise has a view of its own.
+  void setExerciseView(bool has);
   std::vector<ClipPlane> planes() const { return clip_.planes(); }
   bool movesLight() const { return light_->isChecked(); }
   // What a drag of the left button moves: the handle that it took, within reach of that place of
@@ -48,6 +51,7 @@ class ViewStrip : public QFrame {
  signals:
   void changed();       // the picture of the volume
   void lightToggled();  // movesLight()
+  void exerciseViewWanted();
 
  private:
   QAction* make(const char* name, const QString& text, const QString& word, const QKeySequence& key,
@@ -60,7 +64,7 @@ class ViewStrip : public QFrame {
 
   SceneRenderer& renderer_;
   QList<QAction*> all_;
-  QAction *parallel_, *box_, *plane_, *through_, *light_;
+  QAction *parallel_, *box_, *plane_, *through_, *light_, *exercise_;
   QGridLayout* grid_;
   int cell_ = 0;
   ClipTools clip_;

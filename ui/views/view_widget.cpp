@@ -311,9 +311,14 @@ void ViewWidget::lookAtLandmark(const LandmarkFrame& frame, double distance_mm) 
   redraw();
 }
 
-void ViewWidget::lookFromFront() {
+void ViewWidget::lookAtAll(const std::optional<LandmarkFrame>& from) {
   fitRenderer();
-  renderer_.resetCamera(Vec3(0, 1, 0), Vec3(0, 0, 1));
+  if (from) {
+    renderer_.showAll(from->viewDirection(), from->viewUp(), strip_->covered());
+  } else {
+    const ViewCamera::Direction front = ViewCamera::from(StandardView::anterior);
+    renderer_.showAll(front.forward, front.up, strip_->covered());
+  }
   redraw();
 }
 
@@ -355,15 +360,30 @@ Result<Picture> ViewWidget::picture() {
   return picture;
 }
 
+// About the middle of all that is seen while about all of it is in the picture; from near, about
+// the place under the pointer, or in the middle of the picture.
+Vec3 ViewWidget::turningPoint(const QPointF& place) const {
+  constexpr double kNear = 0.6;  // of the radius of what is seen
+  const SceneRenderer::Seen seen = renderer_.seen();
+  if (renderer_.camera().halfHeight_mm() > kNear * seen.radius_mm) return seen.middle_mm;
+  for (const QPointF& at : {place, QPointF(rect().center())}) {
+    if (const std::optional<Picked> picked = pickAt(at)) return picked->at_mm;
+  }
+  return renderer_.camera().focus();
+}
+
 void ViewWidget::turn(double right_pixels, double down_pixels) {
-  renderer_.orbit(-kTurn_deg_per_pixel * right_pixels, kTurn_deg_per_pixel * down_pixels);
+  renderer_.orbit(-kTurn_deg_per_pixel * right_pixels, kTurn_deg_per_pixel * down_pixels,
+                  turned_about_mm_);
   redraw();
 }
 
 void ViewWidget::mousePressEvent(QMouseEvent* event) {
   tool_.setPointer(event->position());
   strip_->letGo();
-  if (event->button() != Qt::LeftButton || !renderer_.hasVolume()) return;
+  if (!renderer_.hasVolume()) return;
+  turned_about_mm_ = turningPoint(event->position());
+  if (event->button() != Qt::LeftButton) return;
   if (!strip_->take(event->position()) && tool_.isInHand()) tool_.press();
 }
 
@@ -399,11 +419,20 @@ void ViewWidget::wheelEvent(QWheelEvent* event) {
   if (training_ && !(event->modifiers() & Qt::ControlModifier)) {
     emit pushStepped(notches);
   } else {
-    renderer_.zoom(std::pow(kZoomStep, notches));
+    zoomAt(event->position(), std::pow(kZoomStep, notches));
     tool_.followRing();
     redraw();
   }
   event->accept();
+}
+
+// What the pointer is at stays there, about.
+void ViewWidget::zoomAt(const QPointF& place, double factor) {
+  const double before_mm = renderer_.camera().distance_mm();
+  renderer_.zoom(factor);
+  const double nearer = before_mm / renderer_.camera().distance_mm();
+  const QPointF away = (place - QRectF(rect()).center()) * ((1.0 - nearer) * devicePixelRatioF());
+  renderer_.pan(away.x(), away.y());
 }
 
 void ViewWidget::keyPressEvent(QKeyEvent* event) {
@@ -414,7 +443,9 @@ void ViewWidget::keyPressEvent(QKeyEvent* event) {
   if (right == 0 && up == 0 && deeper == 0) {
     // With Shift; alone it is the window's.
     if (key == Qt::Key_Home && training_) return emit toolStraightened();
-    if (!tool_.key(key)) QOpenGLWidget::keyPressEvent(event);
+    const bool plain =
+        !(event->modifiers() & (Qt::ShiftModifier | Qt::ControlModifier | Qt::AltModifier));
+    if (!plain || !tool_.key(key)) QOpenGLWidget::keyPressEvent(event);
     return;
   }
   if (!renderer_.hasVolume()) return;
@@ -430,6 +461,7 @@ void ViewWidget::keyPressEvent(QKeyEvent* event) {
     renderer_.zoom(std::pow(kZoomStep, deeper));
     redraw();
   } else {
+    turned_about_mm_ = turningPoint(rect().center());
     turn(right * kKeyTurn_pixels, -up * kKeyTurn_pixels);
   }
 }

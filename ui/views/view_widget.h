@@ -37,9 +37,9 @@ class ViewWidget : public QOpenGLWidget {
   void setMirror(std::shared_ptr<VolumeMirror> mirror);
   void takeChanges();
   void setTissues(const TissueSet& tissues, const TissueLooks& looks = {});
-  // Looks at a landmark from outside, or at the whole case from the front.
+  // Looks at a landmark from outside, or at all of the patient from there or from the front.
   void lookAtLandmark(const LandmarkFrame& frame, double distance_mm);
-  void lookFromFront();
+  void lookAtAll(const std::optional<LandmarkFrame>& from);
   // Where the tools are now; draws when something changed.
   void setTools(const std::vector<ToolView>& tools);
 
@@ -59,6 +59,7 @@ class ViewWidget : public QOpenGLWidget {
 
   // Standard views, crop box and what else the strip over the view offers.
   const ViewStrip& tools() const { return *strip_; }
+  ViewStrip& tools() { return *strip_; }
 
   const ViewCamera& camera() const { return renderer_.camera(); }
   // The picture is of what there is now, at full quality.
@@ -117,6 +118,8 @@ class ViewWidget : public QOpenGLWidget {
   void refine();
   void warmUp();
   void showLevel();
+  Vec3 turningPoint(const QPointF& place) const;
+  void zoomAt(const QPointF& place, double factor);
   void turn(double right_pixels, double down_pixels);
   void fitHint();
   void fitRenderer();
@@ -135,6 +138,7 @@ class ViewWidget : public QOpenGLWidget {
   QTimer still_, refine_, warm_;
   std::vector<ToolView> tools_;  // of the exercise
   std::vector<WorkspaceBox> workspaces_;
+  Vec3 turned_about_mm_{0.0};  // by a drag
   bool training_ = false;
   bool resizing_ = false;
   bool worked_ = false;  // since the event loop came round

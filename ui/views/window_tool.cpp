@@ -1,6 +1,4 @@
 #include <QPainter>
-#include <algorithm>
-#include <cmath>
 
 #include "ui/common/colours.h"
 #include "ui/views/slice_tools.h"
@@ -21,15 +19,9 @@ class WindowTool : public ViewTool {
   }
 
   void move(const ToolEvent& event) override {
-    constexpr double kWidthPerPixel = 0.006;        // natural logarithm
-    constexpr double kLevelPerPixel = 1.0 / 300.0;  // of the width
-    constexpr double kWidest_HU = 8000.0, kHighest_HU = 4000.0;
     const QPointF moved = event.in_widget - pressed_;
     if (moved.isNull()) return;
-    const double width = before_.width_hu * std::exp(kWidthPerPixel * moved.x());
-    const double centre = before_.centre_hu + kLevelPerPixel * moved.y() * before_.width_hu;
-    emit event.slice->windowChosen({std::round(std::clamp(centre, -kHighest_HU, kHighest_HU)),
-                                    std::round(std::clamp(width, 1.0, kWidest_HU))});
+    emit event.slice->windowChosen(draggedWindow(before_, moved.x(), moved.y()));
   }
 
  private:

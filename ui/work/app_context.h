@@ -23,8 +23,14 @@ class AppContext : public QObject {
   const std::filesystem::path& storage() const { return storage_; }
   // For work in the background.
   const std::shared_ptr<CaseLibrary>& library() const { return library_; }
-  // An exercise of a file; one that was made on a case of the library opens that as well.
-  void openExercise(const std::filesystem::path& exercise, Place then);
+  // An exercise of a file; one that was made on a case of the library opens that as well. Where it
+  // names a built-in case or none, the case that is open stays, unless `with_its_case`.
+  void openExercise(const std::filesystem::path& exercise, Place then, bool with_its_case = false);
+  // Once nobody minds what goes with it: the case too, where that changes.
+  void openUnlessLost(const std::filesystem::path& exercise, Place then,
+                      bool with_its_case = false);
+  // The folder of an exercise that was exported becomes one of this workstation, which is opened.
+  void takeInExercise(const std::filesystem::path& folder, Place then);
   // Those of the workstation, then those that were made or imported here.
   std::vector<std::filesystem::path> exercises() const;
   // Of the storage folder: there is another one, or one is called otherwise.
@@ -55,6 +61,8 @@ class AppContext : public QObject {
   void tryingChanged();
 
  private:
+  bool changesCase(const std::filesystem::path& exercise_file, bool with_its_case) const;
+
   std::filesystem::path storage_, recordings_;
   std::shared_ptr<CaseLibrary> library_;
   Messages messages_;
@@ -65,6 +73,7 @@ class AppContext : public QObject {
   std::string review_of_;
   QAction *undo_, *redo_;
   bool trying_ = false;
+  bool opening_ = false;  // a case is being opened
 };
 
 }  // namespace trephine

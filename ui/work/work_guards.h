@@ -12,7 +12,7 @@
 
 namespace trephine {
 
-enum class UnsavedWork { structures, cuts, tissues };
+enum class UnsavedWork { structures, measures, cuts, tissues };
 
 class WorkGuards {
  public:
@@ -28,6 +28,10 @@ class WorkGuards {
   // Goes on once all of these guards did, asked one after the other in this order. A kind without a
   // guard goes on. What is being typed is taken first.
   void unlessLost(const std::vector<UnsavedWork>& losses, Next go_on);
+  // What goes with the case: all but the exercise.
+  static std::vector<UnsavedWork> ofTheCase() {
+    return {UnsavedWork::structures, UnsavedWork::measures, UnsavedWork::cuts};
+  }
   // What is being typed counts as entered.
   void takeTyped();
   // What has to be settled before an exercise starts.
@@ -42,7 +46,7 @@ class WorkGuards {
  private:
   Workstation& workstation_;
   Messages& messages_;
-  std::array<Guard, 3> guards_;
+  std::array<Guard, 4> guards_;
   Guard before_start_;
   std::filesystem::path case_source_;
 };

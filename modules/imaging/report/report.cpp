@@ -93,6 +93,8 @@ const char* severityName(Severity severity) {
   switch (severity) {
     case Severity::notice:
       return "notice";
+    case Severity::edit:
+      return "edit";
     case Severity::repair:
       return "repair";
     case Severity::refusal:

@@ -23,7 +23,8 @@ namespace trephine {
 enum class Verdict { pass, repaired, refused };
 const char* verdictName(Verdict verdict);
 
-enum class Severity { notice, repair, refusal };
+// `edit`: the volume was changed as a person asked, which says nothing against the series.
+enum class Severity { notice, edit, repair, refusal };
 const char* severityName(Severity severity);
 
 // One thing noticed about a series; `action` says in plain words what was done or what to do.
@@ -78,7 +79,7 @@ struct Provenance {
   Answers answers;                          // what was done about each question of the series
   std::vector<Code> unanswered;             // codes of those that nobody answered
   std::vector<Code> unused_answers;         // codes of answers to questions that it did not ask
-  std::vector<Finding> changes;             // findings of severity repair
+  std::vector<Finding> changes;             // findings of severity repair and edit
   std::optional<VoxelBox> crop;
   int reduction = 1;
   std::optional<MeasuredLoss> loss;

@@ -144,7 +144,7 @@ std::string provenanceSection(const Provenance& provenance) {
 
 }  // namespace
 
-std::string reportPage(const ImportReport& report) {
+std::string reportPage(const ImportReport& report, const std::optional<std::string>& only) {
   std::string html =
       "<!DOCTYPE html>\n<html><head><meta charset=\"utf-8\"><title>CT import report</title>\n"
       "<style>@page { size: A4; margin: 15mm } body { font-family: sans-serif; font-size: 9pt }"
@@ -158,13 +158,22 @@ std::string reportPage(const ImportReport& report) {
   }
   // What was opened first, then what can be, then the rest.
   std::vector<std::size_t> order;
-  for (std::size_t n = 0; n < report.series.size(); ++n) order.push_back(n);
+  const std::optional<std::string>& of = only ? only : report.chosen;
+  for (std::size_t n = 0; n < report.series.size(); ++n) {
+    if (!of || *of == report.series[n].uid) order.push_back(n);
+  }
+  const std::size_t others = report.series.size() - order.size();
   const auto chosen = [&](std::size_t n) { return report.chosen == report.series[n].uid; };
   std::ranges::stable_sort(order, {}, [&](std::size_t n) {
     return chosen(n) ? 0 : report.series[n].verdict != Verdict::refused ? 1 : 2;
   });
   for (std::size_t n = 0; n < std::min(order.size(), kMostSeries); ++n) {
-    html += seriesSection(report.series[order[n]], n + 1, order.size(), chosen(order[n]));
+    html += seriesSection(report.series[order[n]], of ? order[n] + 1 : n + 1, report.series.size(),
+                          chosen(order[n]));
+  }
+  if (others > 0) {
+    html += trCount(others, "<p>The folder holds {} other series, which is not told of here.</p>\n",
+                    "<p>The folder holds {} other series, which are not told of here.</p>\n");
   }
   if (order.size() > kMostSeries) {
     html += trCount(order.size() - kMostSeries,

@@ -382,7 +382,8 @@ Result<StructureFit> fitted(Segmentation& of, const Volume& ct, const Answers& a
   fit.covers = coveredBy(of.geometry, g);
   const double covered = shareCovered(of.geometry, g, fit.covers);
   fit.covers_percent = 100.0 * covered;
-  if (covered < 1.0) {
+  // A DICOM Segmentation leaves out the slices that have nothing of it.
+  if (covered < 1.0 && of.format != "DICOM SEG") {
     fit.findings.push_back({code::kPartOfCt,
                             Severity::notice,
                             tr("The file covers {} % of the CT: {}", number(fit.covers_percent),

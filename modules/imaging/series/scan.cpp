@@ -77,7 +77,11 @@ class Walk {
     for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error)) {
       entries.push_back(it->path());
     }
-    if (error) skip(tr("a folder that could not be opened"));
+    if (error == std::errc::permission_denied) {
+      skip(tr("a folder that you have no right to open"));
+    } else if (error) {
+      skip(tr("a folder that could not be opened"));
+    }
     std::ranges::sort(entries, {}, &fs::path::native);
     for (const fs::path& entry : entries) visit(entry, depth + 1);
   }

@@ -22,6 +22,16 @@ void keepFinding(Series& series, Finding finding) {
 
 std::optional<Error> folderError(const ImportReport& report) {
   const auto is_ct = [](const SeriesReport& s) { return s.modality == "CT"; };
+  if (report.files_seen == 0 && !report.skipped.empty()) {
+    const SkippedFiles& first = report.skipped.front();
+    return Error{
+        code::kUnreadable,
+        trCount(std::uint64_t(first.count), "There is no file that can be read; {} was skipped: {}",
+                "There is no file that can be read; {} were skipped: {}", first.reason),
+        report.path,
+        tr("Choose the folder that holds the CT; where you have no right to read it, ask "
+           "for that")};
+  }
   if (report.files_seen == 0) {
     return Error{code::kEmptyFolder, tr("The folder holds no files"), report.path,
                  tr("Choose another folder")};

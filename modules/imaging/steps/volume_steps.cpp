@@ -40,7 +40,7 @@ bool stepCouch(const CoarseGrid& grid, const Answers& answers, SeriesReport& ser
   }
   const std::uint64_t voxels = removeCouch(volume, couch);
   series.findings.push_back({code::kCouch,
-                             Severity::repair,
+                             Severity::edit,
                              text,
                              {},
                              tr("It was taken out as was agreed: {} voxels became air", voxels)});
@@ -180,7 +180,7 @@ Result<bool> stepFace(const CoarseGrid& grid, const ImportRequest& request, Seri
     return kept(text + ". ");
   }
   series.findings.push_back({code::kFace,
-                             Severity::repair,
+                             Severity::edit,
                              tr(kFaceText),
                              {},
                              tr("The face was cut away as was agreed: {} voxels became air{}. "
@@ -219,7 +219,7 @@ Status takeVolumeSteps(const ImportRequest& request, const Progress& progress, S
     const ReductionLoss measured = reductionLoss(volume, *small, request.reduction);
     loss = MeasuredLoss{measured.rms_hu, measured.p99_hu, measured.bone_volume_change_percent};
     series.findings.push_back({code::kReduced,
-                               Severity::repair,
+                               Severity::edit,
                                tr("The resolution was reduced to {} along each axis",
                                   request.reduction == 2 ? "a half" : "a quarter"),
                                {},

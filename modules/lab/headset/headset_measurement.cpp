@@ -349,7 +349,7 @@ Status savePictures(HeadsetRig& rig, const fs::path& out, const Progress& progre
   constexpr int kSize = 512;
   constexpr double kMoment_s = 1.0;
   for (const char* name : {"burr-hole", "cranium", "cranium-one-arm", "liver", "liver-one-arm",
-                           "seed-cranium", "seed-liver"}) {
+                           "research/seed-cranium", "research/seed-liver"}) {
     progress.at(0.95, std::string("pictures, ") + name);
     if (progress.cancelled()) return stopped();
     const fs::path file = resourceFolder() / "scenes" / (std::string(name) + ".json");
@@ -380,7 +380,8 @@ Status savePictures(HeadsetRig& rig, const fs::path& out, const Progress& progre
                     both.rgb.begin() + std::ptrdiff_t((row * 2 + eye) * kSize * 3));
       }
     }
-    if (Status written = writePng(both, out / ("eyes-" + std::string(name) + ".png")); !written) {
+    if (Status written = writePng(both, out / ("eyes-" + file.stem().string() + ".png"));
+        !written) {
       return written;
     }
   }

@@ -149,12 +149,12 @@ class CasesGuiTest : public test::WindowTest {
     QTest::mouseClick(open_case, Qt::LeftButton);
     QVERIFY(opened.wait(kLong_ms));
     QTRY_VERIFY_WITH_TIMEOUT(!workstation().currentCase()->stored.empty(), kLong_ms);
-    QVERIFY2(window_->statusBar()->currentMessage().contains("remove the stick"),
+    QVERIFY2(window_->statusBar()->currentMessage().contains("not needed any more"),
              qPrintable(window_->statusBar()->currentMessage()));
     window_->show(Place::cases);
     QTRY_COMPARE_WITH_TIMEOUT(ids().size(), 3, kLong_ms);
     QVERIFY2(idOfMine().startsWith("head-"), qPrintable(idOfMine()));
-    QVERIFY(find<QLabel>("nextStepTitle")->text().contains("remove the stick"));
+    QVERIFY(find<QLabel>("nextStepTitle")->text().contains("not needed any more"));
     // From here on it is called by its name alone, and it is the one that is chosen.
     QVERIFY2(!find<QLabel>("caseLabel")->text().contains("Jane"),
              qPrintable(find<QLabel>("caseLabel")->text()));
@@ -209,8 +209,9 @@ class CasesGuiTest : public test::WindowTest {
     const std::string sha = workstation().currentCase()->sha256;
     const QString id = idOfMine();
     window_.reset();
+    write(settings::kWorkspace, QString("prepare"));
     open();
-    window_->show(Place::cases);
+    QVERIFY2(window_->place() == Place::cases, "without a case nothing can be prepared");
     QTRY_COMPARE_WITH_TIMEOUT(ids().size(), 3, kLong_ms);
     QVERIFY2(find<QLabel>("nextStepTitle")->text().contains("Teaching head"),
              qPrintable(find<QLabel>("nextStepTitle")->text()));
@@ -401,6 +402,7 @@ class CasesGuiTest : public test::WindowTest {
     choose(id);
     QTest::mouseClick(find<QPushButton>("prepareCase"), Qt::LeftButton);
     QTRY_VERIFY_WITH_TIMEOUT(window_->place() == Place::prepare, kLong_ms);
+    QTRY_VERIFY_WITH_TIMEOUT(workstation().currentCase() && !workstation().isOpening(), kLong_ms);
     QVERIFY(workstation().currentCase()->stored == id.toStdString());
     window_->show(Place::cases);
     choose(id);

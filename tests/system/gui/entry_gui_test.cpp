@@ -3,6 +3,7 @@
 #include <QApplication>
 #include <QFile>
 #include <QLabel>
+#include <QMessageBox>
 #include <QPushButton>
 #include <QToolButton>
 #include <QTreeWidget>
@@ -76,6 +77,12 @@ class EntryGuiTest : public test::WindowTest {
     QVERIFY(glm::length(before - skin) > 5.0);
     QVERIFY2(outward().y < -0.7, "out of the patient's front");
     keepGrab("entry-skin.png");
+    // It would go with the window, and with another patient.
+    window_->close();
+    QTRY_VERIFY(window_->findChild<QMessageBox*>("unsavedTissues"));
+    window_->findChild<QMessageBox*>("unsavedTissues")->reject();
+    QTRY_VERIFY(!window_->findChild<QMessageBox*>("unsavedTissues"));
+    QVERIFY(window_->isVisible());
   }
 
   void aDragSaysWhereTheInstrumentComesFrom() {
@@ -112,7 +119,11 @@ class EntryGuiTest : public test::WindowTest {
   void aClickOnWhatIsSeenIn3DPlacesItThere() {
     views().setLayout({ViewLayout::Kind::single, 0});
     restRefined();
-    take("sliceEntryTool");
+    take("sliceWindowTool");
+    QApplication::setActiveWindow(window_.get());
+    window_->view().setFocus();
+    QTest::keyClick(handle(), Qt::Key_I);
+    QVERIFY2(inHand("sliceEntryTool"), "a letter means the same in every view");
     const QPointF middle = QRectF(window_->view().rect()).center();
     const auto seen = window_->view().pickAt(middle);
     QVERIFY(seen);

@@ -1,10 +1,14 @@
 // An exercise is made in Prepare: tools, arms, what is felt, its card, its outline; it is saved,
 // tried, exported and imported elsewhere. By the effect on exercise, disk and picture.
+#include <QComboBox>
 #include <QFileDialog>
+#include <QListWidget>
 #include <QMenu>
 #include <QMessageBox>
 #include <QPlainTextEdit>
 #include <QRegularExpression>
+#include <QScrollArea>
+#include <QScrollBar>
 
 #include "case/placement.h"
 #include "exchange/exercise_folder.h"
@@ -51,6 +55,14 @@ class ExerciseGuiTest : public test::WindowTest {
     key(line, Qt::Key_Return);
     rest();
   }
+  void typeText(const char* name, const QString& text) {
+    auto* edit = find<QPlainTextEdit>(name);
+    edit->setFocus();
+    edit->selectAll();
+    QTest::keyClicks(edit, text);
+    key(edit, Qt::Key_Return);
+    rest();
+  }
   void write(const char* name, const QString& text) {
     auto* edit = find<QPlainTextEdit>(name);
     edit->setFocus();
@@ -59,7 +71,7 @@ class ExerciseGuiTest : public test::WindowTest {
       QTest::keyClicks(edit, line);
       if (line != text.split('\n').back()) key(edit, Qt::Key_Return);
     }
-    find<QLineEdit>("card:goal")->setFocus();
+    find<QPlainTextEdit>("card:goal")->setFocus();
   }
   // As a click in the opened list does.
   void choose(const char* name, const QVariant& data) {
@@ -574,7 +586,7 @@ class ExerciseGuiTest : public test::WindowTest {
 
   void whatIsTypedIsNotLostWhenTheWindowCloses() {
     showTab(PrepareWorkspace::kExerciseTab);
-    auto* goal = find<QLineEdit>("card:goal");
+    auto* goal = find<QPlainTextEdit>("card:goal");
     goal->setFocus();
     goal->selectAll();
     QTest::keyClicks(goal, "Half a sentence");
@@ -587,25 +599,57 @@ class ExerciseGuiTest : public test::WindowTest {
     QVERIFY(find<QAction>("undo")->toolTip().contains("the card"));
   }
 
+  void nothingOfTheFormLiesBesideItsPanel() {
+    showTab(PrepareWorkspace::kExerciseTab);
+    const auto* area = find<QScrollArea>("exercisePage");
+    QString widest;
+    for (const QWidget* of : area->widget()->findChildren<QWidget*>()) {
+      const int right = of->mapTo(area->widget(), QPoint(of->width(), 0)).x();
+      if (of->isVisible() && right > area->viewport()->width()) {
+        widest += of->objectName() + ' ' + of->metaObject()->className() + ' ' +
+                  QString::number(of->minimumSizeHint().width()) + '\n';
+      }
+    }
+    QVERIFY2(area->horizontalScrollBar()->maximum() == 0, qPrintable(widest));
+  }
+
   void theCardIsWrittenInBothLanguagesAndKeepsItsLimits() {
     showTab(PrepareWorkspace::kExerciseTab);
-    type("card:goal", "Cut it out");
+    typeText("card:goal", "Cut it out");
+    QVERIFY(find<QLabel>("chineseOld")->isVisible());
     QCOMPARE(exercise().card->en.goal, std::string("Cut it out"));
     write("card:steps", "Do this\nThen that");
     QCOMPARE(exercise().card->en.steps, (std::vector<std::string>{"Do this", "Then that"}));
-    type("card:hands", "Both");
+    typeText("card:hands", "Both");
     QCOMPARE(exercise().card->en.hands, std::string("Both"));
-    auto* chinese = find<QLineEdit>("cardChinese:goal");
+    auto* chinese = find<QPlainTextEdit>("cardChinese:goal");
     chinese->setFocus();
-    chinese->setText(QString::fromUtf8("切開"));
+    chinese->selectAll();
+    chinese->insertPlainText(QString::fromUtf8("切開"));
     key(chinese, Qt::Key_Return);
     QCOMPARE(exercise().card->zh_TW->goal, std::string("切開"));
-    auto* goal = find<QLineEdit>("card:goal");
+    QVERIFY(!find<QLabel>("chineseOld")->isVisible());
+    auto* goal = find<QPlainTextEdit>("card:goal");
     goal->setFocus();
-    goal->setText(QString(500, 'x'));
+    goal->selectAll();
+    goal->insertPlainText(QString(500, 'x'));
     key(goal, Qt::Key_Return);
     QVERIFY(find<QLabel>("cardProblem")->text().contains("500"));
     QCOMPARE(exercise().card->en.goal, std::string("Cut it out"));
+    // It stays to be mended, whatever else is edited meanwhile, and says so.
+    typeText("card:hands", "One");
+    QCOMPARE(exercise().card->en.hands, std::string("One"));
+    QCOMPARE(goal->toPlainText().size(), 500);
+    QVERIFY(find<QLabel>("card:goalNotApplied")->isVisible());
+    window_->close();  // and is asked about before it goes
+    QTRY_VERIFY(window_->findChild<QMessageBox*>("textNotApplied"));
+    find<QMessageBox>("textNotApplied")->button(QMessageBox::Cancel)->click();
+    QVERIFY(window_->isVisible());
+    QCOMPARE(goal->toPlainText().size(), 500);
+    typeText("card:goal", "Cut it out at once");
+    QCOMPARE(exercise().card->en.goal, std::string("Cut it out at once"));
+    QVERIFY(!find<QLabel>("card:goalNotApplied")->isVisible());
+    typeText("card:goal", "Cut it out");
     find<QCheckBox>("cardChineseOn")->click();
     QVERIFY(!exercise().card->zh_TW);
     find<QCheckBox>("cardChineseOn")->click();  // nothing of it was lost
@@ -746,6 +790,49 @@ class ExerciseGuiTest : public test::WindowTest {
     Exercise here = exercise(), there = *another.workstation().exercise();
     QCOMPARE(QString::fromStdString(toJson(there).dump()),
              QString::fromStdString(toJson(here).dump()));
+    // It is one of the cases there, from which it is opened again.
+    another.show(Place::cases);
+    auto* cards = another.findChild<QListWidget*>("cases");
+    const auto cardOfMine = [&] {
+      const auto found = cards->findItems("Mine", Qt::MatchStartsWith);
+      return found.isEmpty() ? nullptr : found.front();
+    };
+    QTRY_VERIFY_WITH_TIMEOUT(cardOfMine(), kLong_ms);
+    cards->setCurrentItem(cardOfMine());
+    QVERIFY(!another.findChild<QPushButton*>("deleteCase")->isVisible());
+    QVERIFY(another.grab().save(QString(TREPHINE_ARTEFACTS "/received-exercise.png")));
+    another.findChild<QPushButton*>("trainOnCase")->click();
+    QVERIFY2(another.place() == Place::train, "at once, and not once it is open");
+    QVERIFY(opened.count() == 2 || opened.wait(kLong_ms));
+    QVERIFY(another.workstation().exercise()->name == "Mine");
+    QCOMPARE(another.place(), Place::train);
+    // It is changed and saved there, with the case that it came with.
+    another.show(Place::prepare);
+    another.findChild<QTabWidget*>("prepareTabs")->setCurrentIndex(PrepareWorkspace::kExerciseTab);
+    const std::filesystem::path received = another.workstation().exerciseFile();
+    QVERIFY(another.workstation().edit("name", [](Exercise& of) { of.name = "Mine too"; }).ok());
+    another.findChild<QPushButton*>("saveExercise")->click();
+    QTRY_VERIFY_WITH_TIMEOUT(!another.workstation().exerciseEdited(), kLong_ms);
+    const auto as_saved = readExercise(received);
+    QVERIFY(as_saved.ok());
+    QCOMPARE(as_saved->name, std::string("Mine too"));
+    QVERIFY(readCase(as_saved->case_source).ok());
+  }
+
+  void openExerciseTakesWhatWasExported() {
+    const QString folder = temporary_.filePath("stick/mine");
+    for (const char* chosen : {"exercise.json", "scene.json", ""}) {
+      QTemporaryDir other;
+      const auto elsewhere = newWindow(toPath(other.path()) / "recordings");
+      elsewhere->resize(1280, 800);
+      elsewhere->QMainWindow::show();
+      QSignalSpy opened(&elsewhere->workstation(), &Workstation::caseOpened);
+      elsewhere->open(toPath(folder) / chosen);
+      QVERIFY2(opened.count() == 1 || opened.wait(kLong_ms), chosen);
+      QCOMPARE(elsewhere->workstation().exercise()->name, std::string("Mine"));
+      QCOMPARE(exercisesIn(toPath(other.path())).size(), std::size_t(1));
+      QCOMPARE(elsewhere->place(), Place::train);
+    }
   }
 
   void anExerciseThatWasChangedOnItsWayIsNamedPartByPart() {
@@ -820,7 +907,7 @@ class ExerciseGuiTest : public test::WindowTest {
     take("structureBrush");
     SliceView& axial = slice(SliceAxis::axial);
     QTest::mouseClick(&axial, Qt::LeftButton, {}, axial.rect().center());
-    QTRY_VERIFY(window_->findChild<PrepareWorkspace*>()->structuresEdited());
+    QTRY_VERIFY(window_->findChild<PrepareWorkspace*>()->structuresUnsaved());
     take("sliceWindowTool");
     untilStructuresAreTaken();
     untilPlaced();
@@ -840,7 +927,7 @@ class ExerciseGuiTest : public test::WindowTest {
     dialog->close();
     find<QAction>("saveInCase")->trigger();
     untilSaved();
-    QVERIFY(!window_->findChild<PrepareWorkspace*>()->structuresEdited());
+    QVERIFY(!window_->findChild<PrepareWorkspace*>()->structuresUnsaved());
   }
 
   void aCaseThatIsGoneIsSaidAndWhatIsOpenStays() {
@@ -904,21 +991,56 @@ class ExerciseGuiTest : public test::WindowTest {
              std::string("phantom:cranium"));
   }
 
-  void whatIsLockedIsNotEdited() {
+  void whatAnExerciseKeepsBindsWhoPractisesFromSavingOnAndNotItsAuthor() {
     showTab(PrepareWorkspace::kExerciseTab);
-    find<QCheckBox>("scene:locks:rate")->click();
-    QVERIFY(exercise().locks.contains(Lock::rate));
-    QVERIFY(workstation().isLocked(Lock::rate));
-    QVERIFY(find<QLabel>("formLocked")->isVisible());
-    QVERIFY(!find<QLineEdit>("scene:name")->isEnabled());
+    find<QCheckBox>("scene:locks:tissues")->click();
+    find<QCheckBox>("scene:locks:controller")->click();
+    QCOMPARE(exercise().locks, (Locks{Lock::tissues, Lock::controller}));
+    const auto isOpenToItsAuthor = [this] {
+      return !find<QLabel>("formLocked")->isVisible() &&
+             find<QLineEdit>("scene:name")->isEnabled() &&
+             find<QPushButton>("saveExercise")->isEnabled() &&
+             find<QPushButton>("saveExerciseCopy")->isEnabled() && !workstation().anyLocked();
+    };
+    QVERIFY(isOpenToItsAuthor());
+    // Not saved, it binds nobody.
+    window_->show(Place::train);
+    QVERIFY(find<QComboBox>("controller")->isEnabled());
+    window_->show(Place::prepare);
+    find<QPushButton>("saveExercise")->click();
+    untilSaved();
+    QVERIFY(isOpenToItsAuthor());
+    window_->show(Place::train);
+    QVERIFY(!find<QComboBox>("controller")->isEnabled());
+    QVERIFY(find<QLabel>("locked")->isVisible());
+    TissueSet others = exercise().tissues;
+    others.tissues.back().hu_max += 10;
     Exercise other = exercise();
-    other.name = "x";
-    QCOMPARE(workstation().edit(other, "name").error().code.str(), std::string("LOCKED"));
-    workstation().setUnlocked(true);
-    QVERIFY(find<QLineEdit>("scene:name")->isEnabled());
-    find<QCheckBox>("scene:locks:rate")->click();
-    QVERIFY(!exercise().locks.contains(Lock::rate));
-    workstation().setUnlocked(false);
+    other.tissues = others;
+    QCOMPARE(workstation().edit(other, "hu").error().code.str(), std::string("LOCKED"));
+    // Changed in Prepare and not saved, it is tried from there and not practised.
+    window_->show(Place::prepare);
+    QVERIFY(workstation().edit(other, "hu").ok());
+    window_->show(Place::train);
+    QSignalSpy failed(window_.get(), &MainWindow::failed);
+    window_->startExercise();
+    QTRY_COMPARE(failed.count(), 1);
+    QVERIFY(failed[0][0].value<Error>().what.find("keeps its tissues") != std::string::npos);
+    QVERIFY(workstation().tissuesEdited());
+    for (auto* box : window_->findChildren<QMessageBox*>("errorDialog")) box->close();
+    window_->show(Place::prepare);
+    showTab(PrepareWorkspace::kExerciseTab);
+    find<QPushButton>("tryExercise")->click();
+    QVERIFY(find<QComboBox>("controller")->isEnabled());
+    QSignalSpy started(&workstation(), &Workstation::sessionStarted);
+    window_->startExercise();
+    QVERIFY(started.count() == 1 || started.wait(kLong_ms));
+    find<QPushButton>("backToPrepare")->click();
+    QTRY_VERIFY_WITH_TIMEOUT(workstation().phase() == Workstation::Phase::ready, kLong_ms);
+    workstation().undoEdit();
+    find<QCheckBox>("scene:locks:tissues")->click();
+    find<QCheckBox>("scene:locks:controller")->click();
+    QVERIFY(exercise().locks.empty());
   }
 };
 

@@ -195,10 +195,10 @@ class GuiTest : public test::WindowTest {
     auto *exercises = find<QComboBox>("scenes"), *controller = find<QComboBox>("controller");
     const QString before = exercises->currentText();
     QCOMPARE(controller->currentText(), QString());
-    workstation().openPath(resourceFolder() / "scenes" / "seed-liver.json");
+    workstation().openPath(resourceFolder() / "scenes" / "liver.json");
     QVERIFY(workstation().isOpening());
     QVERIFY2(exercises->currentText().contains("liver"), qPrintable(exercises->currentText()));
-    QCOMPARE(controller->currentText(), controllerWord(ControllerKind::seed));
+    QCOMPARE(controller->currentText(), controllerWord(ControllerKind::bounded));
     workstation().cancelOpening();
     QTRY_VERIFY_WITH_TIMEOUT(!workstation().isOpening(), kLong_ms);
     QCOMPARE(exercises->currentText(), before);
@@ -511,9 +511,13 @@ class GuiTest : public test::WindowTest {
     QVERIFY(!bytes.contains(temporary_.path().toUtf8()));
   }
 
-  void whatWasCutIsNotLostWithoutAQuestion() {
+  void cutsOfWhichAVolumeWasWantedAreNotLostWithoutAQuestion() {
     QVERIFY(shownSha() != sha_before_);  // what was cut stays on the screen
     const std::string cut_sha = shownSha();
+    find<QAction>("saveVolume")->trigger();
+    QTRY_VERIFY(window_->findChild<QFileDialog*>("saveDialog"));
+    find<QFileDialog>("saveDialog")->reject();
+    rest();
     focusView();
     QTest::keyClick(&view(), Qt::Key_F5);
     keepAll("cutsQuestion");

@@ -63,7 +63,7 @@ class LooksGuiTest : public test::WindowTest {
     workstation().openImported(caseOf(std::make_shared<const Volume>(test::coarseCranium(4))));
     QVERIFY(opened.count() == 1 || opened.wait(kLong_ms));
     showTissues();
-    window_->view().lookFromFront();
+    window_->view().lookAtAll({});
   }
 
   void theSkinPresetShowsSkinThatTheSetHasClear() {

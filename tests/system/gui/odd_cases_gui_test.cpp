@@ -65,7 +65,7 @@ class OddCasesGuiTest : public test::WindowTest {
       said = box->text() + "\n" + box->informativeText();
       box->close();
     }
-    view().lookFromFront();
+    view().lookAtAll({});
     return said;
   }
   QImage volumePicture() {
@@ -168,7 +168,7 @@ class OddCasesGuiTest : public test::WindowTest {
       widget->setMinimumSize(least);
       widget->setGeometry(place);
     }
-    view().lookFromFront();
+    view().lookAtAll({});
     QTRY_COMPARE_WITH_TIMEOUT(volumePicture(), before, kLong_ms);
   }
 

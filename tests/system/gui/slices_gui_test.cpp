@@ -5,7 +5,10 @@
 #include <QDir>
 #include <QElapsedTimer>
 #include <QFile>
+#include <QFileDialog>
 #include <QLineEdit>
+#include <QMessageBox>
+#include <QPushButton>
 #include <QToolButton>
 #include <QWindow>
 #include <QtTest>
@@ -362,6 +365,18 @@ class SlicesGuiTest : public test::WindowTest {
     QVERIFY(std::abs(angle_deg(axial().measures()[1]) - truth) <= 0.5);
     QVERIFY(drawn(0.3 * c + 0.7 * b));
     keepGrab("slices-measures.png");
+    // They go with the window: each is named first.
+    window_->close();
+    QTRY_VERIFY(window_->findChild<QMessageBox*>("measuresQuestion"));
+    auto* question = window_->findChild<QMessageBox*>("measuresQuestion");
+    QVERIFY(question->informativeText().contains("Ruler"));
+    QVERIFY(question->informativeText().contains("Angle"));
+    QTest::mouseClick(question->findChild<QPushButton*>("saveMeasures"), Qt::LeftButton);
+    QTRY_VERIFY(window_->findChild<QFileDialog*>("saveDialog"));
+    auto* dialog = window_->findChild<QFileDialog*>("saveDialog");
+    dialog->close();
+    QTRY_VERIFY(!window_->findChild<QFileDialog*>("saveDialog"));
+    QVERIFY2(window_->isVisible(), "nothing was chosen, so all stays");
 
     key(axial(), Qt::Key_Delete);
     QVERIFY(!drawn(0.3 * c + 0.7 * b));

@@ -4,6 +4,7 @@
 #include <dcmtk/dcmdata/dctk.h>
 
 #include <QApplication>
+#include <QComboBox>
 #include <QFile>
 #include <QFileDialog>
 #include <QInputDialog>
@@ -317,6 +318,24 @@ class StructureFilesGuiTest : public test::WindowTest {
     for (QMessageBox* box : window_->findChildren<QMessageBox*>()) box->close();
   }
 
+  void anExportIsACopyAndWhatTheCaseDoesNotHoldIsNamedBeforeItGoes() {
+    QVERIFY(!workstation().currentCase()->stored.empty());
+    window_->close();
+    auto* question = wait<QMessageBox>("structuresUnsaved");
+    QVERIFY2(question->text().contains("liver") && question->text().contains("segment 4"),
+             qPrintable(question->text()));
+    QVERIFY(question->findChild<QPushButton*>("saveInCaseFirst"));
+    question->reject();
+    QTRY_VERIFY(!window_->findChild<QMessageBox*>("structuresUnsaved"));
+    QVERIFY(window_->isVisible());
+    // Another case is no way around it.
+    prepareBuiltIn("cranium");
+    wait<QMessageBox>("structuresUnsaved")->reject();
+    QTRY_VERIFY(!window_->findChild<QMessageBox*>("structuresUnsaved"));
+    QVERIFY(!workstation().currentCase()->stored.empty());
+    showStructures();
+  }
+
   void forTheOriginalCtItNamesItsUidsOnceThatIsAgreed() {
     const QString folder = temporary_.filePath("original");
     choose("saveForSource");
@@ -394,6 +413,42 @@ class StructureFilesGuiTest : public test::WindowTest {
     QVERIFY(changed.count() == 1 || changed.wait(kLong_ms));
     QVERIFY(liesAbove(0));
     QTRY_VERIFY(!window_->findChild<QMessageBox*>("structuresQuestion"));
+  }
+
+  void ourOwnExportIsListedAsStructuresAndComesWithItsCt() {
+    workstation().openPath(source_);
+    auto* series = find<QListWidget>("seriesList");
+    QTRY_COMPARE_WITH_TIMEOUT(series->count(), 2, kLong_ms);
+    QTRY_VERIFY_WITH_TIMEOUT(find<QPushButton>("import")->isEnabled(), kLong_ms);
+    bool listed = false;
+    for (int row = 0; row < series->count(); ++row) {
+      const QString said = series->item(row)->data(Qt::AccessibleTextRole).toString();
+      QVERIFY2(!said.contains("Refused"), qPrintable(said));
+      listed |= said.endsWith("Structures");
+    }
+    QVERIFY(listed);
+    QVERIFY(window_->grab().save(QString(TREPHINE_ARTEFACTS "/own-export-listed.png")));
+    QVERIFY2(find<QComboBox>("labelFile")->currentIndex() > 0, "of this CT alone: it comes along");
+    QSignalSpy opened(&workstation(), &Workstation::caseOpened);
+    find<QPushButton>("import")->click();
+    QTRY_VERIFY_WITH_TIMEOUT(find<QPushButton>("openCase")->isVisible() ||
+                                 window_->findChild<QMessageBox*>("structuresUnsaved") ||
+                                 opened.count() == 1,
+                             kLong_ms);
+    if (find<QPushButton>("openCase")->isVisible()) {
+      for (QRadioButton* keep : window_->findChildren<QRadioButton*>()) {
+        if (keep->objectName().endsWith("_keep") && keep->isVisible()) keep->click();
+      }
+      find<QPushButton>("openCase")->click();
+    }
+    if (opened.isEmpty()) {  // what the case before lacks
+      wait<QMessageBox>("structuresUnsaved")->findChild<QPushButton*>("goOnAnyway")->click();
+      QVERIFY(opened.count() == 1 || opened.wait(kLong_ms));
+    }
+    const Case& of = *workstation().currentCase();
+    QVERIFY(of.structures && of.structures->find("liver"));
+    QVERIFY2(of.structure_warnings.empty(),
+             of.structure_warnings.empty() ? "" : of.structure_warnings[0].text.c_str());
   }
 
   void aBuiltInCaseHasNoSourceThatCouldBeNamed() {

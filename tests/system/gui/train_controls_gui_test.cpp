@@ -241,7 +241,6 @@ class TrainControlsGuiTest : public test::TrainTest {
     QSignalSpy opened(&workstation(), &Workstation::caseOpened);
     exercises->setCurrentIndex(other);
     emit exercises->activated(other);
-    answer("cutsQuestion", "goOnAnyway");
     QVERIFY(opened.count() == 1 || opened.wait(kLong_ms));
     QVERIFY(window_->place() == Place::train);
     QVERIFY(find<QLabel>("exerciseRemoved")->text().contains("nothing"));
@@ -315,7 +314,6 @@ class TrainControlsGuiTest : public test::TrainTest {
     QVERIFY(result->isVisible());
     // With all tissue back the card says again what to do.
     find<QAction>("reset")->trigger();
-    answer("cutsQuestion", "goOnAnyway");
     QTRY_VERIFY(find<QWidget>("startCard")->isVisible());
     QVERIFY(!result->isVisible());
   }

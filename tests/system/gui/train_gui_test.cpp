@@ -17,6 +17,7 @@
 #include <QtTest>
 
 #include "base/codes.h"
+#include "exchange/exercise_folder.h"
 #include "tissue/tissue_edits.h"
 #include "train_support.h"
 #include "ui/common/words.h"
@@ -385,12 +386,9 @@ class TrainGuiTest : public test::TrainTest {
     QTest::mouseClick(find<QPushButton>("resultLook"), Qt::LeftButton);
     QVERIFY(!result->isVisible());
     QVERIFY2(workstation().carved(), "the tissue stays as it was left");
-    // Again: from whole tissue, after the question for what was not saved.
+    // Again: from whole tissue, without a question, as the recording has the cuts.
     QSignalSpy started(&workstation(), &Workstation::sessionStarted);
     find<QAction>("start")->trigger();
-    QTRY_VERIFY(window_->findChild<QMessageBox*>("cutsQuestion"));
-    auto* question = find<QMessageBox>("cutsQuestion");
-    QTest::mouseClick(question->findChild<QPushButton*>("goOnAnyway"), Qt::LeftButton);
     QVERIFY(started.count() == 1 || started.wait(kLong_ms));
     QCOMPARE(removedVoxels(*workstation().session()), 0u);
     stop();
@@ -510,6 +508,11 @@ class TrainGuiTest : public test::TrainTest {
 
   void anExerciseThatTheWorkstationKeepsOutCannotBeChosen() {
     window_.reset();
+    const std::filesystem::path storage = toPath(temporary_.filePath("storage"));
+    Exercise other = *readExercise(defaultExercise("cranium"));
+    other.controller = ControllerKind::off;
+    const std::filesystem::path folder = freshExercise(storage, "Without control");
+    QVERIFY(saveExercise(other, folder, storage).ok());
     Policy policy;
     policy.locks = {Lock::controller};
     policy.controller = ControllerKind::bounded;
@@ -529,6 +532,7 @@ class TrainGuiTest : public test::TrainTest {
     QVERIFY(kept_out > 0 && kept_out < exercises->count());
     workstation().setUnlocked(true);
     for (int i = 0; i < exercises->count(); ++i) QVERIFY(rows->item(i)->isEnabled());
+    std::filesystem::remove_all(folder);
   }
 
   void wrongSettingsOfTheWorkstationAreSaid() {
@@ -615,7 +619,8 @@ class TrainGuiTest : public test::TrainTest {
     window_ = newWindow(toPath(temporary_.filePath("storage/sessions")));
     window_->show();
     QVERIFY(QTest::qWaitForWindowExposed(window_.get()));
-    QVERIFY(window_->place() == Place::train);
+    QVERIFY2(window_->place() == Place::cases, "nothing is open yet");
+    window_->show(Place::train);
     QCOMPARE(window_->size(), QSize(1100, 700));
     QVERIFY(!find<QAction>("rightPanel")->isChecked());
     QVERIFY2(find<QPushButton>("startCardChoose")->isVisible(), "the next step is offered");

@@ -118,37 +118,75 @@ class ViewToolsGuiTest : public test::WindowTest {
   }
 
   void aKeyLooksFromASide() {
-    press(Qt::Key_A);
+    press(Qt::Key_A, Qt::ShiftModifier);
     const Picture front = shot();
-    press(Qt::Key_L);
+    press(Qt::Key_L, Qt::ShiftModifier);
     QVERIFY(differentPixels(front, shot()) > 2000);
-    press(Qt::Key_A);
+    press(Qt::Key_A, Qt::ShiftModifier);
     QCOMPARE(differentPixels(front, shot()), 0);
   }
 
-  void theSameKeyAgainShowsTheWholeCase() {
-    for (int n = 0; n < 2; ++n) press(Qt::Key_A);
+  void theFirstPressShowsAllOfThePatientWhateverWasLookedAt() {
+    press(Qt::Key_A, Qt::ShiftModifier);
     const Picture whole = shot();
-    press(Qt::Key_L);
+    press(Qt::Key_L, Qt::ShiftModifier);
     for (int n = 0; n < 3; ++n) press(Qt::Key_PageDown);
-    press(Qt::Key_A);
-    QVERIFY(differentPixels(whole, shot()) > 2000);
-    press(Qt::Key_A);
+    press(Qt::Key_A, Qt::ShiftModifier);
     QCOMPARE(differentPixels(whole, shot()), 0);
+    const ViewCamera& camera = view().camera();
+    const GridGeometry& g = window_->workstation().currentCase()->volume->geometry;
+    QVERIFY(glm::distance(camera.focus(), g.centre_mm()) < 0.2 * g.diagonal_mm());
+  }
+
+  void theExercisesOwnViewIsOneOfTheViews() {
+    press(Qt::Key_E, Qt::ShiftModifier);
+    const LandmarkFrame landmark = *window_->workstation().viewLandmark();
+    QVERIFY(glm::distance(view().camera().focus(), landmark.position_mm) < 1e-6);
+    QCOMPARE(view().camera().distance_mm(), window_->workstation().exercise()->view.distance_mm);
+    find<QAction>("resetView")->trigger();
+    QVERIFY(glm::distance(view().camera().focus(), landmark.position_mm) > 10.0);
+    QVERIFY(view().camera().distance_mm() > window_->workstation().exercise()->view.distance_mm);
+  }
+
+  void aDragTurnsAboutWhatIsSeen() {
+    press(Qt::Key_A, Qt::ShiftModifier);
+    const Vec3 middle = view().camera().focus();
+    const QPoint from = view().rect().center() + QPoint(40, 20);
+    drag(from, from + QPoint(220, 60));
+    const double ratio = view().devicePixelRatioF();
+    const auto at =
+        view().camera().pixelOf(middle, int(view().width() * ratio), int(view().height() * ratio));
+    QVERIFY(at);
+    QVERIFY2(std::abs(at->x - 0.5 * view().width() * ratio) < 2.0 &&
+                 std::abs(at->y - 0.5 * view().height() * ratio) < 2.0,
+             "the patient stays in the middle");
+    // From near it is the place under the pointer that stays.
+    press(Qt::Key_E, Qt::ShiftModifier);
+    for (int n = 0; n < 2; ++n) press(Qt::Key_PageDown);
+    const QPoint place = view().rect().center() + QPoint(30, 10);
+    const std::optional<Picked> seen = view().pickAt(place);
+    QVERIFY(seen);
+    drag(place, place + QPoint(30, -20));
+    const auto stays = view().camera().pixelOf(seen->at_mm, int(view().width() * ratio),
+                                               int(view().height() * ratio));
+    QVERIFY(stays);
+    QVERIFY(std::abs(stays->x - place.x() * ratio) < 3.0);
+    QVERIFY(std::abs(view().height() * ratio - stays->y - place.y() * ratio) < 3.0);
+    press(Qt::Key_A, Qt::ShiftModifier);
   }
 
   void orthographicChangesThePictureAndComesBack() {
     const Picture before = shot();
-    press(Qt::Key_O);
+    press(Qt::Key_O, Qt::ShiftModifier);
     QVERIFY(view().tools().parallel()->isChecked());
     QVERIFY(differentPixels(before, shot()) > 500);
-    press(Qt::Key_O);
+    press(Qt::Key_O, Qt::ShiftModifier);
     QCOMPARE(differentPixels(before, shot()), 0);
   }
 
   void theBoxIsShownWithItsHandlesAndAHandleIsDragged() {
     const Picture before = seen();
-    press(Qt::Key_B);
+    press(Qt::Key_B, Qt::ShiftModifier);
     const Picture boxed = seen();
     QVERIFY(differentPixels(before, boxed) > 100);
     // The handle of the patient's left face lies at the right of the picture's middle.
@@ -163,30 +201,30 @@ class ViewToolsGuiTest : public test::WindowTest {
     drag(from, from - QPoint(60, 0));
     QVERIFY2(differentPixels(boxed, seen()) > 100, "the handle and the box's edge went with it");
     QCOMPARE(camera.forward(), Vec3(0, 1, 0));  // the drag turned no camera
-    press(Qt::Key_X);
+    press(Qt::Key_X, Qt::ShiftModifier);
     QVERIFY(!view().tools().box()->isChecked());
     QCOMPARE(differentPixels(before, seen()), 0);
   }
 
   void thePlaneComesByKeyMovesByKeyAndGoes() {
     const Picture before = seen();
-    press(Qt::Key_C);
+    press(Qt::Key_C, Qt::ShiftModifier);
     const Picture with = seen();
     QVERIFY(differentPixels(before, with) > 100);
     for (int i = 0; i < 8; ++i) press(Qt::Key_Comma);
     QVERIFY(differentPixels(with, seen()) > 50);
-    press(Qt::Key_C);
+    press(Qt::Key_C, Qt::ShiftModifier);
     QCOMPARE(differentPixels(before, seen()), 0);
-    press(Qt::Key_X);
+    press(Qt::Key_X, Qt::ShiftModifier);
   }
 
   // The plane faces the eye, in the middle of the head: the nose and brow before it are gone, and
   // where it meets bone there is a flat face as bright as the light makes one that looks at the
   // eye.
   void thePlaneRemovesWhatLiesBeforeItAndLeavesWhatLiesBehind() {
-    press(Qt::Key_A);
+    press(Qt::Key_A, Qt::ShiftModifier);
     const Picture whole = shot();
-    press(Qt::Key_C);
+    press(Qt::Key_C, Qt::ShiftModifier);
     const Picture halved = shot();
     const int changed = differentPixels(whole, halved);
     QVERIFY2(changed > whole.width * whole.height / 20, qPrintable(QString::number(changed)));
@@ -198,7 +236,7 @@ class ViewToolsGuiTest : public test::WindowTest {
     const int one = differentPixels(whole, before_all), other = differentPixels(whole, behind_all);
     QVERIFY2(std::min(one, other) == 0, qPrintable(QString("%1 %2").arg(one).arg(other)));
     QVERIFY2(std::max(one, other) > changed, qPrintable(QString("%1 %2").arg(one).arg(other)));
-    press(Qt::Key_X);
+    press(Qt::Key_X, Qt::ShiftModifier);
     QCOMPARE(differentPixels(whole, shot()), 0);
   }
 
@@ -211,17 +249,17 @@ class ViewToolsGuiTest : public test::WindowTest {
     const Picture before = seen();
     view().setTools({tool});
     QVERIFY(through->isEnabled());
-    press(Qt::Key_T);
+    press(Qt::Key_T, Qt::ShiftModifier);
     QVERIFY(view().tools().plane()->isChecked());
     QVERIFY(differentPixels(before, seen()) > 100);
     view().setTools({});
-    press(Qt::Key_X);
+    press(Qt::Key_X, Qt::ShiftModifier);
     QCOMPARE(differentPixels(before, seen()), 0);
   }
 
   void inTheLightsModeADragTurnsNoCamera() {
     const Picture before = seen();
-    press(Qt::Key_L, Qt::ShiftModifier);
+    press(Qt::Key_M, Qt::ShiftModifier);
     QVERIFY(view().tools().light()->isChecked());
     QVERIFY2(differentPixels(before, seen()) > 20, "where the light is stands in the view");
     QCOMPARE(differentPixels(shot(), before), 0);  // but in no picture that is saved
@@ -229,25 +267,25 @@ class ViewToolsGuiTest : public test::WindowTest {
     const QPoint middle = view().rect().center();
     drag(middle, middle + QPoint(120, 40));
     QCOMPARE(view().camera().forward(), forward);
-    press(Qt::Key_X);
+    press(Qt::Key_X, Qt::ShiftModifier);
     QVERIFY(!view().tools().light()->isChecked());
     drag(middle, middle + QPoint(60, 0));
     QVERIFY(view().camera().forward() != forward);
-    press(Qt::Key_A);
+    press(Qt::Key_A, Qt::ShiftModifier);
   }
 
   void theLitSideFollowsTheLight() {
-    press(Qt::Key_A);
+    press(Qt::Key_A, Qt::ShiftModifier);
     const Picture before = shot();
     const QPoint middle = view().rect().center();
-    press(Qt::Key_L, Qt::ShiftModifier);
+    press(Qt::Key_M, Qt::ShiftModifier);
     drag(middle, middle - QPoint(300, 0));
     const double from_left = brighterLeft(shot());
     for (int i = 0; i < 2; ++i) drag(middle, middle + QPoint(300, 0));
     const double from_right = brighterLeft(shot());
     QVERIFY2(from_left > from_right + 20.0,
              qPrintable(QString("%1 %2").arg(from_left).arg(from_right)));
-    press(Qt::Key_X);
+    press(Qt::Key_X, Qt::ShiftModifier);
     QCOMPARE(differentPixels(before, shot()), 0);
   }
 

@@ -88,6 +88,21 @@ class WindowSizeTest : public test::WindowTest {
     QVERIFY2(lost.isEmpty(), qPrintable(name + ": " + lost.join(", ")));
   }
 
+  // What needs most of the column, and how much.
+  static QString widest(const QScrollArea& area) {
+    QString words;
+    for (const QWidget* of : area.widget()->findChildren<QWidget*>()) {
+      const int left = of->mapTo(area.widget(), QPoint(0, 0)).x();
+      const int needs = left + std::max(of->minimumSizeHint().width(), of->minimumWidth());
+      if (!of->isVisible() || needs <= area.viewport()->width() - 12) continue;
+      words += QStringLiteral("\n  %1 %2 from %3, %4 wide")
+                   .arg(of->objectName(), of->metaObject()->className())
+                   .arg(left)
+                   .arg(needs - left);
+    }
+    return words;
+  }
+
   void verifyAllIsThere(const QSize& size) {
     window_->resize(size);
     rest();
@@ -105,7 +120,8 @@ class WindowSizeTest : public test::WindowTest {
       // A column is read without being moved to and fro.
       const int beyond =
           qobject_cast<QScrollArea*>(tabs->widget(tab))->horizontalScrollBar()->maximum();
-      QVERIFY2(beyond == 0, qPrintable(tabs->tabText(tab) + ' ' + QString::number(beyond)));
+      QVERIFY2(beyond == 0, qPrintable(tabs->tabText(tab) + ' ' + QString::number(beyond) +
+                                       widest(*qobject_cast<QScrollArea*>(tabs->widget(tab)))));
       verifyPage("1" + tabs->tabText(tab));
     }
     for (const char* name : {"start", "stop", "pause", "undo", "redo", "reset"}) {

@@ -11,6 +11,7 @@
 #include <optional>
 #include <vector>
 
+#include "base/file.h"
 #include "session/operator_script.h"
 #include "shells.h"
 #include "support.h"
@@ -211,6 +212,69 @@ TEST_F(DeskTest, ADraggedThresholdMakesNoJson) {
   EXPECT_EQ(made_json, 0);
   ASSERT_TRUE(desk_.edit("name", [](Exercise& exercise) { exercise.name = "another"; }));
   EXPECT_EQ(made_json, 1) << "what is typed is checked as a file is";
+}
+
+// An exercise that keeps its tissues, on the bone.
+class KeptDeskTest : public DeskTest {
+ protected:
+  void open() {
+    Exercise kept = readExercise(defaultExercise("cranium")).value();
+    kept.case_source.clear();
+    kept.locks = {Lock::tissues};
+    ASSERT_TRUE(writeTextFile(file_, toJson(kept).dump()).ok());
+    ASSERT_NO_FATAL_FAILURE(openBone());
+    desk_.useExercise(file_);
+    ASSERT_TRUE(untilOpened());
+    ASSERT_FALSE(failed_) << failed_->sentence();
+    ASSERT_EQ(desk_.exercise()->locks, (Locks{Lock::tissues}));
+  }
+  Status soften() {
+    return desk_.edit("tissues",
+                      [](Exercise& exercise) { exercise.tissues.tissues.back().hu_max -= 7; });
+  }
+  const std::filesystem::path file_ = folder_ / "kept.json";
+};
+
+TEST_F(KeptDeskTest, WhatIsPractisedStaysKeptWhereverOneLooksUntilItHasEnded) {
+  ASSERT_NO_FATAL_FAILURE(open());
+  desk_.setStepped(true);
+  desk_.start(folder_.path(), {}, 1e9);
+  ASSERT_TRUE(until([&] { return desk_.session() || failed_; }));
+  ASSERT_FALSE(failed_) << failed_->sentence();
+  desk_.setPractising(false);
+  EXPECT_EQ(soften().error().code.str(), "LOCKED");
+  desk_.stop();
+  ASSERT_TRUE(until([&] { return desk_.phase() == Desk::Phase::ready; }));
+  EXPECT_TRUE(soften().ok());
+}
+
+TEST_F(KeptDeskTest, ACopyOfItsTissuesInAFileMakesThemNoneOfItsOwn) {
+  ASSERT_NO_FATAL_FAILURE(open());
+  desk_.setPractising(false);
+  ASSERT_TRUE(soften().ok());
+  bool saved = false;
+  desk_.saveTissues(folder_ / "copy.json", "saved", [&] { saved = true; });
+  ASSERT_TRUE(until([&] { return saved || failed_; }));
+  ASSERT_FALSE(failed_) << failed_->sentence();
+  EXPECT_FALSE(desk_.tissuesEdited()) << "a file has them";
+  EXPECT_TRUE(desk_.tissuesUnlikeExercise());
+  desk_.setPractising(true);
+  desk_.start(folder_.path(), {}, 1e9);
+  ASSERT_TRUE(failed_);
+  EXPECT_EQ(failed_->code.str(), "LOCKED");
+  EXPECT_EQ(desk_.phase(), Desk::Phase::ready);
+}
+
+TEST_F(DeskTest, StructuresAreOpenedWithoutAnotherCase) {
+  ASSERT_NO_FATAL_FAILURE(openBone());
+  desk_.openImported(caseOf(std::make_shared<const Volume>(bone_)));
+  EXPECT_TRUE(desk_.opensAnotherCase());
+  ASSERT_TRUE(untilOpened());
+  ASSERT_TRUE(writeSegmentation(*structure("bone"), liver_).ok());
+  desk_.useLabels(liver_);
+  EXPECT_TRUE(desk_.isOpening());
+  EXPECT_FALSE(desk_.opensAnotherCase());
+  ASSERT_TRUE(untilOpened());
 }
 
 }  // namespace

@@ -52,6 +52,21 @@ TEST(EntryPoint, TheDirectionIsOutOfTheSkinOrTheBoneThatWasClicked) {
   EXPECT_FALSE(outwardAt(thick, bone(), nullptr, "none", middle + Vec3(0, 0, 66)));
 }
 
+TEST(EntryPoint, HowDeepInTissueAPlaceLiesIsMeasuredOnTheWayOut) {
+  const Volume volume = headOfBalls();
+  const Vec3 middle = volume.geometry.centre_mm(), side(0, -1, 0);
+  const auto depth = [&](const TissueSet& set, double from_mm) {
+    return depthInTissue_mm(volume, set, nullptr, middle + from_mm * side, side);
+  };
+  EXPECT_LE(depth(bone(), 66.0), 1.0);
+  EXPECT_EQ(depth(bone(), 75.0), 0.0) << "in air";
+  EXPECT_NEAR(depth(bone(), 61.0), 5.0, 1.0);
+  TissueSet all = bone();
+  all.tissues[0].hu_min = 0;
+  EXPECT_NEAR(depth(all, 0.0), 70.0, 1.0);
+  EXPECT_NEAR(depth(all, 40.0), 30.0, 1.0);
+}
+
 TEST(EntryPoint, AStructuresLabelIsItsTissue) {
   Volume volume = headOfBalls();
   const GridGeometry& g = volume.geometry;

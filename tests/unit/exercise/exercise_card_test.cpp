@@ -12,7 +12,9 @@ using test::burrHole;
 using test::burrHoleFile;
 
 TEST(ExerciseCard, EveryShippedExerciseHasOneInBothLanguages) {
-  for (const auto& entry : std::filesystem::directory_iterator(resourceFolder() / "scenes")) {
+  for (const auto& entry :
+       std::filesystem::recursive_directory_iterator(resourceFolder() / "scenes")) {
+    if (entry.is_directory()) continue;
     const Exercise exercise = *readExercise(entry.path());
     const CardText* english = cardFor(exercise, "en");
     const CardText* chinese = cardFor(exercise, "zh_TW");
@@ -102,7 +104,9 @@ TEST(ExerciseLocks, AreReadAndWrittenAndNothingElseIsLocked) {
 }
 
 TEST(ExerciseLocks, NoShippedExerciseLocksAnything) {
-  for (const auto& entry : std::filesystem::directory_iterator(resourceFolder() / "scenes")) {
+  for (const auto& entry :
+       std::filesystem::recursive_directory_iterator(resourceFolder() / "scenes")) {
+    if (entry.is_directory()) continue;
     EXPECT_TRUE(readExercise(entry.path())->locks.empty()) << entry.path();
   }
 }

@@ -106,7 +106,9 @@ TEST(Exercise, IsAnotherByItsFilesMeshesAndTissuesElsewhere) {
 
 TEST(ExerciseFile, IsReadAsWhatWasWrittenAndWrittenAgainInTheSameBytes) {
   int exercises = 0;
-  for (const auto& entry : std::filesystem::directory_iterator(resourceFolder() / "scenes")) {
+  for (const auto& entry :
+       std::filesystem::recursive_directory_iterator(resourceFolder() / "scenes")) {
+    if (entry.is_directory()) continue;
     const Result<Exercise> exercise = readExercise(entry.path());
     ASSERT_TRUE(exercise.ok()) << entry.path();
     const std::string written = exerciseFile(*exercise).dump(1);

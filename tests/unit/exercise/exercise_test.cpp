@@ -17,7 +17,9 @@ std::filesystem::path shippedFile() { return resourceFolder() / "scenes" / "cran
 
 TEST(Exercise, EveryShippedExerciseReads) {
   int count = 0;
-  for (const auto& entry : std::filesystem::directory_iterator(resourceFolder() / "scenes")) {
+  for (const auto& entry :
+       std::filesystem::recursive_directory_iterator(resourceFolder() / "scenes")) {
+    if (entry.is_directory()) continue;
     Result<Exercise> exercise = readExercise(entry.path());
     ASSERT_TRUE(exercise.ok()) << exercise.error().sentence();
     EXPECT_FALSE(exercise->operator_file.empty());

@@ -91,6 +91,8 @@ TEST_F(PolicyFile, ItsFolderHasExercisesOfTheWorkstationToo) {
   std::vector<fs::path> expected = exercisesOfWorkstation(nobody_s);
   EXPECT_GE(expected.size(), 5u);
   EXPECT_TRUE(std::is_sorted(expected.begin(), expected.end()));
+  const std::vector<fs::path> for_research = exercisesOfWorkstation(nobody_s, true);
+  EXPECT_EQ(for_research.size(), expected.size() + 2) << "those after a paper are not a trainee's";
   if (root_) {
     expected.push_back(folder_ / "ours" / "a.json");
     expected.push_back(folder_ / "ours" / "b.json");
@@ -212,8 +214,8 @@ TEST(Policy, AValueThatIsPrescribedIsAskedOfEveryExercise) {
   EXPECT_TRUE(checkExercise(policy, exercise, "/somewhere/own/scene.json"));
   exercise.rate_hz = 2000.0;
   expectLocked(checkExercise(policy, exercise, "/somewhere/own/scene.json"), "2000 Hz");
-  expectLocked(checkExercise(policy, *readExercise(shippedFile("seed-cranium.json")),
-                             shippedFile("seed-cranium.json")),
+  expectLocked(checkExercise(policy, *readExercise(shippedFile("research/seed-cranium.json")),
+                             shippedFile("research/seed-cranium.json")),
                "'seed'");
 }
 

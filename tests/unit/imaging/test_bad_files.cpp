@@ -1,3 +1,6 @@
+#include <grp.h>
+#include <sys/wait.h>
+#include <unistd.h>
 #include <zlib.h>
 
 #include <chrono>
@@ -96,6 +99,35 @@ std::string repeated(const std::string& text, int times) {
 }
 
 }  // namespace
+
+// Root may open any folder: somebody else looks.
+TEST_F(BadFiles, AFolderThatMayNotBeOpenedIsNotSaidToBeEmpty) {
+  if (::geteuid() != 0) GTEST_SKIP() << "only root can be other accounts";
+  constexpr uid_t kStranger = 23004;
+  write(rampVolume({4, 4, 4}));
+  fs::create_directories(folder() / "open" / "closed");
+  for (const fs::path& way : {folder().parent_path(), folder(), folder() / "open"}) {
+    fs::permissions(way, fs::perms(0755));
+  }
+  fs::permissions(folder() / "open" / "closed", fs::perms(0700));
+  const pid_t child = ::fork();
+  if (child == 0) {
+    if (::setgroups(0, nullptr) != 0 || ::setgid(kStranger) != 0 || ::setuid(kStranger) != 0)
+      ::_exit(2);
+    const auto says = [](const fs::path& path) {
+      const auto ct = CtFolder::scan(path, Progress());
+      if (!ct || !ct->report().error) return false;
+      const Error& error = *ct->report().error;
+      return error.what.find("no right to open") != std::string::npos &&
+             error.what.find("no files") == std::string::npos &&
+             error.next.find("right to read") != std::string::npos;
+    };
+    ::_exit(says(folder() / "open" / "closed") && says(folder() / "open") ? 0 : 1);
+  }
+  int status = 0;
+  ASSERT_EQ(::waitpid(child, &status, 0), child);
+  EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0) << status;
+}
 
 TEST_F(BadFiles, AMissingFolderIsAnError) {
   const auto result = CtFolder::scan(folder() / "nowhere", Progress());

@@ -62,7 +62,8 @@ TEST(StructureImporter, ASegmentationOfThisCtIsTakenWithoutAWord) {
   ASSERT_TRUE(fit) << fit.error().sentence();
   EXPECT_EQ(fit->structures[0].voxels, 600u);
   EXPECT_TRUE(fit->choices.empty());
-  for (const Finding& f : fit->findings) EXPECT_EQ(f.code.str(), "PART_OF_CT") << f.text;
+  EXPECT_TRUE(fit->findings.empty())
+      << "slices without anything of it are left out by every writer: " << fit->findings[0].text;
   const LabelMap liver = importedLiver(own.volume);
   for (std::size_t v = 0; v < liver.labels.size(); ++v) {
     ASSERT_EQ(fit->map.labels[v] != 0, liver.labels[v] != 0) << v;

@@ -42,8 +42,8 @@ double redness(const Picture& picture, const glm::dvec2& at) {
 }
 
 TEST(CutMarks, TheMarkLiesBelowAllThatAVolumeHoldsAndNearAir) {
-  EXPECT_EQ(cutMark(1200), -1001);
-  EXPECT_EQ(cutMark(-1000), -1001);
+  EXPECT_EQ(cutMark(1200), -1016);
+  EXPECT_EQ(cutMark(-1000), -1016);
   EXPECT_EQ(cutMark(-1024), -1025);
   EXPECT_EQ(cutMark(-3024), -1100);
   EXPECT_EQ(cutMark(INT16_MIN), -1100);
@@ -95,6 +95,59 @@ TEST(CutFaces, ACutWallHasAnotherColourAndAllElseKeepsIts) {
   EXPECT_GT(seen.pixels, 100);
   EXPECT_LT(glm::distance(seen.centre, at), 8.0);
   EXPECT_GT(redness(told, at), 1.15 * redness(untold, at));
+}
+
+// An organ of thick voxels, of any HU where its structure is, as the shipped liver: a cut as thin
+// as a voxel is as wide as one in the picture.
+TEST(CutFaces, ASlitOfOneVoxelInATissueThatIsKnownByItsLabelAloneIsSeen) {
+  RENDERER_OR_SKIP(renderer);
+  constexpr int kSize = 24, kFrom = 4, kTo = 20;
+  constexpr double kVoxel_mm = 3.0;
+  Volume organ;
+  organ.geometry.size = {kSize, kSize, kSize};
+  organ.geometry.spacing_mm = Vec3(kVoxel_mm);
+  organ.geometry.origin_mm = Vec3(-0.5 * (kSize - 1) * kVoxel_mm);
+  organ.hu.assign(organ.geometry.voxelCount(), kAirHu);
+  auto labels = std::make_shared<LabelMap>();
+  labels->geometry = organ.geometry;
+  labels->labels.assign(organ.hu.size(), 0);
+  labels->structures = {{1, "organ", Vec3(0.5)}};
+  for (int k = kFrom; k < kTo; ++k) {
+    for (int j = kFrom; j < kTo; ++j) {
+      for (int i = kFrom; i < kTo; ++i) {
+        const std::size_t voxel = organ.geometry.indexOf(i, j, k);
+        organ.hu[voxel] = 100;
+        labels->labels[voxel] = 1;
+      }
+    }
+  }
+  TissueSet set{"organ", {tissue("organ", -999, 3071, Vec3(0.55, 0.2, 0.16), 0.8)}};
+  set.tissues[0].label = 1;
+  renderer.setTissues(set);
+  const auto whole = std::make_shared<const Volume>(organ);
+  auto mirror = std::make_shared<VolumeMirror>();
+  mirror->show(copyOf(*whole), labels, whole);
+  renderer.setMirror(mirror);
+  renderer.lookAt(Vec3(0.0), kFront, kUp, kEye_mm);
+  const Picture before = renderer.picture();
+  Grid grid(organ);
+  for (int k = 7; k < 17; ++k) {
+    for (int j = kFrom; j < kFrom + 6; ++j) grid.takeWriter()->store(12, j, k, kAirHu);
+  }
+  ASSERT_TRUE(renderer.pullChanges(grid));
+  const Vec3 on_it = organ.geometry.toPatient_mm(Vec3(12, kFrom, 12));
+  const double mm = renderer.mmPerPixelAt(on_it);
+  const double slit_pixels = 10.0 * kVoxel_mm / mm * kVoxel_mm / mm;
+  const Difference seen = difference(before, renderer.picture(), 24);
+  EXPECT_GT(seen.pixels, 0.6 * slit_pixels);
+  EXPECT_LT(seen.pixels, 2.5 * slit_pixels) << "with its edges, and no more than that";
+  EXPECT_NEAR(seen.centre.x, pixelOf(renderer, Vec3(0.0), on_it).x, 5.0);
+  // And its ground is paler than the organ.
+  const glm::dvec2 at = pixelOf(renderer, Vec3(0.0), on_it);
+  const auto green = [&](const Picture& in) {
+    return int(in.rgb[(std::size_t(at.y) * kWidth + std::size_t(at.x)) * 3 + 1]);
+  };
+  EXPECT_GT(green(renderer.picture()), green(before) + 25);
 }
 
 TEST(CutFaces, TissuePutBackGivesTheOldPictureToTheBit) {
@@ -167,14 +220,14 @@ TEST(CutFaces, WhereASeenTissueHoldsAllLowHuWhatWasCutIsGoneAllTheSame) {
   EXPECT_EQ(again, renderer.picture());
 }
 
-TEST(CutFaces, LightTissueTurnsPinkAndDarkTissueDarkerAndRedder) {
+TEST(CutFaces, LightTissueTurnsPinkAndDarkTissuePaler) {
   const Vec3 bone(0.93, 0.89, 0.78), liver(0.55, 0.2, 0.16);
   const Vec3 cut_bone = cutColour(bone), cut_liver = cutColour(liver);
   EXPECT_GT(cut_bone.r, bone.r);
   EXPECT_LT(cut_bone.g, 0.85 * bone.g);
-  EXPECT_LT(cut_liver.r, bone.r);
-  EXPECT_LT(cut_liver.r, liver.r);
-  EXPECT_GT(cut_liver.r / cut_liver.g, 1.3 * liver.r / liver.g);
+  EXPECT_GT(cut_liver.r, liver.r + 0.1);
+  EXPECT_GT(cut_liver.g, liver.g + 0.1);
+  EXPECT_GT(cut_liver.r, 1.5 * cut_liver.g) << "red still";
   for (const Vec3& any : {Vec3(0.0), Vec3(1.0), Vec3(1, 0, 0)}) {
     const Vec3 cut = cutColour(any);
     for (int c = 0; c < 3; ++c) {

@@ -170,7 +170,7 @@ TEST(SceneRenderer, TissueThatIsSeenThroughTintsAToolBehindItAndBoneHidesIt) {
   RENDERER_OR_SKIP(renderer);
   renderer.setVolume(Grid(ball()));
   ToolView tool;
-  tool.length_mm = 200.0;
+  tool.length_mm = 40.0;  // its handle has the colour
   tool.radius_mm = 4.0;
   tool.colour = Vec3(0, 0, 1);
   const std::size_t middle = (std::size_t(kHeight / 2) * kWidth + kWidth / 2) * 3;

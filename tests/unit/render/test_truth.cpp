@@ -200,7 +200,7 @@ TEST(Truth, APlaneAlongTheRaysTakesAwayItsSideToo) {
   renderer.setTissues(tissues());
   renderer.setVolume(Grid(round([](double r) { return -1000.0 + 2200.0 * edge(r, 24.0); })));
   // Orthographic and along an axis, no ray crosses the plane.
-  renderer.lookFrom(StandardView::anterior);
+  renderer.resetCamera(Vec3(0, 1, 0), Vec3(0, 0, 1));
   renderer.setParallel(true);
   const Picture whole = renderer.picture();
   for (const double side : {1.0, -1.0}) {

@@ -7,6 +7,7 @@
 #include "render/cast_plan.h"
 #include "render/clip_tools.h"
 #include "render/orientation_cue.h"
+#include "render/seen_box.h"
 #include "render/tool_guide.h"
 
 using namespace trephine;
@@ -76,22 +77,96 @@ TEST(CastPlan, CutsThatOverlapAreCastTogetherAndWhatLiesOutsideNotAtAll) {
 
 TEST(Camera, EachStandardViewShowsItsSideWithThePatientUpright) {
   ViewCamera camera = fromTheFront();
-  camera.lookFrom(StandardView::left);
+  const auto lookFrom = [&](StandardView side) {
+    const ViewCamera::Direction from = ViewCamera::from(side);
+    camera.lookAt(Vec3(0.0), from.forward, from.up, 200.0);
+  };
+  lookFrom(StandardView::left);
   EXPECT_EQ(camera.forward(), Vec3(-1, 0, 0)) << "the eye is at the patient's left, +x";
   EXPECT_NEAR(glm::distance(camera.right(), Vec3(0, 1, 0)), 0.0, 1e-12)
       << "the nose is at the left";
-  camera.lookFrom(StandardView::right);
+  lookFrom(StandardView::right);
   EXPECT_EQ(camera.forward(), Vec3(1, 0, 0));
-  camera.lookFrom(StandardView::posterior);
+  lookFrom(StandardView::posterior);
   EXPECT_NEAR(glm::distance(camera.right(), Vec3(-1, 0, 0)), 0.0, 1e-12);
-  camera.lookFrom(StandardView::superior);
+  lookFrom(StandardView::superior);
   EXPECT_EQ(camera.forward(), Vec3(0, 0, -1));
   EXPECT_EQ(camera.up(), Vec3(0, -1, 0)) << "the face is up";
-  camera.lookFrom(StandardView::inferior);
+  lookFrom(StandardView::inferior);
   EXPECT_EQ(camera.forward(), Vec3(0, 0, 1));
   EXPECT_NEAR(glm::distance(camera.right(), Vec3(1, 0, 0)), 0.0, 1e-12)
       << "as in an axial slice, the patient's left is at the right";
-  EXPECT_EQ(camera.distance_mm(), 200.0);
+}
+
+TEST(Camera, WhatItTurnsAboutStaysWhereItIsInThePicture) {
+  ViewCamera camera = fromTheFront();
+  const Vec3 about(20, -30, 15);
+  const auto before = camera.pixelOf(about, kWide, kHigh);
+  for (int n = 0; n < 9; ++n) camera.orbit(10, 5, about);
+  const auto after = camera.pixelOf(about, kWide, kHigh);
+  ASSERT_TRUE(before && after);
+  EXPECT_NEAR(before->x, after->x, 1e-6);
+  EXPECT_NEAR(before->y, after->y, 1e-6);
+  EXPECT_LT(camera.forward().y, 0.9) << "it has turned";
+}
+
+TEST(Camera, AFitShowsAllCornersOfTheBoxAndNotMuchMore) {
+  GridGeometry of = grid();
+  const VoxelBox box{{2, 3, 4}, {of.size[0] - 3, of.size[1] - 1, of.size[2] - 2}};
+  ViewCamera camera;
+  for (const StandardView side :
+       {StandardView::anterior, StandardView::left, StandardView::superior}) {
+    const ViewCamera::Direction from = ViewCamera::from(side);
+    camera.fit(of, box, from.forward, from.up, kWide, kHigh);
+    double most = 0.0;
+    for (int corner = 0; corner < 8; ++corner) {
+      const auto at = [&](std::size_t axis, int bit) {
+        return double(corner & bit ? box.high[axis] - 1 : box.low[axis]);
+      };
+      const auto pixel =
+          camera.pixelOf(of.toPatient_mm(Vec3(at(0, 1), at(1, 2), at(2, 4))), kWide, kHigh);
+      ASSERT_TRUE(pixel);
+      most = std::max(
+          {most, std::abs(2.0 * pixel->x / kWide - 1.0), std::abs(2.0 * pixel->y / kHigh - 1.0)});
+    }
+    EXPECT_LE(most, 1.0);
+    EXPECT_GT(most, 0.9);
+  }
+}
+
+TEST(SeenBox, IsAroundWhatIsShownAndNotAroundAirOrSingleVoxels) {
+  Volume volume;
+  volume.geometry = grid();
+  volume.geometry.size = {40, 30, 20};
+  volume.hu.assign(volume.geometry.voxelCount(), kAirHu);
+  for (int k = 6; k < 12; ++k) {
+    for (int j = 5; j < 20; ++j) {
+      for (int i = 10; i < 30; ++i) volume.hu[volume.geometry.indexOf(i, j, k)] = 300;
+    }
+  }
+  volume.hu[volume.geometry.indexOf(1, 1, 1)] = 300;
+  TissueSet tissues;
+  tissues.tissues.resize(1);
+  tissues.tissues[0].id = "bone";
+  tissues.tissues[0].hu_min = 200;
+  tissues.tissues[0].hu_max = 400;
+  tissues.tissues[0].opacity = 1.0;
+  const VoxelBox seen = seenBox(volume, nullptr, tissues);
+  EXPECT_EQ(seen.low, (Index3{10, 5, 6}));
+  EXPECT_EQ(seen.high, (Index3{30, 20, 12}));
+  tissues.tissues[0].opacity = 0.0;
+  EXPECT_EQ(seenBox(volume, nullptr, tissues).high, volume.geometry.size) << "nothing is seen";
+}
+
+TEST(OrientationCue, ALetterBehindAnotherIsLeftOut) {
+  // From the front and below A lies over S and I over P: together they read as other signs.
+  ViewCamera camera;
+  camera.lookAt(Vec3(0.0), Vec3(0, 1, 1), Vec3(0, 0, 1), 200.0);
+  ScreenLines lines, letters;
+  addOrientationCue(camera, 800, 600, lines);
+  addWords("LRAI", {0, 0}, 10, Vec3(1.0), 1, letters);
+  constexpr std::size_t kArms = 6;
+  EXPECT_EQ(lines.size(), kArms + letters.size());
 }
 
 TEST(Camera, OrthographicAPixelSpansTheSameEverywhereAndAtTheFocusWhatItDidBefore) {
@@ -109,7 +184,7 @@ TEST(Camera, OrthographicAPixelSpansTheSameEverywhereAndAtTheFocusWhatItDidBefor
 TEST(Camera, ARayThroughAPixelMeetsThePointThatIsDrawnThere) {
   for (const bool parallel : {false, true}) {
     ViewCamera camera = fromTheFront();
-    camera.orbit(30, 20);
+    camera.orbit(30, 20, camera.focus());
     camera.setParallel(parallel);
     const Vec3 at(12, -7, 25);
     const auto pixel = camera.pixelOf(at, kWide, kHigh);
@@ -244,7 +319,8 @@ TEST(ToolGuide, TheRingOfContactHasTheColourOfItsArm) {
   tool.contact = true;
   tool.colour = Vec3(0.1, 0.6, 0.9);
   ScreenLines lines;
-  addGuide(tool, 30.0, fromTheFront(), kWide, kHigh, false, lines);
+  std::vector<WordsBox> words;
+  addGuide(tool, 30.0, fromTheFront(), kWide, kHigh, false, words, lines);
   ASSERT_FALSE(lines.empty());
   for (const ScreenLine& line : lines) EXPECT_EQ(line.colour, tool.colour);
 }
@@ -261,7 +337,8 @@ TEST(ToolGuide, TheWayToASurfaceIsMeasuredAlongTheTool) {
   tool.pose_mm.orientation = glm::angleAxis(glm::radians(90.0), Vec3(1, 0, 0));  // points away
   EXPECT_NEAR(*surfaceAhead_mm(tool, wall, camera, kWide, kHigh), 30.0, 0.3);
   ScreenLines lines;
-  addGuide(tool, 30.0, camera, kWide, kHigh, false, lines);
+  std::vector<WordsBox> words;
+  addGuide(tool, 30.0, camera, kWide, kHigh, false, words, lines);
   EXPECT_GT(lines.size(), 5U) << "a line, a square, and words";
   // Words at the right, or at the left.
   const auto middle = [](const ScreenLines& drawn) {
@@ -270,9 +347,15 @@ TEST(ToolGuide, TheWayToASurfaceIsMeasuredAlongTheTool) {
     return sum;
   };
   ScreenLines at_left;
-  addGuide(tool, 30.0, camera, kWide, kHigh, true, at_left);
+  addGuide(tool, 30.0, camera, kWide, kHigh, true, words, at_left);
   EXPECT_GT(middle(lines), kWide / 2.0 + 5.0);
   EXPECT_LT(middle(at_left), kWide / 2.0 - 5.0);
+  // Those of a second tool at the same place stand below.
+  ScreenLines below;
+  addGuide(tool, 30.0, camera, kWide, kHigh, false, words, below);
+  ASSERT_EQ(words.size(), 3U);
+  EXPECT_FALSE(words[2].overlaps(words[0]));
+  EXPECT_LT(words[2].high.y, words[0].low.y + 1.0);
   // Hidden behind the wall there is no way to show, nor where the tool points past it.
   tool.pose_mm.position = Vec3(0, 50, 0);
   EXPECT_FALSE(surfaceAhead_mm(tool, wall, camera, kWide, kHigh));

@@ -20,7 +20,9 @@ Json script() {
 }
 
 TEST(OperatorScript, EveryShippedExerciseHasOneThatFits) {
-  for (const auto& entry : std::filesystem::directory_iterator(resourceFolder() / "scenes")) {
+  for (const auto& entry :
+       std::filesystem::recursive_directory_iterator(resourceFolder() / "scenes")) {
+    if (entry.is_directory()) continue;
     const Exercise exercise = *readExercise(entry.path());
     const auto read = readOperatorScript(exercise.operator_file, exercise);
     ASSERT_TRUE(read.ok()) << read.error().sentence();

@@ -25,8 +25,10 @@ Exercise exerciseOf(const std::string& name) {
 
 std::vector<std::string> all() {
   std::vector<std::string> names;
-  for (const auto& file : std::filesystem::directory_iterator(resourceFolder() / "scenes")) {
-    if (file.path().extension() == ".json") names.push_back(file.path().stem());
+  const std::filesystem::path scenes = resourceFolder() / "scenes";
+  for (const auto& file : std::filesystem::recursive_directory_iterator(scenes)) {
+    const std::filesystem::path name = file.path().lexically_relative(scenes);
+    if (name.extension() == ".json") names.push_back((name.parent_path() / name.stem()).string());
   }
   EXPECT_GE(names.size(), 7u);
   return names;
@@ -34,7 +36,7 @@ std::vector<std::string> all() {
 // Those of the seed paper are placed as the others are: they differ in laws, tools and card.
 std::vector<std::string> placedOnes() {
   std::vector<std::string> names = all();
-  std::erase_if(names, [](const std::string& name) { return name.starts_with("seed-"); });
+  std::erase_if(names, [](const std::string& name) { return name.starts_with("research/"); });
   return names;
 }
 

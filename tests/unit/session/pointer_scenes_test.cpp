@@ -9,6 +9,7 @@
 #include "support.h"
 #include "training/session_reader.h"
 #include "uncut_bone.h"
+#include "volume/phantom.h"
 
 namespace trephine {
 namespace {
@@ -128,6 +129,65 @@ TEST(PointerExercises, TheLiverIsSlicedWithOneArm) {
 }
 TEST(PointerExercises, TheLiverIsPuncturedAndSliced) {
   expectTheSameAtAnyRate(test::kLiver);
+}
+
+// A hand that is faster than the tool follows is caught up with, and what the tool sweeps is cut:
+// a slit, on a coarse grid, which a blade of 1 mm could slip through.
+TEST(PointerExercises, AFastStrokeLeavesASlitAndNoDots) {
+  Exercise exercise = *readExercise(resourceFolder() / "scenes" / "liver-one-arm.json");
+  for (const double coarser : {3.0}) {
+    GridGeometry g = *phantomGeometry("abdomen");
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      g.size[axis] = int(double(g.size[axis]) / coarser);
+      g.spacing_mm[int(axis)] *= coarser;
+    }
+    Case of = caseOf(std::make_shared<const Volume>(
+        makePhantomOn(*phantomTruth("abdomen"), g, kPhantomNoiseHu)));
+    LabelMap labels = phantomLabelsOn(*phantomTruth("abdomen"), g);
+    labels.structures = {
+        {1, "liver", Vec3(0.5)}, {2, "capsule", Vec3(0.6)}, {3, "vessel", Vec3(0.7)}};
+    of.structures = std::make_shared<const LabelMap>(std::move(labels));
+    const Result<Placement> placed = place(onCase(exercise, ""), of);
+    ASSERT_TRUE(placed.ok()) << placed.error().sentence();
+    auto made = Session::create(*placed, {{}, {}, true});
+    ASSERT_TRUE(made.ok()) << made.error().sentence();
+    Session& session = **made;
+    // In, 32 mm aside within a fifth of a second, some time to follow, and out.
+    PointerUser user(session, 0,
+                     {{0, 8, -60, 0},
+                      {0.5, 8, -42, 0},
+                      {1.0, 8, -42, 2.5},
+                      {4.0, 8, -42, 1.0},
+                      {4.2, 40, -42, 1.0},
+                      {6.5, 40, -42, 1.0},
+                      {6.7, 40, -42, 0},
+                      {8.5, 40, -60, 0}},
+                     125.0);
+    long talks = 0;
+    const Progress progress(
+        [&](double, const std::string&) { user.playUntil(0.256 * double(talks++) + 0.52); });
+    ASSERT_TRUE(session.freewheel(user.end_s() + 0.5, progress).ok());
+    const LandmarkFrame frame = session.landmarks()[0].frame;
+    const Grid& carved = *session.carved();
+    const Mat4 to_voxel = carved.geometry().patientToVoxel();
+    const double voxel_mm = std::max({g.spacing_mm.x, g.spacing_mm.y, g.spacing_mm.z});
+    int places = 0, cut = 0;
+    for (double x_mm = 10.0; x_mm <= 36.0; x_mm += 1.0, ++places) {
+      bool any = false;
+      for (double y_mm = -42.0 - voxel_mm; y_mm <= -42.0 + voxel_mm && !any; y_mm += 0.25) {
+        for (double z_mm = 5.0; z_mm > -20.0 && !any; z_mm -= 0.5) {
+          const Vec3 v =
+              glm::round(Vec3(to_voxel * glm::dvec4(frame.toPatient_mm({x_mm, y_mm, z_mm}), 1.0)));
+          const int i = int(v.x), j = int(v.y), k = int(v.z);
+          if (!g.contains(i, j, k)) continue;
+          any = carved.hu(i, j, k) == kAirHu && of.volume->at(i, j, k) != kAirHu;
+        }
+      }
+      cut += any;
+    }
+    std::printf("voxels of %.2f mm: cut at %d of %d places of the stroke\n", voxel_mm, cut, places);
+    EXPECT_EQ(cut, places) << voxel_mm;
+  }
 }
 
 }  // namespace

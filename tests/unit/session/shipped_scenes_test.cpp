@@ -184,7 +184,9 @@ void expectTouchesAndRemoves(const std::string& name, const std::string& case_so
 }
 TEST(ShippedExercises, TouchAndRemoveTissueWithEveryArm) {
   for (const char* name : kShipped) expectTouchesAndRemoves(name, "");
-  for (const char* name : {"seed-cranium", "seed-liver"}) expectTouchesAndRemoves(name, "");
+  for (const char* name : {"research/seed-cranium", "research/seed-liver"}) {
+    expectTouchesAndRemoves(name, "");
+  }
 }
 TEST(ShippedExercises, TouchAndRemoveTissueOfRealCasesToo) {
   TREPHINE_TEST_DATA_OR_SKIP(data);
@@ -233,7 +235,7 @@ int onBone(const std::vector<Vec3>& points, const Exercise& exercise, const Plac
 TEST(ShippedExercises, HaveTheirOutlineOnTheBoneOfTheirOwnCase) {
   int outlines = 0;
   for (const char* name : {"burr-hole", "cranium", "cranium-one-arm", "liver", "liver-one-arm",
-                           "seed-cranium", "seed-liver"}) {
+                           "research/seed-cranium", "research/seed-liver"}) {
     Exercise exercise = shipped(name, "");
     if (!exercise.outline) continue;
     ++outlines;
@@ -267,7 +269,7 @@ TEST(ShippedExercises, HaveTheirOutlineOnTheBoneOfARealCaseToo) {
 // The window's hands, which no script moves.
 TEST(ShippedExercises, BeginWithTheToolsOutsideOfTissueInTheWindow) {
   for (const char* name : {"burr-hole", "cranium", "cranium-one-arm", "liver", "liver-one-arm",
-                           "seed-cranium", "seed-liver"}) {
+                           "research/seed-cranium", "research/seed-liver"}) {
     Exercise exercise = shipped(name, "");
     const Placement of = placed(exercise);
     auto session = Session::create(of, {{}, {}, true});

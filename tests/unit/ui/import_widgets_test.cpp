@@ -74,6 +74,7 @@ TEST_F(ImportWidgetsTest, MarksDifferInShapeAndNotInColourAlone) {
   EXPECT_NE(shape(SeriesState::pass), shape(SeriesState::refused));
   EXPECT_NE(shape(SeriesState::repaired), shape(SeriesState::answered));
   EXPECT_NE(shape(SeriesState::asks), shape(SeriesState::pass));
+  EXPECT_NE(shape(SeriesState::structures), shape(SeriesState::refused));
 }
 
 TEST_F(ImportWidgetsTest, OnlySeriesWithoutAThumbnailAskForOne) {
@@ -387,6 +388,9 @@ TEST_F(SlicePreviewTest, ADragDrawsABoxInTheSlicesPixels) {
   };
   drag({0.105, 0.21}, {0.505, 0.81});
   EXPECT_TRUE(drawn.isNull()) << "nobody asked for a box";
+  EXPECT_FALSE(canvas.window() == kWindowPresets[kFirstPreset].window)
+      << "it set the window, as a drag does in every slice";
+  EXPECT_EQ(preview_.findChild<QButtonGroup*>()->checkedId(), -1) << "which is no preset's now";
   canvas.setDrawable(true);
   drag({0.505, 0.81}, {0.105, 0.21});
   EXPECT_EQ(drawn, QRect(QPoint(10, 10), QPoint(50, 40)));

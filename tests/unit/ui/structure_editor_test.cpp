@@ -371,15 +371,19 @@ TEST_F(Editor, AStructureFromElsewhereThatIsCalledWallIsNoWall) {
 
 TEST_F(Editor, WhatChangedAfterItWasHandedOutIsStillUnsaved) {
   stroke(middle_, middle_);
-  const std::uint64_t saved = editor_.changes();
+  const std::uint64_t saved = editor_.version();
   stroke(middle_ + Vec3(20, 0, 0), middle_ + Vec3(20, 0, 0));
   editor_.markSaved(saved);
   EXPECT_TRUE(editor_.edited());
-  editor_.markSaved(editor_.changes());
+  editor_.markSaved(editor_.version());
   EXPECT_FALSE(editor_.edited());
   EXPECT_TRUE(editor_.takeEdited());
   editor_.giveBack();
   EXPECT_TRUE(editor_.takeEdited()) << "it could not be used, saved or not";
+  stroke(middle_ + Vec3(-20, 0, 0), middle_ + Vec3(-20, 0, 0));
+  EXPECT_TRUE(editor_.edited());
+  editor_.undo();
+  EXPECT_FALSE(editor_.edited()) << "they are again what was saved";
 }
 
 }  // namespace

@@ -603,6 +603,7 @@ TEST_F(EditsTest, AnEntryPointIsOneStepAndGoesWithAnotherCase) {
   place.is_place = true;
   place.at_mm = workstation_.placed()->landmarks[0].frame.position_mm + Vec3(0.0, 5.0, 0.0);
   ASSERT_TRUE(workstation_.placeEntry(place));
+  EXPECT_TRUE(workstation_.exerciseEdited()) << "it would be lost with the case, unsaid";
   ASSERT_TRUE(wait());
   ASSERT_TRUE(workstation_.entry());
   EXPECT_EQ(workstation_.edits().undoWhat(), "entry");
