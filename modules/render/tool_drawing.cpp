@@ -157,18 +157,25 @@ BuiltIn builtIn(const ToolView& view) {
   } work, handle;
   const bool known = isFinite(view.radius_mm) && view.radius_mm > 0.0;
   const auto radius = [&](double usual) { return known ? view.radius_mm : usual; };
-  double from = view.length_mm;
   if (view.shape == ToolShape::blade) {
     addBlade(view.length_mm, radius(kBladeHalfThickness_mm), work.points, work.faces);
-    addFlatHandle(from, handle.points, handle.faces);
+    addFlatHandle(view.length_mm, handle.points, handle.faces);
   } else if (view.shape == ToolShape::burr) {
     const std::vector<Ring> rings = burr(view.length_mm, radius(kBurrRadius_mm), view.head_mm);
-    from = rings.back().z;
     addRevolved(rings, work.points, work.faces);
+    const double from = rings.back().z, end = from + kHandleLength_mm;
+    addRevolved({{from, kHandleRadius_mm * 0.6},
+                 {from + 6.0, kHandleRadius_mm},
+                 {from + 9.0, 1.6 * kHandleRadius_mm},
+                 {from + 24.0, 1.6 * kHandleRadius_mm},
+                 {from + 30.0, 2.2 * kHandleRadius_mm},
+                 {end - 3.0, 2.2 * kHandleRadius_mm},
+                 {end, kHandleRadius_mm}},
+                handle.points, handle.faces);
   } else {
     const double r = radius(kNeedleRadius_mm), point = std::min(kNeedlePoint_mm, view.length_mm);
     addRevolved({{0.0, 0.0}, {point, r}, {view.length_mm, r}}, work.points, work.faces);
-    const double end = from + kHandleLength_mm;
+    const double from = view.length_mm, end = from + kHandleLength_mm;
     // A hub, the barrel of a syringe with its rim, and the plunger.
     addRevolved({{from, 1.5},
                  {from + 7.0, 2.1},
@@ -181,17 +188,6 @@ BuiltIn builtIn(const ToolView& view) {
                  {end - 2.5, 2.4},
                  {end - 2.3, 7.0},
                  {end, 7.0}},
-                handle.points, handle.faces);
-  }
-  if (view.shape == ToolShape::burr) {
-    const double end = from + kHandleLength_mm;
-    addRevolved({{from, kHandleRadius_mm * 0.6},
-                 {from + 6.0, kHandleRadius_mm},
-                 {from + 9.0, 1.6 * kHandleRadius_mm},
-                 {from + 24.0, 1.6 * kHandleRadius_mm},
-                 {from + 30.0, 2.2 * kHandleRadius_mm},
-                 {end - 3.0, 2.2 * kHandleRadius_mm},
-                 {end, kHandleRadius_mm}},
                 handle.points, handle.faces);
   }
   BuiltIn made;

@@ -39,30 +39,19 @@ class ExerciseGuiTest : public test::WindowTest {
     find<QTabWidget>("prepareTabs")->setCurrentIndex(tab);
     rest();
   }
-  void enter(const char* name, const QString& text) {
-    auto* box = find<QAbstractSpinBox>(name);
-    box->setFocus();
-    box->selectAll();
-    QTest::keyClicks(box, text);
-    key(box, Qt::Key_Return);
+  // In the place of what a field has, and taken by Return.
+  template <class Field>
+  void typeInto(const char* name, const QString& text) {
+    auto* field = find<Field>(name);
+    field->setFocus();
+    field->selectAll();
+    QTest::keyClicks(field, text);
+    key(field, Qt::Key_Return);
     rest();
   }
-  void type(const char* name, const QString& text) {
-    auto* line = find<QLineEdit>(name);
-    line->setFocus();
-    line->selectAll();
-    QTest::keyClicks(line, text);
-    key(line, Qt::Key_Return);
-    rest();
-  }
-  void typeText(const char* name, const QString& text) {
-    auto* edit = find<QPlainTextEdit>(name);
-    edit->setFocus();
-    edit->selectAll();
-    QTest::keyClicks(edit, text);
-    key(edit, Qt::Key_Return);
-    rest();
-  }
+  void enter(const char* name, const QString& text) { typeInto<QAbstractSpinBox>(name, text); }
+  void type(const char* name, const QString& text) { typeInto<QLineEdit>(name, text); }
+  void typeText(const char* name, const QString& text) { typeInto<QPlainTextEdit>(name, text); }
   void write(const char* name, const QString& text) {
     auto* edit = find<QPlainTextEdit>(name);
     edit->setFocus();
