@@ -45,13 +45,19 @@ Json toJson(const CardText& text) {
 ExerciseCard readExerciseCard(JsonReader card) {
   ExerciseCard out;
   out.en = readText(card.object("en"));
-  if (card.has("zh_TW")) out.zh_TW = readText(card.object("zh_TW"));
+  if (card.has("zh_TW")) {
+    out.zh_TW = readText(card.object("zh_TW"));
+    out.zh_TW_is_old = card.boolean("zh_TW_is_old", false);
+  }
   return out;
 }
 
 Json toJson(const ExerciseCard& card) {
   Json json{{"en", toJson(card.en)}};
-  if (card.zh_TW) json["zh_TW"] = toJson(*card.zh_TW);
+  if (card.zh_TW) {
+    json["zh_TW"] = toJson(*card.zh_TW);
+    if (card.zh_TW_is_old) json["zh_TW_is_old"] = true;
+  }
   return json;
 }
 

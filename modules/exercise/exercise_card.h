@@ -23,6 +23,7 @@ struct CardText {
 struct ExerciseCard {
   CardText en;
   std::optional<CardText> zh_TW;  // Traditional Chinese
+  bool zh_TW_is_old = false;      // the English text was changed after the Chinese one
   bool operator==(const ExerciseCard&) const = default;
 };
 

@@ -84,12 +84,13 @@ std::vector<TransferPoint> transferFunction(const TissueSet& set, int label) {
     const Segment& after = parts[i];
     // A quarter leaves half of the narrower range at its own value.
     const double narrower = std::min(before.high - before.low, after.high - after.low);
-    const double edge = after.low;
-    double half = std::min(kRampHalfWidth_HU, narrower / 4.0);
-    // One that begins right above removed voxels shows none of them.
-    if (edge > kRemovedHu) half = std::min(half, 0.8 * (edge - kRemovedHu));
-    points.push_back({edge - half, colourTowards(before, after), before.opacity()});
-    points.push_back({edge + half, colourTowards(after, before), after.opacity()});
+    const double half = std::min(kRampHalfWidth_HU, narrower / 4.0);
+    // One that begins right above removed voxels shows none of them. The ramp moves instead of
+    // getting steeper: a table of limited size cannot tell a steep one.
+    double low = after.low - half;
+    if (after.low > kRemovedHu) low = std::max<double>(low, kRemovedHu);
+    points.push_back({low, colourTowards(before, after), before.opacity()});
+    points.push_back({low + 2.0 * half, colourTowards(after, before), after.opacity()});
   }
   return points;
 }

@@ -300,6 +300,7 @@ void ImportPage::seriesSelected() {
   task_.wantPictures(list_->selectedUid(), series_->choices().slicesShown());
   showSelected();
   const GridGeometry& grid = before()->geometry;
+  preview_->setBodyPart(series->body_part);
   preview_->showStack(series->slices,
                       grid.spacing_mm.z > 0.0 ? std::optional(grid.direction) : std::nullopt);
 }

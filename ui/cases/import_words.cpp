@@ -151,7 +151,7 @@ QColor stateColour(SeriesState state) {
 QString verdictSentence(const SeriesReport& series, const Answers& answers) {
   switch (seriesState(series, answers)) {
     case SeriesState::pass:
-      return tr("Ready to use. Nothing has to be changed.");
+      return tr("Ready to use.");
     case SeriesState::repaired: {
       const int repairs = countOf(series, Severity::repair);
       return repairs == 1 ? tr("Can be used. One thing is put right, as told below.")

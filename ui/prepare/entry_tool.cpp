@@ -38,6 +38,10 @@ void EntryTool::useOnce() {
   once_ = true;
 }
 
+void EntryTool::letGo() {
+  if (once_) toolbox_.putDown();
+}
+
 void EntryTool::press(const ToolEvent& event) {
   if (!event.slice) return place(event.at_mm, event.at_mm);
   if (event.in_picture) pressed_ = event;

@@ -17,6 +17,8 @@ class EntryTool : public ViewTool {
 
   // Takes it in hand until a place was taken.
   void useOnce();
+  // Puts it down where it was taken for one place.
+  void letGo();
   // Whether a person has asked here for the placing that came to its end; the answer resets it.
   // Asked when structures changed and when placing failed, else the next placing would count.
   bool takeAsked() { return std::exchange(asked_, false); }

@@ -288,11 +288,11 @@ std::unique_ptr<FieldRows<CardText>> ExerciseForm::cardFields(const QString& pre
                                                               CardText* (*text)(ExerciseCard&)) {
   auto made = card_->addFields<CardText>(kCardFields, prefix);
   made->entered = [this, text](const CardText& wanted_text, const char*) {
-    const bool chinese = exercise_.card && text(*exercise_.card) != &exercise_.card->en;
-    if (chinese) chinese_of_ = exercise_.card->en;
     card_->edit("card", [&](Exercise& exercise) {
       CardText* of = exercise.card ? text(*exercise.card) : nullptr;
-      if (of) *of = wanted_text;
+      if (!of) return;
+      *of = wanted_text;
+      exercise.card->zh_TW_is_old = exercise.card->zh_TW && of == &exercise.card->en;
     });
   };
   return made;
@@ -313,10 +313,13 @@ void ExerciseForm::buildCard() {
   chinese_on_ = cardSwitch(
       "cardChineseOn", tr("Also in Traditional Chinese"), [this](Exercise& exercise, bool on) {
         if (!exercise.card) return;
-        std::optional<CardText>& chinese = exercise.card->zh_TW;
-        if (chinese) kept_chinese_ = chinese;  // for who ticks it again
-        chinese.reset();
-        if (on) chinese = kept_chinese_ ? *kept_chinese_ : exercise.card->en;
+        ExerciseCard& card = *exercise.card;
+        if (card.zh_TW) kept_chinese_ = card;  // for who ticks it again
+        card = {card.en, {}, false};
+        if (!on) return;
+        card.zh_TW = kept_chinese_ ? kept_chinese_->zh_TW : card.en;
+        card.zh_TW_is_old =
+            kept_chinese_ && (kept_chinese_->zh_TW_is_old || kept_chinese_->en != card.en);
       });
   chinese_old_ = problemLabel("chineseOld", card_->fields());
   chinese_old_->setText(tr("The English text was changed after this one: change it, too."));
@@ -327,7 +330,7 @@ void ExerciseForm::buildCard() {
 }
 
 void ExerciseForm::forgetCard() {
-  chinese_of_.reset();
+  kept_chinese_.reset();
   const ExerciseCard card = exercise_.card.value_or(ExerciseCard{});
   en_->show(card.en, false);
   zh_->show(card.zh_TW.value_or(CardText{}), false);
@@ -342,9 +345,7 @@ void ExerciseForm::showCard() {
   chinese_on_->setChecked(chinese);
   en_->show(card ? card->en : CardText{});
   zh_->show(chinese ? *chinese : CardText{});
-  if (!chinese) chinese_of_.reset();
-  if (chinese && !chinese_of_) chinese_of_ = card->en;
-  chinese_old_->setVisible(chinese && *chinese_of_ != card->en);
+  chinese_old_->setVisible(chinese && card->zh_TW_is_old);
   en_->setVisible(card);
   zh_->setVisible(chinese);
 }

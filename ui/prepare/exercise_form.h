@@ -105,8 +105,7 @@ class ExerciseForm : public QWidget {
   QLabel *operator_, *case_, *elsewhere_;
   QToolButton *choose_elsewhere_, *no_elsewhere_;
   QCheckBox *card_on_, *chinese_on_;
-  std::optional<CardText> kept_chinese_;  // that was taken out
-  std::optional<CardText> chinese_of_;    // the English text that the Chinese one was made of
+  std::optional<ExerciseCard> kept_chinese_;  // the card whose Chinese text was taken out
   QLabel* chinese_old_;
   OutlineForm* outline_;
 };

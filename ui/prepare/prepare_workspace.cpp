@@ -148,6 +148,7 @@ void PrepareWorkspace::enter() {
 void PrepareWorkspace::leave() {
   here_ = false;
   histogram_->letGo();
+  structures_->entry().letGo();
   showTab();
   if (workstation_.isPoke()) workstation_.stop();
 }

@@ -1,5 +1,6 @@
 #include "ui/views/slice_image.h"
 
+#include <QString>
 #include <algorithm>
 #include <cmath>
 
@@ -108,6 +109,14 @@ class Between {
 };
 
 }  // namespace
+
+HuWindow windowOfBodyPart(const std::string& body_part) {
+  const QString part = QString::fromStdString(body_part).toUpper();
+  for (const char* of_bone : {"HEAD", "SKULL", "BRAIN", "FACE", "SINUS", "JAW", "SPINE"}) {
+    if (part.contains(of_bone)) return kWindowPresets[kFirstPreset].window;
+  }
+  return usualWindow("abdomen");
+}
 
 HuWindow wholeRange(const SlicePicture& slice) {
   if (slice.hu.empty()) return kWideWindow;

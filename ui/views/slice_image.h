@@ -40,6 +40,9 @@ inline constexpr std::array<WindowPreset, 5> kWindowPresets{{
     {QT_TRANSLATE_NOOP("HuWindow", "Liver"), {60.0, 160.0}},
 }};
 inline constexpr std::size_t kFirstPreset = 1;  // what a view begins with
+// What a series of that body part (DICOM's BodyPartExamined) is looked at with: bone for a head
+// or a spine, soft tissue for what else there is and where the file does not say.
+HuWindow windowOfBodyPart(const std::string& body_part);
 // What a case of that anatomy is looked at with: soft tissue for an abdomen, else bone.
 inline HuWindow usualWindow(const std::string& anatomy) {
   return kWindowPresets[anatomy == "abdomen" ? 2 : kFirstPreset].window;

@@ -5,8 +5,10 @@
 #include <QShortcut>
 #include <QVBoxLayout>
 #include <QWheelEvent>
+#include <utility>
 
 #include "ui/common/making.h"
+#include "ui/common/placing.h"
 #include "ui/common/words.h"
 #include "ui/views/steps.h"
 
@@ -22,8 +24,6 @@ SlicePreview::SlicePreview(QWidget* parent) : QWidget(parent) {
   windows_ = new QButtonGroup(this);
   auto* window_row = new QHBoxLayout;
   window_row->setSpacing(4);
-  auto* title = looking(new QLabel(tr("Window"), this), {"quiet"});
-  window_row->addWidget(title);
   for (int i = 0; i < int(kWindowPresets.size()); ++i) {
     const WindowPreset& preset = kWindowPresets[std::size_t(i)];
     auto* button = named(new QToolButton(this), QString("window%1").arg(i + 1), {"segment"});
@@ -39,7 +39,7 @@ SlicePreview::SlicePreview(QWidget* parent) : QWidget(parent) {
     windows_->addButton(button, i);
     window_row->addWidget(button);
   }
-  window_ = named(new QLabel(this), "windowNumbers", {"quiet"});
+  window_ = named(new ElidedLabel(this), "windowNumbers", {"quiet"});
   box_ = named(new QToolButton(this), "cropTool", {"segment"});
   box_->setText(tr("Crop"));
   box_->setToolTip(
@@ -118,6 +118,12 @@ void SlicePreview::showStack(int count, const std::optional<Mat3>& direction) {
   slider_->setEnabled(count > 1);
   showPosition();
   emit sliceWanted(slider_->value());
+}
+
+void SlicePreview::setBodyPart(const std::string& body_part) {
+  if (std::exchange(body_part_, body_part) == body_part) return;
+  canvas_->setWindow(windowOfBodyPart(body_part));
+  showWindow();
 }
 
 void SlicePreview::showNothing(const QString& why) {

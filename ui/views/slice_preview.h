@@ -23,6 +23,8 @@ class SlicePreview : public QWidget {
   // SliceCanvas.
   void showStack(int count, const std::optional<Mat3>& direction = {});
   void showNothing(const QString& why);
+  // Another part than before is looked at with its usual HU window.
+  void setBodyPart(const std::string& body_part);
   // `picture` of slice `index`, or why there is none. Shown only while it is the one wanted, or on
   // the way there, so that a quick hand sees the slices go by.
   void showSlice(int index, const Result<SlicePicture>& picture);
@@ -48,6 +50,7 @@ class SlicePreview : public QWidget {
   QButtonGroup* windows_;
   QLabel* window_;
   QToolButton* box_;
+  std::optional<std::string> body_part_;
   bool croppable_ = false;
   int turned_ = 0;  // of the wheel, since the last whole notch
 };

@@ -509,6 +509,10 @@ class ExerciseGuiTest : public test::WindowTest {
     QCOMPARE(exercise().operator_file, script.string());
     find<QToolButton>("placeEntry")->click();
     QVERIFY(inHand("sliceEntryTool"));
+    window_->show(Place::train);
+    QVERIFY(!inHand("sliceEntryTool"));  // the next Esc is of the exercise
+    window_->show(Place::prepare);
+    find<QToolButton>("placeEntry")->click();
     QTest::mouseClick(&window_->view(), Qt::LeftButton, {}, window_->view().rect().center());
     untilPlaced();
     QVERIFY(workstation().entry());

@@ -44,6 +44,9 @@ TEST(ExerciseCard, IsInEnglishWhereItHasNoOtherLanguage) {
 TEST(ExerciseCard, IsWrittenAsItWasRead) {
   const Json json = burrHole();
   EXPECT_EQ(toJson(*parseExercise(json, burrHoleFile()))["card"], json["card"]);
+  Json old = json;
+  old["card"]["zh_TW_is_old"] = true;
+  EXPECT_EQ(toJson(*parseExercise(old, burrHoleFile()))["card"], old["card"]);
   Json bare = json;
   bare.erase("card");
   EXPECT_FALSE(toJson(*parseExercise(bare, burrHoleFile())).contains("card"));

@@ -118,3 +118,12 @@ TEST(VisibleIntervals, HoldExactlyTheHuWithOpacity) {
     EXPECT_EQ(inside, evaluate(f, hu).opacity > 0.0) << hu;
   }
 }
+
+TEST(TransferFunction, ATissueFromRightAboveRemovedVoxelsHasARampThatATableCanHold) {
+  const auto f = transferFunction({"", {tissue("organ", -999, 3000, kRed, 0.8)}});
+  EXPECT_EQ(evaluate(f, kRemovedHu).opacity, 0.0);
+  EXPECT_GT(evaluate(f, -995.0).opacity, 0.0);
+  EXPECT_DOUBLE_EQ(evaluate(f, -970.0).opacity, 0.8);
+  ASSERT_GE(f.size(), 2u);
+  EXPECT_GE(f[1].hu - f[0].hu, kRampHalfWidth_HU);
+}

@@ -28,6 +28,7 @@ void expectTheSameMetrics(const RunMetrics& live, const ReplayResult& replayed,
   RunMetrics without = live;
   without.removed_mm3.clear();
   without.removed_voxels = 0;
+  without.brought_back_mm3 = 0.0;
   for (RunMetrics::Arm& arm : without.arms) arm.removed_mm3 = 0.0;
   EXPECT_TRUE(*read == without);
 }

@@ -398,6 +398,21 @@ TEST_F(SlicePreviewTest, ADragDrawsABoxInTheSlicesPixels) {
   EXPECT_EQ(drawn.bottomRight(), QPoint(99, 49)) << "cut to the slice";
 }
 
+TEST_F(SlicePreviewTest, AHeadIsLookedAtAsBoneAndAnAbdomenAsSoftTissue) {
+  const auto bone = kWindowPresets[1].window, soft = kWindowPresets[2].window;
+  preview_.setBodyPart("HEAD");
+  EXPECT_EQ(preview_.canvas().window(), bone);
+  preview_.setBodyPart("Abdomen");
+  EXPECT_EQ(preview_.canvas().window(), soft);
+  EXPECT_EQ(preview_.findChild<QButtonGroup*>()->checkedId(), 2);
+  preview_.canvas().setWindow(kWindowPresets[4].window);
+  preview_.setBodyPart("Abdomen");
+  EXPECT_EQ(preview_.canvas().window(), kWindowPresets[4].window) << "as a person has set it";
+  EXPECT_EQ(windowOfBodyPart(""), soft);
+  EXPECT_EQ(windowOfBodyPart("HEART"), soft);
+  EXPECT_EQ(windowOfBodyPart("CSPINE"), bone);
+}
+
 TEST_F(SlicePreviewTest, TheFrontIsUpAndThePatientsRightIsAtTheLeftHoweverItIsStored) {
   // One white pixel: the patient's right front.
   const auto stored = [](int column, int row) {
