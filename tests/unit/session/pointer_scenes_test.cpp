@@ -1,6 +1,7 @@
 // All five shipped exercises, done with a pointer: finished, and the same at any rate of events.
 #include <cstdio>
 #include <map>
+#include <set>
 #include <string>
 
 #include "base/system.h"
@@ -131,11 +132,43 @@ TEST(PointerExercises, TheLiverIsPuncturedAndSliced) {
   expectTheSameAtAnyRate(test::kLiver);
 }
 
-// A hand that is faster than the tool follows is caught up with, and what the tool sweeps is cut:
-// a slit, on a coarse grid, which a blade of 1 mm could slip through.
+// Of the voxels of tissue on the blade's axis while it was drawn aside, the share that is gone.
+double goneWhereTheBladeWas(const SessionReader& recording, const Session& session,
+                            const Placement& of, double from_s, double to_s) {
+  const auto ticks =
+      *recording.ticks(std::uint64_t(1000.0 * from_s), std::uint64_t(1000.0 * (to_s - from_s)));
+  const Grid& carved = *session.carved();
+  const GridGeometry& g = carved.geometry();
+  const Mat4 to_voxel = g.patientToVoxel();
+  const TissueTable table = tissueTable(session.exercise().tissues);
+  const LabelMap* labels = of.labels.get();
+  std::set<std::size_t> crossed, gone;
+  for (const TickRecord& tick : ticks) {
+    const ArmRecord& arm = tick.arms[0];
+    for (double mm = 0.0; mm <= 50.0; mm += 0.5) {
+      const Vec3 at_mm = arm.proxy_position_mm + arm.proxy_orientation * Vec3(0.0, 0.0, mm);
+      const Vec3 v = glm::round(Vec3(to_voxel * glm::dvec4(at_mm, 1.0)));
+      const int i = int(v.x), j = int(v.y), k = int(v.z);
+      if (!g.contains(i, j, k)) continue;
+      const std::size_t voxel = g.indexOf(i, j, k);
+      const int c =
+          classify(table, of.patient.volume->hu[voxel], labels ? labels->labels[voxel] : 0);
+      if (c < 0 || !table.classes[std::size_t(c)].cuttable) continue;
+      crossed.insert(voxel);
+      if (carved.hu(i, j, k) == kAirHu) gone.insert(voxel);
+    }
+  }
+  EXPECT_GT(crossed.size(), 100u);
+  return double(gone.size()) / double(crossed.size());
+}
+
+// 32 mm within a fifth of a second, 40 mm deep. On a grid as fine as the blade what it swept is a
+// slit. On a coarser one a cut is as thick as a voxel, the work of the hand does not pay for all of
+// that (removed volume is work / cutting energy), and what is left is told here.
 TEST(PointerExercises, AFastStrokeLeavesASlitAndNoDots) {
-  Exercise exercise = *readExercise(resourceFolder() / "scenes" / "liver-one-arm.json");
-  for (const double coarser : {3.0}) {
+  const Exercise exercise = *readExercise(resourceFolder() / "scenes" / "liver-one-arm.json");
+  const std::map<double, double> least{{1.0, 0.95}, {2.0, 0.8}, {3.0, 0.6}};
+  for (const auto& [coarser, least_gone] : least) {
     GridGeometry g = *phantomGeometry("abdomen");
     for (std::size_t axis = 0; axis < 3; ++axis) {
       g.size[axis] = int(double(g.size[axis]) / coarser);
@@ -149,10 +182,11 @@ TEST(PointerExercises, AFastStrokeLeavesASlitAndNoDots) {
     of.structures = std::make_shared<const LabelMap>(std::move(labels));
     const Result<Placement> placed = place(onCase(exercise, ""), of);
     ASSERT_TRUE(placed.ok()) << placed.error().sentence();
-    auto made = Session::create(*placed, {{}, {}, true});
+    const test::TemporaryFolder folder;
+    auto made = Session::create(*placed, {folder / "s.h5", {}, true});
     ASSERT_TRUE(made.ok()) << made.error().sentence();
     Session& session = **made;
-    // In, 32 mm aside within a fifth of a second, some time to follow, and out.
+    // In, aside, some time to follow, and out.
     PointerUser user(session, 0,
                      {{0, 8, -60, 0},
                       {0.5, 8, -42, 0},
@@ -167,26 +201,12 @@ TEST(PointerExercises, AFastStrokeLeavesASlitAndNoDots) {
     const Progress progress(
         [&](double, const std::string&) { user.playUntil(0.256 * double(talks++) + 0.52); });
     ASSERT_TRUE(session.freewheel(user.end_s() + 0.5, progress).ok());
-    const LandmarkFrame frame = session.landmarks()[0].frame;
-    const Grid& carved = *session.carved();
-    const Mat4 to_voxel = carved.geometry().patientToVoxel();
-    const double voxel_mm = std::max({g.spacing_mm.x, g.spacing_mm.y, g.spacing_mm.z});
-    int places = 0, cut = 0;
-    for (double x_mm = 10.0; x_mm <= 36.0; x_mm += 1.0, ++places) {
-      bool any = false;
-      for (double y_mm = -42.0 - voxel_mm; y_mm <= -42.0 + voxel_mm && !any; y_mm += 0.25) {
-        for (double z_mm = 5.0; z_mm > -20.0 && !any; z_mm -= 0.5) {
-          const Vec3 v =
-              glm::round(Vec3(to_voxel * glm::dvec4(frame.toPatient_mm({x_mm, y_mm, z_mm}), 1.0)));
-          const int i = int(v.x), j = int(v.y), k = int(v.z);
-          if (!g.contains(i, j, k)) continue;
-          any = carved.hu(i, j, k) == kAirHu && of.volume->at(i, j, k) != kAirHu;
-        }
-      }
-      cut += any;
-    }
-    std::printf("voxels of %.2f mm: cut at %d of %d places of the stroke\n", voxel_mm, cut, places);
-    EXPECT_EQ(cut, places) << voxel_mm;
+    const auto reader = SessionReader::open(folder / "s.h5");
+    ASSERT_TRUE(reader.ok()) << reader.error().sentence();
+    const double gone = goneWhereTheBladeWas(**reader, session, *placed, 4.0, 4.6);
+    std::printf("voxels of %.1f mm: %.1f %% of what the blade was drawn through is gone\n",
+                g.spacing_mm.x, 100.0 * gone);
+    EXPECT_GE(gone, least_gone) << g.spacing_mm.x;
   }
 }
 
