@@ -226,6 +226,8 @@ void Desk::stopped(const Status& status) {
   std::get<Ending>(activity_).session.reset();
   noteController(exercise_->controller);
   go(Idle{});
+  // In Prepare they held only for what ran.
+  if (std::exchange(practised_, false) && !opened_exercise_.locks.empty()) say(DeskChange::locks);
   if (!status && !(said && said->what == status.error().what)) fail(status.error());
   if (stuck) fail(*stuck);
 }

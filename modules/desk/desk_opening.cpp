@@ -210,8 +210,8 @@ void Desk::placeAgain(const std::shared_ptr<const LabelMap>& structures, bool of
 void Desk::open(OpenRequest request, const Opening& as) {
   if (!as.placing) question_.reset();  // structures that were made here leave it as it is
   const bool structures_alone = request.structures_alone;
-  // Which one it will be, a case of the library says once it is read.
-  const bool known = !(request.any_exercise && request.load);
+  // Which one it will be, the case says once it is read.
+  const bool known = !(request.any_exercise && (request.load || request.of));
   if (!request.same_exercise && known) {
     events_.onExerciseOpening(request.exercise, request.exercise_file);
   }

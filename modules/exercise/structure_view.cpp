@@ -45,7 +45,8 @@ std::vector<std::string> tissuesOf(const TissueSet& tissues, const Structure& st
 }
 
 SeenTissues withStructures(const TissueSet& tissues, const TissueLooks& looks,
-                           const std::vector<Structure>& structures, const StructureLooks& chosen) {
+                           const std::vector<Structure>& structures, const StructureLooks& chosen,
+                           int first_label) {
   SeenTissues seen{tissues, looks, {}};
   const int nowhere = nowhereIn(structures);
   for (Tissue& tissue : seen.tissues.tissues) {
@@ -76,8 +77,10 @@ SeenTissues withStructures(const TissueSet& tissues, const TissueLooks& looks,
       own.push_back(n);
     }
   }
-  std::ranges::stable_sort(
-      own, {}, [&](std::size_t n) { return seen.structures[n].look == TissueLook::hidden; });
+  std::ranges::stable_sort(own, {}, [&](std::size_t n) {
+    if (seen.structures[n].look == TissueLook::hidden) return 2;
+    return seen.structures[n].label == first_label ? 0 : 1;
+  });
   for (const std::size_t n : own) {
     SeenStructure& look = seen.structures[n];
     look.has_room = seen.tissues.tissues.size() < std::size_t(kMaxTissues);

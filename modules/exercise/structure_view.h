@@ -40,9 +40,10 @@ struct SeenTissues {
 };
 
 // `structures` are rows of the label map that is shown. Those that are not hidden have room first,
-// in their order.
+// in their order, the one with the label `first` before all (0: none).
 SeenTissues withStructures(const TissueSet& tissues, const TissueLooks& looks,
-                           const std::vector<Structure>& structures, const StructureLooks& chosen);
+                           const std::vector<Structure>& structures, const StructureLooks& chosen,
+                           int first = 0);
 
 // The tissues of the set that are of this structure, by its name or its label.
 std::vector<std::string> tissuesOf(const TissueSet& tissues, const Structure& structure);

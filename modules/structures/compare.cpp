@@ -1,6 +1,7 @@
 #include "structures/compare.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <vector>
@@ -104,6 +105,35 @@ Result<Likeness> likeness(const LabelMap& a, std::uint8_t of_a, const LabelMap& 
   of.hd95_mm = std::max(percentile95_mm(a_border, b_border, a.geometry),
                         percentile95_mm(b_border, a_border, a.geometry));
   return of;
+}
+
+ChangedStructures changedStructures(const LabelMap* before, const LabelMap* after) {
+  static const LabelMap kNone;
+  const LabelMap &was = before ? *before : kNone, &is = after ? *after : kNone;
+  const bool same_grid = was.labels.size() == is.labels.size() && was.geometry == is.geometry;
+  std::array<bool, 256> had{}, has{}, other{};
+  for (const std::uint8_t label : was.labels) had[label] = true;
+  for (const std::uint8_t label : is.labels) has[label] = true;
+  for (std::size_t n = 0; same_grid && n < is.labels.size(); ++n) {
+    if (was.labels[n] == is.labels[n]) continue;
+    other[was.labels[n]] = true;
+    other[is.labels[n]] = true;
+  }
+  ChangedStructures result;
+  for (const Structure& s : is.structures) {
+    const auto label = std::size_t(s.label);
+    const Structure* old = was.find(s.label);
+    const bool same =
+        same_grid && !other[label] && old && old->name == s.name && old->colour == s.colour;
+    if (has[label] && !same) result.changed.push_back(s.name);
+  }
+  for (const Structure& s : was.structures) {
+    const Structure* now = is.find(s.label);
+    if (had[std::size_t(s.label)] && !(now && has[std::size_t(s.label)])) {
+      result.gone.push_back(s.name);
+    }
+  }
+  return result;
 }
 
 }  // namespace trephine

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
+#include <vector>
 
 #include "base/result.h"
 #include "volume/label_map.h"
@@ -19,5 +21,13 @@ struct Likeness {
 // axes may come in another order or run the other way. Errors: OTHER_GRID where the voxels differ.
 Result<Likeness> likeness(const LabelMap& a, std::uint8_t of_a, const LabelMap& b,
                           std::uint8_t of_b);
+
+// By name, in the order of the list: those of `after` that `before` has not, or with other voxels,
+// another name or colour; and those that `after` has no voxel of. Null: none. Other geometries are
+// two maps that share nothing.
+struct ChangedStructures {
+  std::vector<std::string> changed, gone;
+};
+ChangedStructures changedStructures(const LabelMap* before, const LabelMap* after);
 
 }  // namespace trephine

@@ -55,7 +55,7 @@ struct RunMetrics {
   std::vector<std::pair<std::string, double>> removed_mm3;
   std::uint64_t removed_voxels = 0;
   // Once something had been cut: how often undo was asked for, and a rewind or reset; and how much
-  // was cut and put back, cut again afterwards or not: setRemoved().
+  // was cut and put back, cut again by the tool or not, less what a redo took: setRemoved().
   std::uint64_t undos = 0, rewinds = 0;
   double brought_back_mm3 = 0.0;
   friend bool operator==(const RunMetrics& a, const RunMetrics& b);

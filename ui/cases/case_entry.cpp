@@ -77,7 +77,7 @@ std::optional<CaseEntry> broughtBy(const std::filesystem::path& file) {
   const auto parts = std::mismatch(folder.begin(), folder.end(), source.begin(), source.end());
   if (source.empty() || parts.first != folder.end()) return {};
   CaseEntry entry;
-  entry.id = "exercise:" + folder.filename().string();
+  entry.id = idOfExercise(file);
   entry.exercise = file;
   entry.record.name = exercise->name;
   entry.record.region = exercise->anatomy == exerciseAnatomy(BodyRegion::head) ? BodyRegion::head
@@ -95,6 +95,10 @@ std::optional<CaseEntry> broughtBy(const std::filesystem::path& file) {
 }
 
 }  // namespace
+
+std::string idOfExercise(const std::filesystem::path& exercise_file) {
+  return "exercise:" + exercise_file.parent_path().filename().string();
+}
 
 QString cardWords(const CaseEntry& entry) {
   QStringList lines{shownName(entry.record.name.empty() ? entry.id : entry.record.name)};

@@ -34,6 +34,9 @@ QString detailWords(const CaseEntry& entry);
 // What a case is and shows, in a few lines.
 QString caseWords(const Case& of);
 
+// Of the case that came with the exercise of this file.
+std::string idOfExercise(const std::filesystem::path& exercise_file);
+
 // All that there is to practise on: the library's, the newest first, then those of the exercises
 // below `storage` that brought theirs, then the built-in ones. Takes some hundredths of a second a
 // case. Any thread.

@@ -201,8 +201,8 @@ const CaseEntry* CasesPage::chosen() const {
 void CasesPage::showCases(const std::vector<CaseEntry>& entries) {
   const CaseEntry* before = chosen();
   std::string keep = before ? before->id : open_;
-  if (!to_select_.empty()) keep = std::exchange(to_select_, {});
   entries_ = entries;
+  if (find(to_select_)) keep = std::exchange(to_select_, {});
   cards_->clear();
   for (const CaseEntry& entry : entries_) {
     auto* item = new QListWidgetItem(cardIcon(entry), cardWords(entry), cards_);
@@ -225,7 +225,7 @@ void CasesPage::select(const std::string& id) {
 
 void CasesPage::showOpen(const std::string& id, const QString& about, bool saved) {
   any_open_ = true;
-  open_ = id;
+  if (std::exchange(open_, id) != id) select(id);
   open_about_ = about;
   open_saved_ = saved;
   showStrip();

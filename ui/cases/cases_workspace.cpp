@@ -163,8 +163,9 @@ void CasesWorkspace::askForFile() {
 }
 
 void CasesWorkspace::askForExercise() {
-  QFileDialog* dialog =
-      messages_.fileDialog("sceneDialog", tr("Open an exercise"), tr("Exercise (*.json)"));
+  QFileDialog* dialog = messages_.fileDialog(
+      "sceneDialog", tr("Open an exercise, or any file in the folder of one that was exported"),
+      tr("Exercise (*.json)"));
   connect(dialog, &QFileDialog::fileSelected, this,
           [this](const QString& file) { open(toPath(file)); });
   dialog->open();
@@ -228,8 +229,9 @@ void CasesWorkspace::openEntry(const CaseEntry& entry, Place then) {
   if (!entry.exercise.empty()) return app_.openUnlessLost(entry.exercise, then, true);
   std::vector<UnsavedWork> losses = WorkGuards::ofTheCase();
   const std::string anatomy = entry.built_in ? entry.id : exerciseAnatomy(entry.record.region);
-  // A place that was clicked is of the patient who goes.
-  if (anatomy.empty() || !workstation_.exerciseFits(anatomy) || workstation_.entry())
+  // A place that was clicked is of the patient who goes; a case of the library has its own tissues.
+  const bool tissues_go = !entry.built_in && workstation_.tissuesEdited();
+  if (anatomy.empty() || !workstation_.exerciseFits(anatomy) || workstation_.entry() || tissues_go)
     losses.push_back(UnsavedWork::tissues);
   if (entry.built_in) {
     return guards_.unlessLost(losses, begin([this, name = entry.id] {
@@ -333,8 +335,8 @@ void CasesWorkspace::askToDelete(const CaseEntry& entry) {
                 "without it.")
        : exercises == 0
            ? tr("Its volume, structures and report are removed from this workstation for good.")
-           : tr("Its volume, structures and report are removed from this workstation for good. The "
-                "recordings of %1 exercises stay, but cannot be replayed without it.")
+           : tr("Its volume, structures and report are removed from this workstation for good. "
+                "Recordings of exercises on it (%1) stay, but cannot be replayed without it.")
                  .arg(exercises)) +
           made,
       tr("&Delete it"), [this, entry] {
@@ -391,7 +393,10 @@ void CasesWorkspace::caseRead(Case read, const std::filesystem::path& labels) {
   to_save.volume = read.volume;
   read.identity = std::make_shared<const SourceIdentity>(to_save.source);
   std::vector<UnsavedWork> losses = WorkGuards::ofTheCase();
-  if (workstation_.entry()) losses.push_back(UnsavedWork::tissues);
+  // Nor does an exercise stay that does not fit, unless a person chose it.
+  const bool fits =
+      read.anatomy && workstation_.exerciseFits(exerciseAnatomy(read.anatomy->region));
+  if (workstation_.entry() || !fits) losses.push_back(UnsavedWork::tissues);
   guards_.unlessLost(losses, [this, read, labels, to_save] {
     guards_.setCaseSource(workstation_.import().source());
     app_.goOnceOpen(Place::prepare);
@@ -411,8 +416,11 @@ void CasesWorkspace::showCase() {
   const Case* of = workstation_.currentCase();
   if (!of) return;
   const bool phantom = of->built_in;
-  const std::string id = phantom ? workstation_.exercise()->anatomy : of->stored;
-  const bool kept = !of->stored.empty() || isOfOwnExercise(app_.storage(), of->source);
+  const bool came = isOfOwnExercise(app_.storage(), of->source);
+  const std::string id = phantom ? workstation_.exercise()->anatomy
+                         : came  ? idOfExercise(workstation_.exerciseFile())
+                                 : of->stored;
+  const bool kept = !of->stored.empty() || came;
   page_->showOpen(id, caseWords(*of), phantom || open_deleted_ || kept);
 }
 

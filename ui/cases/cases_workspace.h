@@ -27,6 +27,7 @@ class CasesWorkspace : public Workspace {
 
   // A folder or file of CT, or an exercise, which asks first where it takes what is not saved.
   void open(const std::filesystem::path& path);
+  bool importing() const { return import_->importing(); }
   bool mayOpen() const { return open_->isEnabled(); }
   QList<QAction*> openActions() const { return {open_, open_file_, open_exercise_}; }
   // Of the folder that was scanned last: PDF or HTML.

@@ -23,10 +23,13 @@ class ImportPage : public QWidget {
   Q_OBJECT
  public:
   // opened() when the task begins to scan.
+  using Step = ImportStep;
   explicit ImportPage(ImportTask& task, QWidget* parent = nullptr);
 
   void open();  // the folder scanned last, once more
   void say(const QString& text);
+  // A series is read, or was and is asked about.
+  bool importing() const { return step_ == Step::reading || step_ == Step::asking; }
 
  public slots:
   void reject();
@@ -47,8 +50,6 @@ class ImportPage : public QWidget {
   void keyPressEvent(QKeyEvent* event) override;
 
  private:
-  using Step = ImportStep;
-
   void build();
   QWidget* buildFolderColumn();
   void connectParts();

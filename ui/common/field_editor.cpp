@@ -152,6 +152,7 @@ struct FieldEditor::Line : Part {
     edit->setModified(false);
     const bool needed = of.field_.row.range.low >= 1.0;
     if (typed == std::get<std::string>(of.value_) || (typed.empty() && needed)) {
+      of.setRefused(false);
       return show(of.value_);
     }
     // Its own undo ends here: Ctrl+Z takes back edits from now on.
@@ -203,6 +204,7 @@ struct FieldEditor::Paragraph : Part, QObject {
     edit->document()->setModified(false);
     const bool needed = of.field_.row.range.low >= 1.0;
     if (typed == std::get<std::string>(of.value_) || (typed.empty() && needed)) {
+      of.setRefused(false);
       return show(of.value_);
     }
     of.want(typed);
@@ -237,7 +239,11 @@ struct FieldEditor::Lines : Part, QObject {
           texts.push_back(std::move(text));
         }
       }
-      if (texts != textsOf(of.value_)) of.want(texts);
+      if (texts != textsOf(of.value_)) {
+        of.want(texts);
+      } else {
+        of.setRefused(false);
+      }
     }
     return QObject::eventFilter(watched, event);
   }

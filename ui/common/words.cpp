@@ -240,6 +240,10 @@ QString unlockWords(const Policy& policy) {
                     : tr("Nothing at this workstation unlocks it");
 }
 
+QString lockedWords(const Policy& policy, bool by_policy) {
+  return by_policy ? unlockWords(policy) : tr("What runs keeps it: stop the exercise first");
+}
+
 QString timeWords(std::uint32_t seconds) {
   return QStringLiteral("%1:%2").arg(seconds / 60).arg(seconds % 60, 2, 10, QLatin1Char('0'));
 }

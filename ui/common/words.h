@@ -48,6 +48,9 @@ QString faultWords(std::uint32_t faults);
 QString findingWords(const SeriesReport& series);
 // Who takes off what the workstation locks, or why nobody does; without a stop, as Error::next.
 QString unlockWords(const Policy& policy);
+// Why it cannot be changed in Prepare now, and what ends that: `by_policy`, or what an exercise
+// keeps holds until its run has ended.
+QString lockedWords(const Policy& policy, bool by_policy);
 // "1:05" of 65 seconds.
 QString timeWords(std::uint32_t seconds);
 // "512 x 512 x 140 voxels", and on a second line "0.49 x 0.49 x 1.00 mm".

@@ -237,6 +237,7 @@ void MainWindow::show(Place place) {
   }
   entered_ = true;
   place_ = place;
+  app_.noteShown(place);
   const Room& now = room(place);
   {
     const FourUp::Still until_all_has_its_place(views());
@@ -396,7 +397,13 @@ void MainWindow::closeEvent(QCloseEvent* event) {
     if (!*within) close();
   };
   const bool running = phase != Phase::empty && phase != Phase::ready;
+  std::vector<UnsavedWork> losses = WorkGuards::ofTheCase();
+  losses.push_back(UnsavedWork::tissues);
   if (running) {
+    // Nobody goes on cutting while this is asked.
+    Session* session = workstation().session();
+    const bool pauses = session && !session->state().paused;
+    if (pauses) (void)session->send(CommandKind::pause);
     QMessageBox* question =
         ask(this, "closeQuestion", tr("An exercise is running."),
             tr("Closing ends it. Its recording is kept; what was cut is not saved as a volume."),
@@ -406,9 +413,18 @@ void MainWindow::closeEvent(QCloseEvent* event) {
             });
     orElse(*question, "saveVolumeFirst", tr("&Save volume\u2026"),
            [this] { app_.caseViews().wantVolume(); });
+    const QAbstractButton* stay = question->button(QMessageBox::Cancel);
+    connect(question, &QMessageBox::buttonClicked, this,
+            [this, stay, pauses](QAbstractButton* button) {
+              Session* runs = workstation().session();
+              if (button == stay && pauses && runs) (void)runs->send(CommandKind::resume);
+            });
+  } else if (cases_->importing()) {
+    ask(this, "importQuestion", tr("A CT is being imported."),
+        tr("Closing ends that: no case is made of it. Its files stay as they are."),
+        tr("&End it and close"),
+        [this, losses, for_good] { app_.guards().unlessLost(losses, for_good); });
   } else {
-    std::vector<UnsavedWork> losses = WorkGuards::ofTheCase();
-    losses.push_back(UnsavedWork::tissues);
     app_.guards().unlessLost(losses, for_good);
   }
   *within = false;

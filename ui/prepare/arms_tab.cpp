@@ -176,7 +176,8 @@ void ArmsTab::refresh() {
   if (in_front_ && workstation_.exercise()) {
     tools_->setLocked(
         workstation_.anyLocked()
-            ? tr("The exercise is locked. %1.").arg(unlockWords(workstation_.policy()))
+            ? tr("The exercise is locked. %1.")
+                  .arg(lockedWords(workstation_.policy(), !workstation_.policy().locks.empty()))
             : QString());
     tools_->setExercise(*workstation_.exercise());
   }

@@ -87,6 +87,7 @@ void ExerciseTab::takeElsewhere(const std::filesystem::path& file) {
 }
 
 void ExerciseTab::show(bool in_front) {
+  if (in_front_ && !in_front) guards_.takeTyped();
   in_front_ = in_front;
   if (!in_front_) draw(false);
   refresh();
@@ -95,9 +96,11 @@ void ExerciseTab::show(bool in_front) {
 // A threshold that is dragged pays for no form that nobody sees.
 void ExerciseTab::refresh() {
   if (!in_front_ || !workstation_.exercise()) return;
-  form_->setLocked(workstation_.anyLocked()
-                       ? tr("The exercise is locked. %1.").arg(unlockWords(workstation_.policy()))
-                       : QString());
+  form_->setLocked(
+      workstation_.anyLocked()
+          ? tr("The exercise is locked. %1.")
+                .arg(lockedWords(workstation_.policy(), !workstation_.policy().locks.empty()))
+          : QString());
   form_->setElsewherePossible(!workstation_.isElsewhere());
   const std::optional<Placement>& placed = workstation_.placed();
   if (std::exchange(shown_, workstation_.exerciseFile()) != shown_) form_->forgetCard();
@@ -147,10 +150,6 @@ bool ExerciseTab::isShipped() const {
 
 bool ExerciseTab::anyRefused() const {
   return form_->anyRefused();
-}
-
-void ExerciseTab::forgetRefused() {
-  form_->forgetCard();
 }
 
 bool ExerciseTab::isOwn() const {
@@ -242,6 +241,7 @@ void ExerciseTab::save(bool copy, WorkGuards::Next then, bool on_another_case) {
       },
       [this, file, then = std::move(then)] {
         opened_ = onDisk(*file);
+        shown_ = *file;  // the same exercise: a text that was not taken stays
         workstation_.exerciseSaved(*file);
         emit saved();
         emit exercisesChanged();

@@ -36,7 +36,6 @@ class ExerciseTab : public QObject {
 
   // A text that was typed and not taken, and that it goes.
   bool anyRefused() const;
-  void forgetRefused();
   // One of this workstation: saving writes the file that it was opened from.
   bool isOwn() const;
 

@@ -198,14 +198,12 @@ void PrepareWorkspace::showUndo() {
                                : tr("Brings back what was taken back; there is nothing"));
 }
 
-void PrepareWorkspace::unlessTissuesStay(WorkGuards::Next go_on) {
-  if (exercise_->anyRefused()) {
+void PrepareWorkspace::unlessTissuesStay(WorkGuards::Next go_on, bool without_refused) {
+  if (exercise_->anyRefused() && !without_refused) {
     ask(app_.messages().window(), "textNotApplied",
         tr("A text of the exercise's card is too long and not applied."),
-        tr("Going on leaves it out."), tr("&Go on without it"), [this, go_on = std::move(go_on)] {
-          exercise_->forgetRefused();
-          unlessTissuesStay(go_on);
-        });
+        tr("Going on leaves it out."), tr("&Go on without it"),
+        [this, go_on = std::move(go_on)] { unlessTissuesStay(go_on, true); });
     return;
   }
   // One of this workstation's own has its tissues in its own file.
@@ -226,11 +224,15 @@ void PrepareWorkspace::unlessTissuesStay(WorkGuards::Next go_on) {
                               : tr("Save them to a file? Discarded changes cannot be had back."));
   box->setDefaultButton(QMessageBox::Save);
   connect(
-      box, &QMessageBox::finished, this, [this, exercise, go_on = std::move(go_on)](int answer) {
+      box, &QMessageBox::finished, this,
+      [this, exercise, without_refused, go_on = std::move(go_on)](int answer) {
         if (answer == QMessageBox::Discard) return go_on();
         if (answer != QMessageBox::Save) return;
         // And what is changed while that is written.
-        if (exercise) return exercise_->save(false, [this, go_on] { unlessTissuesStay(go_on); });
+        const auto again = [this, without_refused, go_on] {
+          unlessTissuesStay(go_on, without_refused);
+        };
+        if (exercise) return exercise_->save(false, again);
         if (structures_->isStored()) return structures_->saveInCase(go_on);
         QFileDialog* dialog =
             app_.messages().saveDialog(tr("Save tissues"), "tissues.json", tr("Tissues (*.json)"));

@@ -44,7 +44,7 @@ class PrepareWorkspace : public Workspace {
   void showUndo();
   bool editsServe() const;
   // Goes on with what takes the place of the tissues; where they have been edited it asks first.
-  void unlessTissuesStay(WorkGuards::Next go_on);
+  void unlessTissuesStay(WorkGuards::Next go_on, bool without_refused = false);
 
   AppContext& app_;
   Workstation& workstation_;

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "desk/fit_question.h"
+#include "structures/compare.h"
 #include "ui/common/question.h"
 #include "ui/common/words.h"
 #include "ui/structures/structure_report.h"
@@ -48,6 +49,8 @@ StructureTab::StructureTab(Workstation& workstation, Messages& messages, WorkGua
   connect(&toolbox_, &Toolbox::taken, this, &StructureTab::toolTaken);
   connect(&structures_, &StructurePanel::openWanted, this, &StructureTab::askForLabels);
   connect(&structures_, &StructurePanel::saveWanted, this, [this] { saveThen({}); });
+  connect(&structures_, &StructurePanel::keepWanted, this,
+          [this] { isStored() ? saveInCase({}) : saveThen({}); });
   connect(view_, &ViewWidget::nothingThere, this, [this] {
     structures_.say(tr("Nothing solid is seen there: ghosts are passed through."));
   });
@@ -171,6 +174,7 @@ void StructureTab::showOpened() {
     structures_.suitVoxels(of.volume->geometry.spacing_mm);
     editor_.setCase(of.volume, of.structures);
     in_case_ = editor_.version();
+    of_case_ = of.structures;
     case_has_any_ = of.structures && !of.structures->structures.empty();
     tissues_touched_ = false;
   }
@@ -391,6 +395,7 @@ void StructureTab::saveInCase(WorkGuards::Next then) {
         if (editor_.isOf(of)) {
           editor_.markSaved(version);
           in_case_ = version;
+          if (map) of_case_ = map;
           if (map) case_has_any_ = !map->structures.empty();
         }
         if (tissues) {
@@ -401,9 +406,16 @@ void StructureTab::saveInCase(WorkGuards::Next then) {
       });
 }
 
-// "liver, spleen, and 3 more"; empty: there are none.
-QString StructureTab::names() const {
+// "liver, spleen, and 3 more"
+static QString firstOf(QStringList names) {
   constexpr qsizetype kMost = 6;
+  const qsizetype more = names.size() - kMost;
+  if (more > 0) names = names.mid(0, kMost) << StructureTab::tr("and %1 more").arg(more);
+  return names.join(QStringLiteral(", "));
+}
+
+// Empty: there are none.
+QString StructureTab::names() const {
   QStringList names;
   if (const std::shared_ptr<const LabelMap> map = editor_.map()) {
     for (const Structure& one : map->structures) {
@@ -411,9 +423,16 @@ QString StructureTab::names() const {
       if (any) names << toQt(one.name);
     }
   }
-  const qsizetype more = names.size() - kMost;
-  if (more > 0) names = names.mid(0, kMost) << tr("and %1 more").arg(more);
-  return names.join(QStringLiteral(", "));
+  return firstOf(names);
+}
+
+// Those that are other in the case.
+QString StructureTab::changedNames() const {
+  const auto [changed, gone] = changedStructures(of_case_.get(), editor_.map().get());
+  QStringList names;
+  for (const std::string& name : changed) names << toQt(name);
+  for (const std::string& name : gone) names << tr("%1 (deleted)").arg(toQt(name));
+  return names.isEmpty() ? this->names() : firstOf(names);
 }
 
 bool StructureTab::unsaved() const {
@@ -425,16 +444,17 @@ bool StructureTab::unsaved() const {
 void StructureTab::unlessLost(WorkGuards::Next go_on) {
   if (!unsaved()) return go_on();
   const QString what = names();
-  QMessageBox* question = ask(
-      messages_.window(), "structuresUnsaved",
-      what.isEmpty() ? tr("All structures have been deleted, and the case still has them.")
-      : isStored()   ? tr("The case does not hold its structures as they are now: %1.").arg(what)
-                     : tr("The structures have been made or changed and not saved: %1.").arg(what),
-      what.isEmpty() ? tr("Going on leaves the case as it was saved.")
-      : isStored()   ? tr("Going on leaves the case as it was saved. A file that they were "
-                            "exported to, or came from, is a copy.")
-                     : tr("Going on takes them away."),
-      tr("&Go on without them"), go_on);
+  QMessageBox* question =
+      ask(messages_.window(), "structuresUnsaved",
+          what.isEmpty() ? tr("All structures have been deleted, and the case still has them.")
+          : isStored()
+              ? tr("The case does not hold its structures as they are now: %1.").arg(changedNames())
+              : tr("The structures have been made or changed and not saved: %1.").arg(what),
+          what.isEmpty() ? tr("Going on leaves the case as it was saved.")
+          : isStored()   ? tr("Going on leaves the case as it was saved. A file that they were "
+                                "exported to, or came from, is a copy.")
+                         : tr("Going on takes them away."),
+          tr("&Go on without them"), go_on);
   if (isStored()) {
     orElse(*question, "saveInCaseFirst", tr("Save in the &case"),
            [this, go_on] { saveInCase(go_on); });

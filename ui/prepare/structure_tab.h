@@ -64,6 +64,7 @@ class StructureTab : public QObject {
   void saveThen(WorkGuards::Next then);
   void unlessLost(WorkGuards::Next go_on);
   QString names() const;
+  QString changedNames() const;
 
   Workstation& workstation_;
   Messages& messages_;
@@ -84,6 +85,7 @@ class StructureTab : public QObject {
   // for structures of another file; and whether tissues have been edited since.
   std::optional<std::uint64_t> in_case_ = 0;
   bool case_has_any_ = false;  // structures, as it was opened or saved
+  std::shared_ptr<const LabelMap> of_case_;  // what the case has; null: not known
   bool tissues_touched_ = false;
   QTimer settled_;
   WorkGuards::Next start_when_placed_;  // an exercise waits for its structures

@@ -47,7 +47,7 @@ void TissuePicture::show() {
     tissues_.setLooks(looks);
     views_->setTissues(set, looks);
   }
-  SeenTissues seen = withStructures(set, looks, rows, structure_looks_);
+  SeenTissues seen = withStructures(set, looks, rows, structure_looks_, editor_.current());
   structures_.list().showLooks(seen.structures);
   if (seen_ && seen_->tissues == seen.tissues && seen_->looks == seen.looks) return;
   seen_ = std::move(seen);
@@ -97,7 +97,7 @@ void TissuePicture::showMoving(const std::vector<Structure>& rows, const TissueL
                        : look == TissueLook::hidden ? TissueLook::hidden
                                                     : TissueLook::ghosted;
   }
-  SeenTissues seen = withStructures(set, alone, rows, structure_looks_);
+  SeenTissues seen = withStructures(set, alone, rows, structure_looks_, editor_.current());
   for (Tissue& tissue : seen.tissues.tissues) {
     if (tissue.id == *moving_) tissue.opacity = std::max(tissue.opacity, kSeenOpacity);
   }

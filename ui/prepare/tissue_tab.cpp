@@ -50,10 +50,11 @@ TissueTab::TissueTab(Workstation& workstation, FourUp& views, Messages& messages
     });
   }
   connect(&workstation_, &Workstation::locksChanged, this, [this] {
-    tissues_.setLocked(
-        workstation_.isLocked(Lock::tissues)
-            ? tr("The tissues are locked. %1.").arg(unlockWords(workstation_.policy()))
-            : QString());
+    tissues_.setLocked(workstation_.isLocked(Lock::tissues)
+                           ? tr("The tissues are locked. %1.")
+                                 .arg(lockedWords(workstation_.policy(),
+                                                  workstation_.policy().isLocked(Lock::tissues)))
+                           : QString());
   });
   connect(&tissues_, &TissuePanel::editEnded, this, [this] { workstation_.closeEdit(); });
   // They may be about to go.

@@ -75,7 +75,8 @@ void StructureList::buildList() {
   list_->setMinimumHeight(kLeastHeight);
   list_->setSizePolicy(QSizePolicy::Expanding, QSizePolicy::Ignored);
   list_->setToolTip(
-      tr("A double click or F2 renames, the right button offers more; V, or a click under Look, "
+      tr("A double click or F2 renames, a click on the colour changes it, the right button offers "
+         "more; V, or a click under Look, "
          "shows, ghosts and hides it"));
   buildMenu();
   connect(list_, &QTreeWidget::currentItemChanged, this, [this](QTreeWidgetItem* item) {
@@ -85,7 +86,10 @@ void StructureList::buildList() {
     if (!filling_) rename(item);
   });
   connect(list_, &QTreeWidget::itemClicked, this, [this](QTreeWidgetItem* item, int column) {
-    if (column == kLookColumn) nextLook(labelOf(item));
+    if (column == kLookColumn) return nextLook(labelOf(item));
+    const int within =
+        list_->viewport()->mapFromGlobal(QCursor::pos()).x() - list_->visualItemRect(item).left();
+    if (within >= 0 && within < list_->iconSize().width() + 6) chooseColour();
   });
 }
 
@@ -189,7 +193,7 @@ void StructureList::showLooks() {
     QTreeWidgetItem* item = list_->topLevelItem(row);
     const auto of = seen(labelOf(item));
     item->setText(kLookColumn, of ? StructureLookRow::wordOf(*of) : QString());
-    if (of && !of->has_room) without << item->text(kNameColumn);
+    if (of && !of->has_room && of->look != TissueLook::hidden) without << item->text(kNameColumn);
   }
   filling_ = false;
   const Structure* chosen = editor_.structures().find(editor_.current());
@@ -198,8 +202,8 @@ void StructureList::showLooks() {
   constexpr int kMost = 3;
   QString names = QStringList(without.mid(0, kMost)).join(tr(", ", "between structures"));
   if (without.size() > kMost) names += tr(" and %1 more").arg(without.size() - kMost);
-  no_room_->setText(tr("A 3-D picture tells %1 tissues and structures apart: %2 has no room. Hide "
-                       "others to see it.")
+  no_room_->setText(tr("A 3-D picture tells %1 tissues and structures apart: %2 has no room. The "
+                       "chosen one has; hide others to see more.")
                         .arg(kMaxTissues)
                         .arg(names));
   no_room_->setVisible(!without.isEmpty());
@@ -207,7 +211,8 @@ void StructureList::showLooks() {
 
 void StructureList::nextLook(int label) {
   const auto of = seen(label);
-  if (of && of->has_room) emit lookWanted(label, StructureLookRow::after(of->look));
+  if (of && (of->has_room || of->look == TissueLook::hidden))
+    emit lookWanted(label, StructureLookRow::after(of->look));
 }
 
 }  // namespace trephine

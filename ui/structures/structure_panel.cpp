@@ -74,9 +74,11 @@ void StructurePanel::build() {
   open_file_ = namedButton("openSegmentation", tr("&Open\u2026"), false, this);
   open_file_->setToolTip(
       tr("Structures from elsewhere: DICOM SEG, 3D Slicer's .seg.nrrd, label maps with names"));
-  save_ = namedButton("saveStructures", tr("&Save\u2026"), false, this);
-  save_->setToolTip(tr("Save structures as a label map with their names"));
-  connect(save_, &QPushButton::clicked, this, &StructurePanel::saveWanted);
+  save_ = namedButton("saveStructures", tr("&Save"), false, this);
+  save_->setToolTip(
+      tr("Save the structures in the case, or where the case is no one of the "
+         "library's, as a label map with their names"));
+  connect(save_, &QPushButton::clicked, this, &StructurePanel::keepWanted);
   export_ = namedButton("exportStructures", tr("E&xport"), false, this);
   export_->setMenu(buildSaving());
   auto* files = new QHBoxLayout;

@@ -51,6 +51,7 @@ class StructurePanel : public QWidget {
   void toolChosen(trephine::ViewTool* tool);  // null: put down
   void brushChanged();
   void openWanted();
+  void keepWanted();           // in the case, where that can be
   void saveWanted();           // as a label map
   void saveDicomWanted();      // with the CT, under new UIDs
   void saveForSourceWanted();  // as DICOM that refers to the CT's own files

@@ -57,7 +57,7 @@ ResultPage::ResultPage(QWidget& over) : FloatingCard(over, At::middle, kResultWi
   auto* purpose = looking(new QLabel(purposeText()), {"quiet"});
   again_ = named(new QPushButton(tr("Try &again")), "resultAgain", {"primary"});
   again_->setToolTip(tr("On whole tissue; the recording of this one stays"));
-  replay_ = named(new QPushButton(tr("&Replay")), "resultReplay");
+  replay_ = named(new QPushButton(tr("Check by &replay")), "resultReplay");
   look_ = named(new QPushButton(tr("&Look at it (Esc)")), "resultLook");
   look_->setToolTip(tr(
       "Puts this page aside: the tissue stays as it was left until the next start, and the panel "
@@ -91,11 +91,10 @@ void ResultPage::setResult(const ExerciseResult& result) {
   }
   if (removed == 0) html += row(tr("nothing"), {});
   if (removed > 1) {
-    html +=
-        QStringLiteral("<tr><td colspan='2'><i>%1</i></td></tr>")
-            .arg(tr("Tissues are told by how dense they are: at the edge of bone a little counts "
-                    "as something softer.")
-                     .toHtmlEscaped());
+    html += QStringLiteral("<tr><td colspan='2'><i>%1</i></td></tr>")
+                .arg(tr("Tissues are told by how dense they are: at an edge a little counts as "
+                        "something softer.")
+                         .toHtmlEscaped());
   }
   bool any = false;
   for (const CutStructure& one : result.structures) {
@@ -115,7 +114,9 @@ void ResultPage::setResult(const ExerciseResult& result) {
     html += title(tr("Taken back"));
     if (result.undos > 0) html += row(tr("By undo"), timesWords(result.undos));
     if (result.rewinds > 0) html += row(tr("By going back or reset"), timesWords(result.rewinds));
-    html += row(tr("Tissue that was cut and put back"), volumeWords(result.brought_back_mm3));
+    if (result.brought_back_mm3 > 0.0) {
+      html += row(tr("Tissue that was cut and put back"), volumeWords(result.brought_back_mm3));
+    }
   }
   if (result.late > 0) html += row(tr("Force came late"), timesWords(result.late));
   rows_->setText(QStringLiteral("<table width='100%'>%1</table>").arg(html));

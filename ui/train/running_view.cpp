@@ -63,7 +63,8 @@ void RunningView::begin(const Session& session) {
   going_back_.reset();
   undoing_.reset();
   ticks_shown_ = 0;
-  touched_ = false;
+  touched_ = paused_ = false;
+  worked_at_mm_.reset();
   rate_clock_.restart();
   removed_clock_.restart();
   exercise_.showIdle();
@@ -71,6 +72,7 @@ void RunningView::begin(const Session& session) {
 
 void RunningView::end(Session& session) {
   showState(session, session.state(), false);
+  if (worked_at_mm_ && !session.isPoke()) views_.setPoint(*worked_at_mm_);
   arms_.showIdle();
   arms_.showController(workstation_.exercise()->controller);
   showTools({});
@@ -111,9 +113,15 @@ void RunningView::showState(Session& session, const LoopState& state, bool all) 
   if (state.ticks > 0 && workstation_.session()) workstation_.noteController(state.controller);
   if (workstation_.session()) {
     for (std::size_t i = 0; i < session.exercise().arms.size(); ++i) {
-      touched_ = touched_ || state.record.arms[i].tissue_class >= 0;
+      if (state.record.arms[i].tissue_class < 0) continue;
+      touched_ = true;
+      worked_at_mm_ = state.record.arms[i].proxy_position_mm;
     }
     touched_ = touched_ || hands_.taken();
+    // Whoever pauses looks at what was cut.
+    const bool pauses = state.paused && !std::exchange(paused_, state.paused);
+    paused_ = state.paused;
+    if (pauses && worked_at_mm_ && !session.isPoke()) views_.setPoint(*worked_at_mm_);
     notice_.showState(state, session.exercise(), session.standsStillFor_s(), !touched_);
     if (cards_wanted_ && isDue(all, cards_clock_, kCardsEvery_ms)) tellCards(session, shown);
     if (!session.isPoke()) exercise_.showTime(double(state.seconds));

@@ -76,6 +76,8 @@ class RunningView : public QObject {
   };
   std::optional<GoingBack> going_back_;  // until it is said that one is there
   std::optional<LoopState> undoing_;     // what was there when it was asked for
+  bool paused_ = false;
+  std::optional<Vec3> worked_at_mm_;     // where a tool was in tissue last
   bool touched_ = false;                 // something has been, in this exercise
   bool cards_wanted_ = false;
   int frames_ = 0;  // since the rates were shown

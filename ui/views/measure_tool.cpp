@@ -28,17 +28,20 @@ class MeasureTool : public ViewTool {
   bool takesDoubleClicks() const override { return kind_ == Measure::Kind::angle; }
 
   void press(const ToolEvent& event) override {
+    // Twice at one place is no ruler.
+    const bool again = drawing_ && slice_ == event.slice && isClick(pressed_, event.in_widget);
     pressed_ = event.in_widget;
+    if (again && kind_ == Measure::Kind::ruler) return drawing_.reset();
     addPoint(event);
   }
   void move(const ToolEvent& event) override { hover(event); }
   void hover(const ToolEvent& event) override {
     if (drawing_ && event.slice == slice_) drawing_->points_mm.back() = event.at_mm;
   }
-  // A click is no ruler.
+  // A ruler by a drag, or by two clicks.
   void release(const ToolEvent& event) override {
     if (kind_ != Measure::Kind::ruler || !drawing_) return;
-    isClick(pressed_, event.in_widget) ? drawing_.reset() : addPoint(event);
+    if (!isClick(pressed_, event.in_widget)) addPoint(event);
   }
   bool key(int key, const Vec3*) override {
     return (key == Qt::Key_Delete || key == Qt::Key_Backspace) && giveUp();
@@ -71,11 +74,12 @@ class MeasureTool : public ViewTool {
 
 ViewTool* measureTool(Measure::Kind kind, QObject* parent) {
   if (kind == Measure::Kind::ruler) {
-    const QString tip = ViewTool::tr("Ruler: drag from end to end (M; Del removes it)");
+    const QString tip = ViewTool::tr(
+        "Ruler: drag from end to end, or click both ends (M; Del removes the one at the pointer)");
     return new MeasureTool(kind, {"sliceRulerTool", Qt::Key_M, {}, tip, {}, drawRuler}, parent);
   }
-  const QString tip =
-      ViewTool::tr("Angle: click an end, the corner, the other end (N; Del removes it)");
+  const QString tip = ViewTool::tr(
+      "Angle: click an end, the corner, the other end (N; Del removes the one at the pointer)");
   return new MeasureTool(kind, {"sliceAngleTool", Qt::Key_N, {}, tip, {}, drawAngle}, parent);
 }
 

@@ -180,6 +180,20 @@ const WorkspaceBox* workspaceAt(const QPointF& place, const ShownSlice& on,
   return nullptr;
 }
 
+double pixelsFrom(const ShownSlice& on, const Measure& measure, const QPointF& at) {
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t n = 1; n < measure.points_mm.size(); ++n) {
+    const QPointF from = on.at(measure.points_mm[n - 1]), to = on.at(measure.points_mm[n]);
+    const QPointF along = to - from;
+    const double length2 = QPointF::dotProduct(along, along);
+    const double share =
+        length2 > 0.0 ? std::clamp(QPointF::dotProduct(at - from, along) / length2, 0.0, 1.0) : 0.0;
+    const QPointF apart = at - (from + share * along);
+    least = std::min(least, std::hypot(apart.x(), apart.y()));
+  }
+  return least;
+}
+
 void paintMeasure(QPainter& painter, const ShownSlice& on, const Measure& measure) {
   QPolygonF line;
   for (const Vec3& point : measure.points_mm) line << on.at(point);

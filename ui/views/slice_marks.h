@@ -39,6 +39,8 @@ QColor colourOf(SliceAxis axis);
 void paintCross(QPainter& painter, const ShownSlice& on, const Vec3& point_mm);
 void paintTools(QPainter& painter, const ShownSlice& on, const std::vector<ToolView>& tools);
 QRect toolsRect(const ShownSlice& on, const std::vector<ToolView>& tools);  // what those cover
+// How far a place of the widget is from a measure's line or ends, in pixels.
+double pixelsFrom(const ShownSlice& on, const Measure& measure, const QPointF& at);
 void paintMeasure(QPainter& painter, const ShownSlice& on, const Measure& measure);
 void paintWorkspaces(QPainter& painter, const ShownSlice& on,
                      const std::vector<WorkspaceBox>& boxes);

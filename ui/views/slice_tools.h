@@ -10,7 +10,8 @@ namespace trephine {
 ViewTool* windowTool(QObject* parent);
 // The point that all slices share, by click or drag.
 ViewTool* pointTool(QObject* parent);
-// The ruler, from end to end by a drag; the angle, by clicks: an end, the corner, the other end.
+// The ruler, from end to end by a drag or two clicks; the angle, by clicks: an end, the corner, the
+// other end.
 ViewTool* measureTool(Measure::Kind kind, QObject* parent);
 
 }  // namespace trephine

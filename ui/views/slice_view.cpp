@@ -15,6 +15,7 @@ namespace trephine {
 namespace {
 constexpr int kLine_pixels = 2;       // what a line may cover beside its pixel
 constexpr double kGrab_pixels = 4.0;  // so near to a line a press takes hold of it
+constexpr double kAtMeasure_pixels = 12.0;  // so near to a measure it is the one that is meant
 }  // namespace
 
 SliceView::SliceView(SliceAxis axis, std::shared_ptr<VolumeMirror> mirror,
@@ -295,9 +296,20 @@ bool SliceView::handleKey(int key) {
     return true;
   }
   if (is(Qt::Key_Delete, Qt::Key_Backspace)) {
-    const auto last = std::find_if(measures_.rbegin(), measures_.rend(),
-                                   [&](const Measure& m) { return shown().holds(m); });
-    if (last != measures_.rend()) measures_.erase(std::next(last).base());
+    // The one at the pointer, else the last.
+    const ShownSlice on = shown();
+    auto gone = measures_.end(), last = measures_.end();
+    double nearest = kAtMeasure_pixels;
+    for (auto of = measures_.begin(); of != measures_.end(); ++of) {
+      if (!on.holds(*of)) continue;
+      last = of;
+      const double away = pointer_ ? pixelsFrom(on, *of, *pointer_) : nearest;
+      if (away >= nearest) continue;
+      nearest = away;
+      gone = of;
+    }
+    if (gone == measures_.end()) gone = last;
+    if (gone != measures_.end()) measures_.erase(gone);
     update();
     return true;
   }

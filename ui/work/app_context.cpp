@@ -86,22 +86,29 @@ AppContext::AppContext(QMainWindow& window, std::filesystem::path recordings, co
       {QKeySequence(Qt::CTRL | Qt::SHIFT | Qt::Key_Z), QKeySequence(Qt::CTRL | Qt::Key_Y)});
   // After the views have shown it.
   connect(&workstation_, &Workstation::caseOpened, this, [this] {
+    came_ = true;
     if (workstation_.placed()) go(std::exchange(once_open_, Place::prepare));
   });
   // At once, where what it needs time for is shown; and back where nothing came of it.
   connect(&workstation_, &Workstation::phaseChanged, this, [this] {
     const bool opening = workstation_.opensAnotherCase();
     if (std::exchange(opening_, opening) == opening) return;
-    if (opening) return go(once_open_);
+    if (opening) {
+      came_ = false;
+      before_opening_ = shown_;
+      return go(once_open_);
+    }
     QMetaObject::invokeMethod(
         this,
         [this] {
           if (workstation_.opensAnotherCase()) return;  // the next one
+          if (came_) return;
           once_open_ = Place::prepare;
-          if (!workstation_.currentCase()) go(Place::cases);
+          go(before_opening_);
         },
         Qt::QueuedConnection);
   });
+  connect(&workstation_, &Workstation::asked, this, [this] { came_ = true; });
   // What was tried is there no longer.
   connect(&workstation_, &Workstation::exerciseOpening, this, [this] { setTrying(false); });
   connect(&workstation_, &Workstation::caseOpened, this, [this] { setTrying(false); });
@@ -175,7 +182,7 @@ void AppContext::takeInExercise(const std::filesystem::path& folder, Place then)
       },
       [this, exercise, then] {
         tellExercises();
-        openUnlessLost(*exercise, then);
+        openUnlessLost(*exercise, then, true);
       });
 }
 

@@ -46,6 +46,8 @@ class AppContext : public QObject {
   QAction* redoAction() const { return redo_; }
 
   void go(Place place) { emit placeWanted(place); }
+  // The window shows this one now.
+  void noteShown(Place place) { shown_ = place; }
   // To the recordings of a case (ListedRecording::caseKey()).
   void review(const std::string& of) {
     review_of_ = of;
@@ -70,6 +72,8 @@ class AppContext : public QObject {
   WorkGuards guards_;
   CaseViews case_views_;
   Place once_open_ = Place::prepare;
+  Place shown_ = Place::cases, before_opening_ = Place::cases;
+  bool came_ = false;  // the case that was being opened, or a question of it
   std::string review_of_;
   QAction *undo_, *redo_;
   bool trying_ = false;

@@ -243,6 +243,27 @@ class CasesGuiTest : public test::WindowTest {
     QTRY_VERIFY_WITH_TIMEOUT(!workstation().currentCase()->stored.empty(), kLong_ms);
     QCOMPARE(workstation().exercise()->tissues.find("bone")->damping_Ns_per_m.value, before + 1.0);
     QVERIFY(!workstation().tissuesEdited());
+
+    // It brings its own: tissues that were changed elsewhere are asked about before they go.
+    prepareBuiltIn("cranium");
+    QTRY_VERIFY_WITH_TIMEOUT(workstation().currentCase()->built_in && !workstation().isOpening(),
+                             kLong_ms);
+    showTissues();
+    window_->findChild<TissuePanel*>()->select("bone");
+    damping->setValue(before + 2.0);
+    QVERIFY(workstation().tissuesEdited());
+    for (const auto answer : {QMessageBox::Cancel, QMessageBox::Discard}) {
+      window_->show(Place::cases);
+      choose(idOfMine());
+      QTest::mouseClick(find<QPushButton>("prepareCase"), Qt::LeftButton);
+      QTRY_VERIFY(window_->findChild<QMessageBox*>("unsavedTissues"));
+      QVERIFY(workstation().currentCase()->built_in);
+      find<QMessageBox>("unsavedTissues")->button(answer)->click();
+      QTRY_VERIFY(!window_->findChild<QMessageBox*>("unsavedTissues"));
+    }
+    QTRY_VERIFY_WITH_TIMEOUT(
+        !workstation().currentCase()->stored.empty() && !workstation().isOpening(), kLong_ms);
+    QCOMPARE(workstation().exercise()->tissues.find("bone")->damping_Ns_per_m.value, before + 1.0);
   }
 
   void aFolderThatIsRenamedUnderneathIsSaidAndTheCaseIsFoundAgain() {

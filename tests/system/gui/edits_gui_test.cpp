@@ -191,8 +191,11 @@ class EditsGuiTest : public test::WindowTest {
     prepareBuiltIn("cranium");
     QVERIFY(!question());
     QVERIFY(workstation().isOpening());
+    QVERIFY(window_->place() == Place::prepare);
     workstation().cancelOpening();
     QTRY_VERIFY_WITH_TIMEOUT(!workstation().isOpening(), kLong_ms);
+    QTRY_VERIFY2(window_->place() == Place::cases, "where it was asked for");
+    window_->show(Place::prepare);
 
     const auto file = workstation().exerciseFile();
     chooseExercise("burr-hole.json");

@@ -639,10 +639,30 @@ class ExerciseGuiTest : public test::WindowTest {
     find<QMessageBox>("textNotApplied")->button(QMessageBox::Cancel)->click();
     QVERIFY(window_->isVisible());
     QCOMPARE(goal->toPlainText().size(), 500);
+    window_->close();  // who stays after all has lost nothing
+    QTRY_VERIFY(window_->findChild<QMessageBox*>("textNotApplied"));
+    find<QMessageBox>("textNotApplied")->findChild<QPushButton*>("goOnAnyway")->click();
+    QTRY_VERIFY(window_->findChild<QMessageBox*>("unsavedTissues"));
+    find<QMessageBox>("unsavedTissues")->button(QMessageBox::Cancel)->click();
+    QTRY_VERIFY(!window_->findChild<QMessageBox*>("unsavedTissues"));
+    QCOMPARE(goal->toPlainText().size(), 500);
+    // What it was before is no refused text.
+    goal->setFocus();
+    goal->selectAll();
+    goal->insertPlainText("Cut it out");
+    key(goal, Qt::Key_Return);
+    QVERIFY(!find<QLabel>("card:goalNotApplied")->isVisible());
     typeText("card:goal", "Cut it out at once");
     QCOMPARE(exercise().card->en.goal, std::string("Cut it out at once"));
     QVERIFY(!find<QLabel>("card:goalNotApplied")->isVisible());
-    typeText("card:goal", "Cut it out");
+    // A text that is being typed is taken where one goes elsewhere by keys.
+    goal->setFocus();
+    goal->selectAll();
+    goal->insertPlainText("Cut it out");
+    window_->show(Place::train);
+    QCOMPARE(exercise().card->en.goal, std::string("Cut it out"));
+    window_->show(Place::prepare);
+    QVERIFY(!find<QLabel>("card:goalNotApplied")->isVisible());
     find<QCheckBox>("cardChineseOn")->click();
     QVERIFY(!exercise().card->zh_TW);
     find<QCheckBox>("cardChineseOn")->click();  // nothing of it was lost
@@ -912,13 +932,13 @@ class ExerciseGuiTest : public test::WindowTest {
     QVERIFY(!window_->findChild<QFileDialog*>("exportExerciseDialog"));
     // A name without an ending is of the kind that is chosen.
     showStructures();
-    find<QAbstractButton>("saveStructures")->click();
+    find<QAction>("saveLabelMap")->trigger();
     auto* dialog = find<QFileDialog>("saveDialog");
     QCOMPARE(dialog->defaultSuffix(), QString("nii.gz"));
     emit dialog->filterSelected("3D Slicer (*.seg.nrrd *.nrrd)");
     QCOMPARE(dialog->defaultSuffix(), QString("seg.nrrd"));
     dialog->close();
-    find<QAction>("saveInCase")->trigger();
+    find<QAbstractButton>("saveStructures")->click();
     untilSaved();
     QVERIFY(!window_->findChild<PrepareWorkspace*>()->structuresUnsaved());
   }

@@ -557,10 +557,13 @@ class GuiTest : public test::WindowTest {
   }
 
   void closingARunningExerciseIsAskedOnce() {
+    QTRY_VERIFY(!workstation().session()->state().paused);
     window_->close();
+    QTRY_VERIFY2(workstation().session()->state().paused, "nobody cuts behind the question");
     keepAll("closeQuestion");
     QVERIFY(window_->isVisible());
     QVERIFY(workstation().session());
+    QTRY_VERIFY(!workstation().session()->state().paused);
     window_->close();
     answer("closeQuestion", "goOnAnyway");
     QTRY_VERIFY(!window_->isVisible());

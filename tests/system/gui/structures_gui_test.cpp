@@ -272,7 +272,8 @@ class StructuresGuiTest : public test::WindowTest {
 
   void itIsSavedWithItsName() {
     showStructures();
-    press("saveStructures");
+    find<QAction>("saveLabelMap")->trigger();
+    ++clicks_;
     auto* dialog = window_->findChild<QFileDialog*>("saveDialog");
     QVERIFY(dialog);
     const QString file = temporary_.filePath("mine.nii.gz");
@@ -293,7 +294,7 @@ class StructuresGuiTest : public test::WindowTest {
   void theCtItselfIsNeverSavedOver() {
     const auto size = std::filesystem::file_size(file_);
     showStructures();
-    QTest::mouseClick(find<QPushButton>("saveStructures"), Qt::LeftButton);
+    find<QAction>("saveLabelMap")->trigger();
     auto* dialog = window_->findChild<QFileDialog*>("saveDialog");
     QVERIFY(dialog);
     emit dialog->fileSelected(toQt(file_));

@@ -201,6 +201,9 @@ class TrainGuiTest : public test::TrainTest {
     find<QAction>("pause")->trigger();  // it would soon be through
     QTRY_VERIFY(session.state().paused);
     QVERIFY(touches());
+    // The slices show where it was cut.
+    QTRY_VERIFY(glm::distance(window_->views().point_mm(),
+                              session.state().record.arms[1].proxy_position_mm) < 3.0);
     QVERIFY(!waits->isVisible());
     key(Qt::Key_T, Qt::ControlModifier);
     QTRY_VERIFY(waits->isVisible());

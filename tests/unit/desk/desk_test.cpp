@@ -243,8 +243,11 @@ TEST_F(KeptDeskTest, WhatIsPractisedStaysKeptWhereverOneLooksUntilItHasEnded) {
   ASSERT_FALSE(failed_) << failed_->sentence();
   desk_.setPractising(false);
   EXPECT_EQ(soften().error().code.str(), "LOCKED");
+  EXPECT_TRUE(desk_.isLocked(Lock::tissues));
+  changes_.clear();
   desk_.stop();
   ASSERT_TRUE(until([&] { return desk_.phase() == Desk::Phase::ready; }));
+  EXPECT_TRUE(has(DeskChange::locks)) << "what shows them has to know";
   EXPECT_TRUE(soften().ok());
 }
 

@@ -80,6 +80,15 @@ TEST(SeenTissues, BeyondWhatAPictureHoldsTheHiddenOnesHaveNoRoomFirst) {
     if (!s.has_room) without.push_back(s.label);
   }
   EXPECT_EQ(without, (std::vector<int>{2, 1 + most + 2}));
+  // The one that is looked at goes before all, but where it is hidden itself.
+  const int last = 1 + most + 2;
+  const auto hasRoom = [&](int label, int first) {
+    const SeenTissues now = withStructures(liverAndBone(), {}, made, chosen, first);
+    return now.structures[std::size_t(label - 1)].has_room;
+  };
+  EXPECT_TRUE(hasRoom(last, last));
+  EXPECT_FALSE(hasRoom(last - 1, last));
+  EXPECT_FALSE(hasRoom(2, 2));
 }
 
 TEST(SeenTissues, WhatWasChosenBeforeATissueWasOfItIsThatTissuesThen) {

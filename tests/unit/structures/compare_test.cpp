@@ -20,6 +20,37 @@ LabelMap boxOf(const Index3& low, const Index3& high, std::uint8_t label) {
   return map;
 }
 
+TEST(ChangedStructures, AreThoseOfOtherVoxelsNamesOrColoursAndThoseThatWent) {
+  LabelMap before = boxOf({5, 5, 5}, {15, 15, 15}, 1);
+  before.labels[before.geometry.indexOf(20, 10, 10)] = 2;
+  before.labels[before.geometry.indexOf(21, 10, 10)] = 3;
+  before.structures = {{1, "liver", Vec3(0.5)}, {2, "spleen", Vec3(0.6)}, {3, "vessel", Vec3(0.7)}};
+  const auto differ = [&](const LabelMap& after) {
+    const auto [changed, gone] = changedStructures(&before, &after);
+    std::string words;
+    for (const std::string& name : changed) words += name + ' ';
+    for (const std::string& name : gone) words += '-' + name + ' ';
+    return words;
+  };
+  LabelMap after = before;
+  EXPECT_EQ(differ(after), "");
+  after.labels[after.geometry.indexOf(5, 5, 5)] = 0;
+  EXPECT_EQ(differ(after), "liver ");
+  after = before;
+  after.structures[1].name = "my spleen";
+  after.structures[2].colour = Vec3(0.1);
+  EXPECT_EQ(differ(after), "my spleen vessel ");
+  after = before;
+  after.structures.erase(after.structures.begin() + 1);
+  after.labels[after.geometry.indexOf(20, 10, 10)] = 4;
+  after.structures.push_back({4, "my spleen", Vec3(0.6)});
+  EXPECT_EQ(differ(after), "my spleen -spleen ");
+  after.structures.push_back({5, "nothing yet", Vec3(0.6)});
+  EXPECT_EQ(differ(after), "my spleen -spleen ") << "it has no voxel";
+  EXPECT_EQ(changedStructures(nullptr, &before).changed.size(), 3u);
+  EXPECT_EQ(changedStructures(&before, nullptr).gone.size(), 3u);
+}
+
 TEST(Likeness, OfTwoBoxesIsKnown) {
   const LabelMap a = boxOf({5, 5, 5}, {15, 15, 15}, 1), b = boxOf({8, 5, 5}, {18, 15, 15}, 4);
   const auto of = likeness(a, 1, b, 4);

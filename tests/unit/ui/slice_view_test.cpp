@@ -230,7 +230,19 @@ TEST_F(SliceViewTest, MeasuresALengthAndAnAngleAndForgetsThemAgain) {
   const double truth = std::hypot(20 * 0.5, 15 * 0.8);
   EXPECT_NEAR(length_mm(view_->measures()[0]), truth, 0.25);
   drag(at(8, 8), at(8, 8));
-  EXPECT_EQ(view_->measures().size(), 1u) << "a click is no ruler";
+  drag(at(8, 8), at(8, 8));
+  EXPECT_EQ(view_->measures().size(), 1u) << "two clicks at one place are no ruler";
+  drag(at(8, 8), at(8, 8));
+  drag(at(28, 8), at(28, 8));
+  ASSERT_EQ(view_->measures().size(), 2u) << "two clicks are one";
+  EXPECT_NEAR(length_mm(view_->measures()[1]), 20 * 0.5, 0.25);
+  hover(at(15, 12.5));  // at the first
+  press(Qt::Key_Delete);
+  ASSERT_EQ(view_->measures().size(), 1u);
+  EXPECT_NEAR(length_mm(view_->measures()[0]), 20 * 0.5, 0.25) << "it removed the one it was at";
+  press(Qt::Key_Delete);
+  EXPECT_TRUE(view_->measures().empty()) << "else the last";
+  drag(at(5, 5), at(25, 20));
 
   press(Qt::Key_N);
   for (const QPointF& point : {at(30, 5), at(10, 5), at(10, 25)}) {
