@@ -80,6 +80,8 @@ class Desk {
   // Structures that were made or changed here, on the case's grid: the exercise is placed in them.
   // False: not now (something is being opened or runs).
   bool useStructures(const std::shared_ptr<const LabelMap>& structures);
+  // A person has opened or chosen the exercise; else it came with a case.
+  bool exerciseChosen() const { return exercise_chosen_; }
   bool exerciseFits(const std::string& anatomy) const {
     return exercise_ && exercise_->anatomy == anatomy;
   }
@@ -218,8 +220,11 @@ class Desk {
     return saved_tissues_ ? *saved_tissues_ : ofExercise();
   }
   bool tissuesEdited() const { return exercise_ && tissues() != declaredTissues(); }
-  // Whether the exercise's own file has other tissues, wherever these are saved.
-  bool tissuesUnlikeExercise() const { return exercise_ && tissues() != ofExercise(); }
+  // Whether the exercise's own file has other tissues, wherever these are saved; but for those that
+  // the open case brought along.
+  bool tissuesUnlikeExercise() const {
+    return exercise_ && tissues() != ofExercise() && tissues() != brought_tissues_;
+  }
   // The case, or a file of tissues, has these now. The exercise's own file has not.
   void tissuesSaved(const TissueSet& as) { saved_tissues_ = as; }
   // The exercise is on disk now as this file: that is what it is opened with from here on.
@@ -324,6 +329,7 @@ class Desk {
   std::optional<Exercise> exercise_;
   std::filesystem::path exercise_file_;
   Exercise opened_exercise_;      // as it was opened, or saved
+  std::optional<TissueSet> brought_tissues_;  // by the case, as it was opened
   std::optional<TissueSet> saved_tissues_;  // tissues() in the case or in a file of their own
   bool exercise_chosen_ = false;  // by a person
   ExerciseHistory history_;

@@ -280,10 +280,12 @@ void Desk::opened(Opened opened) {
     exercise_ = forAnotherCase(*std::move(exercise_), opened_exercise_);
   }
   if (was_elsewhere != isElsewhere()) saved_tissues_.reset();  // of the other set
+  if (!opened.structures_alone) brought_tissues_.reset();
   // The case's own, where they are of the same kinds: what was felt on it is felt again.
   if (opened.tissues && may_edit && sameIds(*opened.tissues, tissues())) {
     tissuesInForce(*exercise_, isElsewhere()) = *opened.tissues;
     tissuesSaved(*opened.tissues);
+    brought_tissues_ = *opened.tissues;
   }
   // What was edited in a set that is not shown any more is not taken back unseen.
   if (was_elsewhere != isElsewhere()) history_.begin(*exercise_);

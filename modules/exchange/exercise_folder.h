@@ -69,6 +69,9 @@ std::filesystem::path exportedExercise(const std::filesystem::path& chosen);
 // Whether a file is of one of the exercises below `storage`/exercises: the exercise itself, or what
 // it came with.
 bool isOfOwnExercise(const std::filesystem::path& storage, const std::filesystem::path& file);
+// That exercise; empty where the file is of none.
+std::filesystem::path exerciseThatBrought(const std::filesystem::path& storage,
+                                          const std::filesystem::path& file);
 // Whether the exercise is one of those below `storage`/exercises.
 bool isOwnExercise(const std::filesystem::path& storage, const std::filesystem::path& exercise);
 

@@ -218,9 +218,14 @@ fs::path exportedExercise(const fs::path& chosen) {
   return list->at("format") == "trephine.exercise" ? folder / kSceneFile : fs::path();
 }
 
-bool isOfOwnExercise(const fs::path& storage, const fs::path& file) {
+fs::path exerciseThatBrought(const fs::path& storage, const fs::path& file) {
   const fs::path below = file.lexically_normal().lexically_relative(storage / "exercises");
-  return !below.empty() && below.begin()->string() != ".." && below.has_parent_path();
+  if (below.empty() || below.begin()->string() == ".." || !below.has_parent_path()) return {};
+  return storage / "exercises" / *below.begin() / kSceneFile;
+}
+
+bool isOfOwnExercise(const fs::path& storage, const fs::path& file) {
+  return !exerciseThatBrought(storage, file).empty();
 }
 
 bool isOwnExercise(const fs::path& storage, const fs::path& exercise) {

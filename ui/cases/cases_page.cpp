@@ -225,7 +225,7 @@ void CasesPage::select(const std::string& id) {
 
 void CasesPage::showOpen(const std::string& id, const QString& about, bool saved) {
   any_open_ = true;
-  if (std::exchange(open_, id) != id) select(id);
+  if (std::exchange(open_, id) != id) find(id) ? select(id) : selectOnceThere(id);
   open_about_ = about;
   open_saved_ = saved;
   showStrip();

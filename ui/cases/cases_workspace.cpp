@@ -227,6 +227,16 @@ void CasesWorkspace::openEntry(const CaseEntry& entry, Place then) {
     };
   };
   if (!entry.exercise.empty()) return app_.openUnlessLost(entry.exercise, then, true);
+  // Where nobody chose one, the newest that was made on it is practised on it.
+  if (entry.isOfLibrary() && then == Place::train && !workstation_.exerciseChosen()) {
+    const auto when = [](const std::filesystem::path& file) {
+      std::error_code ec;
+      return std::filesystem::last_write_time(file, ec);
+    };
+    const auto made = madeOn(entry);
+    const auto newest = std::ranges::max_element(made, {}, when);
+    if (newest != made.end()) return app_.openUnlessLost(*newest, then, true);
+  }
   std::vector<UnsavedWork> losses = WorkGuards::ofTheCase();
   const std::string anatomy = entry.built_in ? entry.id : exerciseAnatomy(entry.record.region);
   // A place that was clicked is of the patient who goes; a case of the library has its own tissues.
@@ -315,13 +325,18 @@ void CasesWorkspace::rename(const CaseEntry& entry, const QString& name) {
   if (!begun) messages_.report(stillChanging());
 }
 
-void CasesWorkspace::askToDelete(const CaseEntry& entry) {
-  int made_on_it = 0;
+std::vector<std::filesystem::path> CasesWorkspace::madeOn(const CaseEntry& entry) const {
+  std::vector<std::filesystem::path> made;
   for (const auto& file : app_.exercises()) {
     const Result<Exercise> exercise = readExercise(file);
     const std::filesystem::path of = exercise ? exercise->case_source : "";
-    made_on_it += of.parent_path() == app_.storage() / "cases" / entry.id;
+    if (of.parent_path() == app_.storage() / "cases" / entry.id) made.push_back(file);
   }
+  return made;
+}
+
+void CasesWorkspace::askToDelete(const CaseEntry& entry) {
+  const int made_on_it = int(madeOn(entry).size());
   const std::size_t exercises = page_->exercisesOn(entry).size();
   const QString made = made_on_it == 0 ? QString()
                                        : ' ' + tr("Exercises that were made on it: %1; they have "
@@ -416,11 +431,11 @@ void CasesWorkspace::showCase() {
   const Case* of = workstation_.currentCase();
   if (!of) return;
   const bool phantom = of->built_in;
-  const bool came = isOfOwnExercise(app_.storage(), of->source);
-  const std::string id = phantom ? workstation_.exercise()->anatomy
-                         : came  ? idOfExercise(workstation_.exerciseFile())
-                                 : of->stored;
-  const bool kept = !of->stored.empty() || came;
+  const std::filesystem::path came_with = exerciseThatBrought(app_.storage(), of->source);
+  const std::string id = phantom             ? workstation_.exercise()->anatomy
+                         : came_with.empty() ? of->stored
+                                             : idOfExercise(came_with);
+  const bool kept = !of->stored.empty() || !came_with.empty();
   page_->showOpen(id, caseWords(*of), phantom || open_deleted_ || kept);
 }
 

@@ -44,6 +44,7 @@ class CasesWorkspace : public Workspace {
   void askForExercise();
   void list();
   void listRecordings();
+  std::vector<std::filesystem::path> madeOn(const CaseEntry& entry) const;  // exercises
   void openEntry(const CaseEntry& entry, Place then);
   void openPhantom(const std::string& name);
   void saveCase();

@@ -50,7 +50,7 @@ constexpr FieldRow preferenceRow(const char* key, const Range& range, const char
 }
 
 inline constexpr FieldOf<Preferences> kWorkFields[] = {
-    {preferenceRow("language", {}, trLater("&Language")),
+    {preferenceRow("language", {}, trLater("&Language of exercises")),
      oneOf<&Preferences::language, kLanguages>()},
     {preferenceRow("theme", {}, trLater("&Theme")), oneOf<&Preferences::theme, kThemes>()},
     {preferenceRow("text_percent", {80, 200, "%"}, trLater("Size of te&xt"), 10.0),

@@ -168,7 +168,8 @@ std::optional<Exercise> ExerciseTab::exerciseToSave() {
   if (of.built_in) return exercise;
   if (of.stored.empty() && isOfOwnExercise(storage_, of.source)) {  // it came with its case
     exercise.case_source = of.source;
-    exercise.labels_file = made.labels_file;
+    const Result<Exercise> brought = readExercise(exerciseThatBrought(storage_, of.source));
+    exercise.labels_file = brought ? brought->labels_file : made.labels_file;
     return exercise;
   }
   if (of.stored.empty()) {

@@ -211,12 +211,14 @@ void PrepareWorkspace::unlessTissuesStay(WorkGuards::Next go_on, bool without_re
       exercise_->isOwn() ? workstation_.tissuesUnlikeExercise() : workstation_.tissuesEdited();
   if (!workstation_.exerciseEdited() && !tissues) return go_on();
   const bool exercise = workstation_.exerciseEdited() || exercise_->isOwn();
-  auto* box = named(new QMessageBox(QMessageBox::Question, tr("Trephine"),
-                                    exercise ? tr("The exercise has been changed and not saved.")
-                                             : tr("The tissues have been changed and not saved."),
-                                    QMessageBox::Save | QMessageBox::Discard | QMessageBox::Cancel,
-                                    app_.messages().window()),
-                    "unsavedTissues");
+  auto* box =
+      named(new QMessageBox(QMessageBox::Question, tr("Trephine"),
+                            exercise ? tr("The exercise \"%1\" has been changed and not saved.")
+                                           .arg(toQt(workstation_.exercise()->name))
+                                     : tr("The tissues have been changed and not saved."),
+                            QMessageBox::Save | QMessageBox::Discard | QMessageBox::Cancel,
+                            app_.messages().window()),
+            "unsavedTissues");
   box->setAttribute(Qt::WA_DeleteOnClose);
   box->setInformativeText(exercise ? tr("Save it? Discarded changes cannot be had back.")
                           : structures_->isStored()

@@ -394,6 +394,11 @@ void StructureEditor::moveStroke(const Vec3& patient_mm) {
 
 void StructureEditor::endStroke() {
   if (!stroke_) return;
+  if (!stroke_->any && !stroke_->brush.erase && stroke_->label != structures_.wall()) {
+    emit said(tr("Nothing changed there: it is of \"%1\" already, or of another structure, which "
+                 "keeps it.")
+                  .arg(toQt(map()->find(stroke_->label)->name)));
+  }
   stroke_.reset();
   changedRows();
   if (const auto again = std::exchange(regrow_, {})) {

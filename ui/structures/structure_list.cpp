@@ -3,6 +3,7 @@
 #include <QAction>
 #include <QColorDialog>
 #include <QHeaderView>
+#include <QMouseEvent>
 #include <QVBoxLayout>
 #include <functional>
 
@@ -85,12 +86,20 @@ void StructureList::buildList() {
   connect(list_, &QTreeWidget::itemChanged, this, [this](QTreeWidgetItem* item) {
     if (!filling_) rename(item);
   });
+  list_->viewport()->installEventFilter(this);
   connect(list_, &QTreeWidget::itemClicked, this, [this](QTreeWidgetItem* item, int column) {
     if (column == kLookColumn) return nextLook(labelOf(item));
-    const int within =
-        list_->viewport()->mapFromGlobal(QCursor::pos()).x() - list_->visualItemRect(item).left();
-    if (within >= 0 && within < list_->iconSize().width() + 6) chooseColour();
+    const int within = pressed_at_.x() - list_->visualItemRect(item).left();
+    const int swatch = list_->style()->pixelMetric(QStyle::PM_SmallIconSize);
+    if (column == kNameColumn && within >= 0 && within < swatch + 6) chooseColour();
   });
+}
+
+bool StructureList::eventFilter(QObject* watched, QEvent* event) {
+  if (event->type() == QEvent::MouseButtonPress) {
+    pressed_at_ = static_cast<QMouseEvent*>(event)->pos();
+  }
+  return QWidget::eventFilter(watched, event);
 }
 
 void StructureList::buildMenu() {
@@ -202,10 +211,11 @@ void StructureList::showLooks() {
   constexpr int kMost = 3;
   QString names = QStringList(without.mid(0, kMost)).join(tr(", ", "between structures"));
   if (without.size() > kMost) names += tr(" and %1 more").arg(without.size() - kMost);
-  no_room_->setText(tr("A 3-D picture tells %1 tissues and structures apart: %2 has no room. The "
-                       "chosen one has; hide others to see more.")
-                        .arg(kMaxTissues)
-                        .arg(names));
+  no_room_->setText(
+      tr("Beyond the %1 that a 3-D picture tells apart: %2. The chosen one is seen; hide "
+         "others to see more.")
+          .arg(kMaxTissues)
+          .arg(names));
   no_room_->setVisible(!without.isEmpty());
 }
 

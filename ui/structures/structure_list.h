@@ -34,6 +34,9 @@ class StructureList : public QWidget {
   void colourChosen(int label, const trephine::Vec3& colour);
   void refused(const QString& words);  // why a name was not taken, in sentences
 
+ protected:
+  bool eventFilter(QObject* watched, QEvent* event) override;
+
  private:
   void buildList();
   void buildMenu();
@@ -46,6 +49,7 @@ class StructureList : public QWidget {
 
   StructureEditor& editor_;
   QTreeWidget* list_;
+  QPoint pressed_at_;  // in the list
   StructureLookRow* look_;
   // What the 3-D view tells no more apart (SeenStructure::has_room); that there is none.
   QLabel *no_room_, *empty_;

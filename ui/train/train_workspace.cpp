@@ -161,11 +161,14 @@ void TrainWorkspace::connectParts() {
     if (workstation_.session()) {
       back_from_trial_ = true;
       workstation_.stop();
-    } else if (case_views_.carved()) {
-      case_views_.showWholeCase();
+      app_.setTrying(false);
+      return app_.go(Place::prepare);
     }
-    app_.setTrying(false);
-    app_.go(Place::prepare);
+    guards_.unlessLost({UnsavedWork::cuts}, [this] {
+      if (case_views_.carved()) case_views_.showWholeCase();
+      app_.setTrying(false);
+      app_.go(Place::prepare);
+    });
   });
   connect(exercise_, &ExercisePanel::cardWanted, this, [this] { putAside(false); });
   card_->takeTabFrom(*view_);
@@ -398,7 +401,8 @@ void TrainWorkspace::sessionEnded(Session& session) {
   if (session.isPoke()) return;
   const RunReport report = session.report();
   case_views_.exerciseEnded(report.done.removed_voxels > 0, isRecorded(session, report));
-  if (std::exchange(back_from_trial_, false)) case_views_.showWholeCase();
+  const bool back = std::exchange(back_from_trial_, false);
+  if (back && isRecorded(session, report)) case_views_.showWholeCase();
   std::error_code ec;
   const bool any = std::filesystem::exists(report.recording, ec);
   messages_.say(session.recordingStatus() ? QString()

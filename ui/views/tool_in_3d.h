@@ -31,6 +31,8 @@ class ToolIn3D : public QObject {
   bool isInHand() const {
     return toolbox_.inHand().worksIn3D() && !training_ && !strip_.movesLight();
   }
+  // A brush works while it is dragged; any other by a click, and a drag turns the view.
+  bool isDragged() const { return isInHand() && toolbox_.inHand().ring_mm() > 0.0; }
   // Where the pointer is; returns how far it went.
   QPointF setPointer(const QPointF& place) { return place - std::exchange(pointer_, place); }
   const QPointF& pointer() const { return pointer_; }

@@ -384,7 +384,10 @@ void ViewWidget::mousePressEvent(QMouseEvent* event) {
   if (!renderer_.hasVolume()) return;
   turned_about_mm_ = turningPoint(event->position());
   if (event->button() != Qt::LeftButton) return;
-  if (!strip_->take(event->position()) && tool_.isInHand()) tool_.press();
+  pressed_at_.reset();
+  if (strip_->take(event->position())) return;
+  pressed_at_ = event->position();
+  if (tool_.isDragged()) tool_.press();
 }
 
 void ViewWidget::mouseMoveEvent(QMouseEvent* event) {
@@ -401,13 +404,21 @@ void ViewWidget::mouseMoveEvent(QMouseEvent* event) {
   } else if (event->buttons() & Qt::MiddleButton) {
     renderer_.pan(moved.x() * devicePixelRatioF(), moved.y() * devicePixelRatioF());
     redraw();
-  } else if (!left || !(tool_.move(moved) || tool_.isInHand())) {
+  } else if (!left || !(tool_.move(moved) || tool_.isDragged())) {
+    if (left && tool_.isInHand() && pressed_at_) {
+      if (isClick(*pressed_at_, event->position())) return;  // so far
+      pressed_at_.reset();
+    }
     turn(moved.x(), moved.y());
   }
 }
 
 void ViewWidget::mouseReleaseEvent(QMouseEvent* event) {
-  if (event->button() == Qt::LeftButton) tool_.release();
+  if (event->button() == Qt::LeftButton) {
+    const bool click = std::exchange(pressed_at_, {}).has_value();
+    if (click && tool_.isInHand() && !tool_.isDragged()) tool_.press();
+    tool_.release();
+  }
   strip_->letGo();
 }
 

@@ -139,6 +139,7 @@ class ViewWidget : public QOpenGLWidget {
   std::vector<ToolView> tools_;  // of the exercise
   std::vector<WorkspaceBox> workspaces_;
   Vec3 turned_about_mm_{0.0};  // by a drag
+  std::optional<QPointF> pressed_at_;  // of a click, as long as it may be one
   bool training_ = false;
   bool resizing_ = false;
   bool worked_ = false;  // since the event loop came round

@@ -127,12 +127,17 @@ void CaseViews::showWholeCase() {
 }
 
 void CaseViews::lookAtCase() {
+  const Placement& placed = *workstation_.placed();
   const std::optional<LandmarkFrame> landmark = workstation_.viewLandmark();
   view().tools().setExerciseView(landmark.has_value());
-  if (const std::optional<Vec3> point = pointToShow(*workstation_.placed(), landmark)) {
+  if (const std::optional<Vec3> point = pointToShow(placed, landmark)) {
     views_->setPoint(*point);
   }
-  if (!landmark) return view().lookAtAll({});
+  const std::vector<std::string>& needed = placed.exercise.structures;
+  const Landmark* of = placed.exercise.findLandmarkById(placed.exercise.view.landmark);
+  const bool there = needed.empty() || (of && of->is_place) ||
+                     (placed.labels && placed.labels->find(needed.front()));
+  if (!landmark || !there) return view().lookAtAll({});
   view().lookAtLandmark(*landmark, workstation_.exercise()->view.distance_mm);
 }
 

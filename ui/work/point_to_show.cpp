@@ -67,15 +67,18 @@ std::optional<Vec3> pointToShow(const Placement& placed,
                                 const std::optional<LandmarkFrame>& landmark) {
   const Landmark* of = placed.exercise.findLandmarkById(placed.exercise.view.landmark);
   if (landmark && of && of->is_place) return landmark->position_mm;
-  if (placed.labels && !placed.exercise.structures.empty()) {
-    const Structure* needed = placed.labels->find(placed.exercise.structures.front());
-    if (needed) {
-      if (const std::optional<Vec3> middle = middleOf(*placed.labels, needed->label)) return middle;
-    }
+  bool missing = false;  // where the exercise would begin is known by nothing
+  if (!placed.exercise.structures.empty()) {
+    const Structure* needed =
+        placed.labels ? placed.labels->find(placed.exercise.structures.front()) : nullptr;
+    const auto middle = needed ? middleOf(*placed.labels, needed->label) : std::nullopt;
+    if (middle) return middle;
+    missing = true;
   }
-  if (!landmark) return {};
+  if (!landmark && !missing) return {};
   const GridGeometry& g = placed.patient.volume->geometry;
-  Vec3 at = toVoxel(g, landmark->position_mm);
+  Vec3 at = missing ? 0.5 * (Vec3(g.size[0], g.size[1], g.size[2]) - 1.0)
+                    : toVoxel(g, landmark->position_mm);
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const std::vector<int> shown = bodyBySlice(*placed.patient.volume, axis);
     const double enough = kShown * *std::ranges::max_element(shown);

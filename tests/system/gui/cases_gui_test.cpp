@@ -21,8 +21,10 @@
 
 #include "base/log.h"
 #include "base/purpose.h"
+#include "exchange/exercise_folder.h"
 #include "gui_support.h"
 #include "imaging/dicom/ct_writer.h"
+#include "library/case_folders.h"
 #include "packed_words.h"
 #include "ui/common/words.h"
 
@@ -221,6 +223,27 @@ class CasesGuiTest : public test::WindowTest {
     QCOMPARE(workstation().currentCase()->sha256, sha);
     QCOMPARE(workstation().currentCase()->stored, id.toStdString());
     QVERIFY(window_->place() == Place::prepare);
+  }
+
+  void whatWasMadeOnItIsPractisedOnItAfterAnotherStart() {
+    const std::string id = workstation().currentCase()->stored;
+    Exercise made = *workstation().exercise();
+    made.name = "Made here";
+    made.case_source = (toPath(storage()) / "cases" / id / case_folders::kVolumeFile).string();
+    const auto folder = freshExercise(toPath(storage()), made.name);
+    QVERIFY(saveExercise(made, folder, toPath(storage()), Progress()).ok());
+    for (const bool there : {true, false}) {
+      window_.reset();
+      if (!there) std::filesystem::remove_all(folder);
+      open();
+      QTRY_COMPARE_WITH_TIMEOUT(ids().size(), 3, kLong_ms);
+      choose(idOfMine());
+      QSignalSpy opened(&workstation(), &Workstation::caseOpened);
+      QTest::mouseClick(find<QPushButton>("trainOnCase"), Qt::LeftButton);
+      QVERIFY(opened.count() == 1 || opened.wait(kLong_ms));
+      QCOMPARE(workstation().currentCase()->stored, id);
+      QCOMPARE(workstation().exercise()->name == "Made here", there);
+    }
   }
 
   void whatIsPreparedIsKeptInTheCase() {

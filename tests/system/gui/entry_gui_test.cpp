@@ -125,6 +125,13 @@ class EntryGuiTest : public test::WindowTest {
     QTest::keyClick(handle(), Qt::Key_I);
     QVERIFY2(inHand("sliceEntryTool"), "a letter means the same in every view");
     const QPointF middle = QRectF(window_->view().rect()).center();
+    // A drag turns the view, whatever is in hand that works by clicks.
+    const QPoint from = window_->view().mapTo(window_.get(), middle.toPoint());
+    const Vec3 before = entry().position_mm, forward = window_->view().rayAt(middle)->direction;
+    dragInWindow(from, from + QPoint(60, 0), Qt::LeftButton);
+    restRefined();
+    QVERIFY(entry().position_mm == before);
+    QVERIFY(glm::distance(window_->view().rayAt(middle)->direction, forward) > 0.05);
     const auto seen = window_->view().pickAt(middle);
     QVERIFY(seen);
     QTest::mouseClick(handle(), Qt::LeftButton, {},

@@ -656,7 +656,9 @@ class ExerciseGuiTest : public test::WindowTest {
     QCOMPARE(exercise().card->en.goal, std::string("Cut it out at once"));
     QVERIFY(!find<QLabel>("card:goalNotApplied")->isVisible());
     // A text that is being typed is taken where one goes elsewhere by keys.
+    QApplication::setActiveWindow(window_.get());
     goal->setFocus();
+    QTRY_VERIFY(goal->hasFocus());
     goal->selectAll();
     goal->insertPlainText("Cut it out");
     window_->show(Place::train);

@@ -140,12 +140,6 @@ class SlicesGuiTest : public test::WindowTest {
     QFile::remove(windowSettings().fileName());
   }
 
-  void aCaseOpensInTheLarge3dView() {
-    QVERIFY(window_->view().isVisible());
-    QVERIFY(!axial().isVisible() && !find<QWidget>("sliceBar")->isVisible());
-    QCOMPARE(window_->view().size(), views().size());
-  }
-
   void aKeyBringsFourViewsInTrueProportions() {
     key(window_->view(), Qt::Key_F6);
     for (SliceAxis axis : kSliceAxes) {

@@ -268,6 +268,28 @@ TEST_F(KeptDeskTest, ACopyOfItsTissuesInAFileMakesThemNoneOfItsOwn) {
   EXPECT_EQ(desk_.phase(), Desk::Phase::ready);
 }
 
+TEST_F(DeskTest, TissuesThatACaseBringsMakeItsExerciseNoOtherAndEditsOfThemDo) {
+  ASSERT_NO_FATAL_FAILURE(openBone());
+  ASSERT_FALSE(desk_.tissuesUnlikeExercise());
+  TissueSet own = desk_.tissues();
+  own.tissues.back().damping_Ns_per_m.value += 3.0;
+  desk_.openStored([&](const Progress&) {
+    return Result<StoredCase>(StoredCase{caseOf(std::make_shared<const Volume>(bone_)), own});
+  });
+  ASSERT_TRUE(untilOpened());
+  ASSERT_FALSE(failed_) << failed_->sentence();
+  EXPECT_EQ(desk_.tissues(), own);
+  EXPECT_FALSE(desk_.tissuesUnlikeExercise());
+  EXPECT_FALSE(desk_.tissuesEdited());
+  ASSERT_TRUE(desk_
+                  .edit("tissues",
+                        [](Exercise& exercise) {
+                          exercise.tissues.tissues.back().damping_Ns_per_m.value += 1.0;
+                        })
+                  .ok());
+  EXPECT_TRUE(desk_.tissuesUnlikeExercise());
+}
+
 TEST_F(DeskTest, StructuresAreOpenedWithoutAnotherCase) {
   ASSERT_NO_FATAL_FAILURE(openBone());
   desk_.openImported(caseOf(std::make_shared<const Volume>(bone_)));

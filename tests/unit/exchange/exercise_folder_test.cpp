@@ -590,6 +590,16 @@ TEST_F(ExerciseFolder, ASavedOneNamesItsCaseFromWhereItLiesAndMovesWithTheStorag
   EXPECT_TRUE(readCase(moved->case_source).ok());
 }
 
+TEST(ExerciseFolders, AFileBelowTheStorageIsOfTheExerciseThatBroughtIt) {
+  const fs::path storage = "/data/trephine", mine = storage / "exercises" / "mine";
+  EXPECT_EQ(exerciseThatBrought(storage, mine / "case" / "volume.nii.gz"), mine / "scene.json");
+  EXPECT_EQ(exerciseThatBrought(storage, mine / "case" / ".." / "scene.json"), mine / "scene.json");
+  EXPECT_EQ(exerciseThatBrought(storage, storage / "exercises" / "loose.json"), fs::path());
+  EXPECT_EQ(exerciseThatBrought(storage, storage / "cases" / "a" / "volume.nii.gz"), fs::path());
+  EXPECT_EQ(exerciseThatBrought(storage, mine / ".." / ".." / "cases" / "a"), fs::path());
+  EXPECT_EQ(exerciseThatBrought(storage, ""), fs::path());
+}
+
 TEST_F(ExerciseFolder, WhatCannotBeSavedLeavesTheOneThatWasThereAsItWas) {
   const fs::path storage = folder_ / "storage", folder = storage / "exercises" / "mine";
   const Exercise exercise = *readExercise(shipped("liver"));

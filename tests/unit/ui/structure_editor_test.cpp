@@ -177,6 +177,13 @@ TEST_F(Editor, APreviewCannotBeTakenOnceAnExerciseRuns) {
   EXPECT_FALSE(editor_.preview());
 }
 
+TEST_F(Editor, AStrokeThatChangesNothingSaysWhy) {
+  stroke(middle_, middle_);
+  EXPECT_EQ(said_, "");
+  stroke(middle_, middle_);
+  EXPECT_TRUE(said_.contains("Nothing changed there")) << said_.toStdString();
+}
+
 TEST_F(Editor, AWallOverWhatCountsAlreadySaysWhatToDo) {
   stroke(middle_, middle_);
   Brush brush;

@@ -1,7 +1,9 @@
 // How structures look in 3-D, as the panel lists and asks for it.
 #include <gtest/gtest.h>
 
+#include <QDialog>
 #include <QSignalSpy>
+#include <QTreeWidget>
 #include <QtTest>
 
 #include "qt_support.h"
@@ -60,6 +62,22 @@ TEST_F(StructureLooksTest, WhatHasNoRoomIsSaidInWordsUntilOthersAreHidden) {
   EXPECT_EQ(look(kMaxTissues), "shown");
   EXPECT_EQ(look(3), "hidden") << "which is no matter of room, and can be taken back";
   EXPECT_TRUE(noRoom()->isHidden());
+}
+
+TEST_F(StructureLooksTest, AClickOnTheColourOfOneAsksForAnother) {
+  show(2);
+  auto* list = panel_.findChild<QTreeWidget*>("structureList");
+  const QRect row = list->visualItemRect(list->topLevelItem(1));
+  const auto click = [&](int x) {
+    QTest::mouseClick(list->viewport(), Qt::LeftButton, {},
+                      QPoint(row.left() + x, row.center().y()));
+    auto* dialog = panel_.findChild<QDialog*>("structureColour");
+    const bool asked = dialog != nullptr;
+    delete dialog;
+    return asked;
+  };
+  EXPECT_FALSE(click(60)) << "on its name";
+  EXPECT_TRUE(click(8));
 }
 
 TEST_F(StructureLooksTest, AClickUnderIn3dAndTheChoiceBelowAskForAnotherLook) {
