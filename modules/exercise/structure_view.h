@@ -30,6 +30,8 @@ struct SeenStructure {
   // False: a picture tells kMaxTissues tissues apart and these are taken; it shows the structure by
   // its HU.
   bool has_room = true;
+  // Whether a person can choose its look: a hidden one may get room by being shown.
+  bool takesLook() const { return has_room || look == TissueLook::hidden; }
   friend bool operator==(const SeenStructure&, const SeenStructure&) = default;
 };
 

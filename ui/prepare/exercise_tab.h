@@ -34,7 +34,7 @@ class ExerciseTab : public QObject {
   std::function<bool()> structuresInCase;
   std::function<void(WorkGuards::Next then)> saveInCase;
 
-  // A text that was typed and not taken, and that it goes.
+  // Whether a text was typed and not taken.
   bool anyRefused() const;
   // One of this workstation: saving writes the file that it was opened from.
   bool isOwn() const;

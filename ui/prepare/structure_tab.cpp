@@ -175,7 +175,6 @@ void StructureTab::showOpened() {
     editor_.setCase(of.volume, of.structures);
     in_case_ = editor_.version();
     of_case_ = of.structures;
-    case_has_any_ = of.structures && !of.structures->structures.empty();
     tissues_touched_ = false;
   }
   own_structures_ = of.structures;
@@ -396,7 +395,6 @@ void StructureTab::saveInCase(WorkGuards::Next then) {
           editor_.markSaved(version);
           in_case_ = version;
           if (map) of_case_ = map;
-          if (map) case_has_any_ = !map->structures.empty();
         }
         if (tissues) {
           workstation_.tissuesSaved(*tissues);
@@ -437,7 +435,8 @@ QString StructureTab::changedNames() const {
 
 bool StructureTab::unsaved() const {
   if (editor_.preview()) return true;
-  if (names().isEmpty() && !(isStored() && case_has_any_)) return false;  // nothing could go
+  const bool case_has_any = of_case_ && !of_case_->structures.empty();
+  if (names().isEmpty() && !(isStored() && case_has_any)) return false;  // nothing could go
   return isStored() ? !inCase() : editor_.edited();
 }
 

@@ -84,8 +84,7 @@ class StructureTab : public QObject {
   // What the library's case has, whatever was saved to files: the editor's version() then, nothing
   // for structures of another file; and whether tissues have been edited since.
   std::optional<std::uint64_t> in_case_ = 0;
-  bool case_has_any_ = false;  // structures, as it was opened or saved
-  std::shared_ptr<const LabelMap> of_case_;  // what the case has; null: not known
+  std::shared_ptr<const LabelMap> of_case_;  // as it was opened or saved; null: it has none
   bool tissues_touched_ = false;
   QTimer settled_;
   WorkGuards::Next start_when_placed_;  // an exercise waits for its structures

@@ -394,10 +394,11 @@ void StructureEditor::moveStroke(const Vec3& patient_mm) {
 
 void StructureEditor::endStroke() {
   if (!stroke_) return;
-  if (!stroke_->any && !stroke_->brush.erase && stroke_->label != structures_.wall()) {
+  const bool painted_nothing = !stroke_->any && !stroke_->brush.erase && !isWall(stroke_->label);
+  if (painted_nothing && structures_.find(stroke_->label)) {  // it may have been deleted meanwhile
     emit said(tr("Nothing changed there: it is of \"%1\" already, or of another structure, which "
                  "keeps it.")
-                  .arg(toQt(map()->find(stroke_->label)->name)));
+                  .arg(nameOf(stroke_->label)));
   }
   stroke_.reset();
   changedRows();

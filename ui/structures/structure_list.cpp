@@ -202,7 +202,7 @@ void StructureList::showLooks() {
     QTreeWidgetItem* item = list_->topLevelItem(row);
     const auto of = seen(labelOf(item));
     item->setText(kLookColumn, of ? StructureLookRow::wordOf(*of) : QString());
-    if (of && !of->has_room && of->look != TissueLook::hidden) without << item->text(kNameColumn);
+    if (of && !of->takesLook()) without << item->text(kNameColumn);
   }
   filling_ = false;
   const Structure* chosen = editor_.structures().find(editor_.current());
@@ -221,8 +221,7 @@ void StructureList::showLooks() {
 
 void StructureList::nextLook(int label) {
   const auto of = seen(label);
-  if (of && (of->has_room || of->look == TissueLook::hidden))
-    emit lookWanted(label, StructureLookRow::after(of->look));
+  if (of && of->takesLook()) emit lookWanted(label, StructureLookRow::after(of->look));
 }
 
 }  // namespace trephine

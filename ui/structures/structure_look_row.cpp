@@ -38,7 +38,7 @@ StructureLookRow::StructureLookRow(QWidget* parent)
 }
 
 void StructureLookRow::show(const QString& name, const std::optional<SeenStructure>& seen) {
-  setEnabled(seen && (seen->has_room || seen->look == TissueLook::hidden));
+  setEnabled(seen && seen->takesLook());
   if (!seen) return number_->clear();
   look_->setCurrentIndex(int(seen->look));
   look_->setAccessibleName(tr("Look of %1 in 3-D").arg(name));
@@ -49,7 +49,7 @@ void StructureLookRow::show(const QString& name, const std::optional<SeenStructu
 }
 
 QString StructureLookRow::wordOf(const SeenStructure& seen) {
-  if (!seen.has_room && seen.look != TissueLook::hidden) return tr("no room");
+  if (!seen.takesLook()) return tr("no room");
   switch (seen.look) {
     case TissueLook::shown:
       return tr("shown");

@@ -400,9 +400,9 @@ void TrainWorkspace::sessionEnded(Session& session) {
   running_->end(session);
   if (session.isPoke()) return;
   const RunReport report = session.report();
-  case_views_.exerciseEnded(report.done.removed_voxels > 0, isRecorded(session, report));
-  const bool back = std::exchange(back_from_trial_, false);
-  if (back && isRecorded(session, report)) case_views_.showWholeCase();
+  const bool recorded = isRecorded(session, report);
+  case_views_.exerciseEnded(report.done.removed_voxels > 0, recorded);
+  if (std::exchange(back_from_trial_, false) && recorded) case_views_.showWholeCase();
   std::error_code ec;
   const bool any = std::filesystem::exists(report.recording, ec);
   messages_.say(session.recordingStatus() ? QString()

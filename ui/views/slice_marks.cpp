@@ -160,6 +160,15 @@ void paintWorkspaces(QPainter& painter, const ShownSlice& on,
   }
 }
 
+static double pixelsFrom(const QPointF& from, const QPointF& to, const QPointF& at) {
+  const QPointF along = to - from;
+  const double squared = QPointF::dotProduct(along, along);
+  const double share =
+      squared > 0.0 ? std::clamp(QPointF::dotProduct(at - from, along) / squared, 0.0, 1.0) : 0.0;
+  const QPointF apart = at - from - share * along;
+  return std::hypot(apart.x(), apart.y());
+}
+
 const WorkspaceBox* workspaceAt(const QPointF& place, const ShownSlice& on,
                                 const std::vector<WorkspaceBox>& boxes) {
   constexpr double kReach_pixels = 11.0, kEdge_pixels = 5.0;
@@ -170,11 +179,9 @@ const WorkspaceBox* workspaceAt(const QPointF& place, const ShownSlice& on,
     if (!box.chosen) continue;
     if (within(on.at(box.centre_mm) - place, kReach_pixels)) return &box;
     for (const auto& [a, b] : box.edges()) {
-      const QPointF from = on.at(a), along = on.at(b) - from;
-      const double squared = QPointF::dotProduct(along, along);
-      if (squared < 1.0) continue;
-      const double share = std::clamp(QPointF::dotProduct(place - from, along) / squared, 0.0, 1.0);
-      if (within(place - from - share * along, kEdge_pixels)) return &box;
+      const QPointF from = on.at(a), to = on.at(b);
+      if (QLineF(from, to).length() < 1.0) continue;  // seen end on
+      if (pixelsFrom(from, to, place) <= kEdge_pixels) return &box;
     }
   }
   return nullptr;
@@ -183,13 +190,8 @@ const WorkspaceBox* workspaceAt(const QPointF& place, const ShownSlice& on,
 double pixelsFrom(const ShownSlice& on, const Measure& measure, const QPointF& at) {
   double least = std::numeric_limits<double>::infinity();
   for (std::size_t n = 1; n < measure.points_mm.size(); ++n) {
-    const QPointF from = on.at(measure.points_mm[n - 1]), to = on.at(measure.points_mm[n]);
-    const QPointF along = to - from;
-    const double length2 = QPointF::dotProduct(along, along);
-    const double share =
-        length2 > 0.0 ? std::clamp(QPointF::dotProduct(at - from, along) / length2, 0.0, 1.0) : 0.0;
-    const QPointF apart = at - (from + share * along);
-    least = std::min(least, std::hypot(apart.x(), apart.y()));
+    least = std::min(least,
+                     pixelsFrom(on.at(measure.points_mm[n - 1]), on.at(measure.points_mm[n]), at));
   }
   return least;
 }

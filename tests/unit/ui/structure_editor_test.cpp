@@ -184,6 +184,18 @@ TEST_F(Editor, AStrokeThatChangesNothingSaysWhy) {
   EXPECT_TRUE(said_.contains("Nothing changed there")) << said_.toStdString();
 }
 
+TEST_F(Editor, AStrokeOfAStructureThatIsDeletedMeanwhileEnds) {
+  stroke(middle_, middle_);
+  Brush brush;
+  brush.radius_mm = 3.0;
+  const int made = editor_.current();
+  editor_.beginStroke(middle_, brush, "liver");
+  editor_.remove(made);
+  editor_.endStroke();
+  EXPECT_NE(editor_.current(), made);
+  EXPECT_EQ(editor_.millilitres(made), 0.0);
+}
+
 TEST_F(Editor, AWallOverWhatCountsAlreadySaysWhatToDo) {
   stroke(middle_, middle_);
   Brush brush;
