@@ -13,7 +13,6 @@ constexpr int kLooksPerTick = 4096;
 constexpr double kMostLooks = 4.0;
 constexpr int kLooksPerRow = 26;
 constexpr int kBatch = 16;            // rows
-constexpr double kHalfVoxel = 0.505;  // in voxels; 0.005 more than half for rounding
 constexpr double kKept_s = 0.05;      // time constant with which unspent work is forgotten
 
 double voxelWork_J(const TissueClass& tissue, double voxel_mm3) {

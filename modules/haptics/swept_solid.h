@@ -10,6 +10,10 @@
 
 namespace trephine {
 
+// What cuts is taken for at least so thick, half of it, in voxels along each axis, so that it takes
+// a voxel wherever it is. 0.005 more than half for rounding.
+inline constexpr double kHalfVoxel = 0.505;
+
 // All within a radius of a segment.
 struct Capsule {
   Vec3 from{0.0}, to{0.0};

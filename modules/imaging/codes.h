@@ -99,6 +99,7 @@ inline constexpr Code kSourceUnchecked{"SOURCE_UNCHECKED"};
 inline constexpr Code kSourceVanished{"SOURCE_VANISHED"};
 inline constexpr Code kSpacingMismatch{"SPACING_MISMATCH"};
 inline constexpr Code kSparseSlices{"SPARSE_SLICES"};
+inline constexpr Code kThickSlices{"THICK_SLICES"};
 inline constexpr Code kThreshold{"THRESHOLD"};
 inline constexpr Code kTiltMismatch{"TILT_MISMATCH"};
 inline constexpr Code kUnevenSpacing{"UNEVEN_SPACING"};

@@ -26,6 +26,7 @@ constexpr double kCoreSpreads = 3.0;    // of the range, to both sides
 constexpr double kLeastHalf_HU = 15.0;  // of the range
 constexpr double kCrumb_ml = 1.0;       // a smaller core may be a crumb of the organ
 constexpr double kFat_HU = -70.0;       // and air: below
+constexpr double kBone_HU = 226.0;      // and above
 constexpr double kCoreMostHalf_HU = 45.0, kMostHalf_HU = 90.0;
 constexpr double kReach_mm = 6.0;   // beyond the core's ball: two blocks
 constexpr double kBridge_mm = 3.5;  // narrower ones are cut off
@@ -208,7 +209,15 @@ bool reachesBorder(const LabelMap& mask) {
   return false;
 }
 
-Error nothingGrown(const HuSpan& hu, double open_mm) {
+// `seed_HU`: the seed's own; of no meaning, 0, where a range was given.
+Error nothingGrown(const HuSpan& hu, double open_mm, double seed_HU) {
+  if (seed_HU > kBone_HU) {
+    return {code::kNothingGrown,
+            tr("The place is bone ({} HU), and bone has no room for a ball {} mm wide there",
+               formatted("%.0f", seed_HU), formatted("%.0f", 2.0 * open_mm)),
+            "seed",
+            tr("For the skull's bone take Skull; else give a range of HU and a smaller ball")};
+  }
   return {
       code::kNothingGrown,
       tr("There is no organ at this place: within 20 mm nothing of {} to {} HU is as wide as {} mm",
@@ -310,7 +319,8 @@ Result<BlockMask> growBlocks(const Volume& volume, const WorkGrid& grid, const I
     const bool holds_click = here != 0 && core[grid.indexOf(at[0], at[1], at[2])];
     if (options.hu || holds_click || ml >= kCrumb_ml) break;
   }
-  if (core.empty()) return nothingGrown(hu, options.open_mm);
+  const double said_HU = options.hu ? 0.0 : seed_HU;
+  if (core.empty()) return nothingGrown(hu, options.open_mm, said_HU);
   for (int estimate = 1; !options.hu && estimate <= kMostEstimates; ++estimate) {
     const HuSpan next = around(spreadOf(smooth, core), kCoreMostHalf_HU);
     const double moved = std::max(std::abs(next.low - hu.low), std::abs(next.high - hu.high));
@@ -322,7 +332,7 @@ Result<BlockMask> growBlocks(const Volume& volume, const WorkGrid& grid, const I
     // the whole.
     std::int32_t here = pieceSharing(core, piece);
     if (here == 0) here = pieceAt(piece, grid, at);
-    if (here == 0) return nothingGrown(hu, options.open_mm);
+    if (here == 0) return nothingGrown(hu, options.open_mm, said_HU);
     core = only(piece, here);
   }
   growth.steps.push_back(formatted("core within %.0f to %.0f HU", hu.low, hu.high) +
@@ -350,7 +360,7 @@ Result<BlockMask> growBlocks(const Volume& volume, const WorkGrid& grid, const I
   for (std::size_t n = 0; n < wider.size(); ++n) wider[n] = wider[n] && wide[n];
   const std::vector<std::int32_t> piece = pieces(wider, grid);
   const std::int32_t with_core = pieceSharing(core, piece);
-  if (with_core == 0) return nothingGrown(growth.hu, options.open_mm);
+  if (with_core == 0) return nothingGrown(growth.hu, options.open_mm, said_HU);
   BlockMask found = only(piece, with_core);
   const BlockMask closed = eroded(dilated(found, grid, kNotch_mm), grid, kNotch_mm);
   for (std::size_t n = 0; n < found.size(); ++n) found[n] = found[n] || closed[n];
@@ -365,7 +375,10 @@ Result<BlockMask> growBlocks(const Volume& volume, const WorkGrid& grid, const I
           tr("The seed is of {} HU, and what has room near it of {} to {} HU: another thing",
              formatted("%.0f", seed_HU), formatted("%.0f", growth.hu.low),
              formatted("%.0f", growth.hu.high)),
-          "seed", tr("Choose a place well inside, another range of HU or a smaller ball")};
+          "seed",
+          seed_HU > kBone_HU
+              ? tr("For the skull's bone take Skull; else give a range of HU and a smaller ball")
+              : tr("Choose a place well inside, another range of HU or a smaller ball")};
     }
   }
   return found;
@@ -421,7 +434,7 @@ Result<Growth> grow(const Volume& volume, const Vec3& seed_mm, const GrowOptions
   growth.ml = double(growth.voxels) * g.voxelVolume_mm3() / 1000.0;
   growth.leaked =
       reachesBorder(growth.mask) || double(growth.voxels) > kMostOfScan * double(g.voxelCount());
-  if (growth.voxels == 0) return nothingGrown(growth.hu, options.open_mm);
+  if (growth.voxels == 0) return nothingGrown(growth.hu, options.open_mm, 0.0);
   growth.seed_off_mm = offFrom(growth.mask, seed_mm, voxel);
   if (std::isinf(growth.seed_off_mm)) {
     return Error{code::kNothingGrown,

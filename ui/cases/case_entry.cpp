@@ -124,7 +124,7 @@ QString detailWords(const CaseEntry& entry) {
   const CaseRecord& record = entry.record;
   QStringList lines{regionWords(record.region) + '.', sizeWords(record.grid)};
   if (!entry.exercise.empty()) {
-    lines.prepend(tr("An exercise of another workstation, with the case that it is made on."));
+    lines.prepend(tr("An exercise that was imported, with the case that it is made on."));
   }
   const QDateTime imported = QDateTime::fromString(toQt(record.imported), Qt::ISODate);
   if (imported.isValid()) {

@@ -58,7 +58,7 @@ CasesWorkspace::CasesWorkspace(AppContext& app)
   open_exercise_ =
       makeAction(window, Symbol::open, "openScene", tr("Open exercise\u2026"),
                  QKeySequence(Qt::CTRL | Qt::SHIFT | Qt::Key_O),
-                 tr("Open an exercise: its file, or any file of one that was exported"));
+                 tr("Open an exercise: its file, or the folder of one that was exported"));
   page_ = new CasesPage;
   import_ = new ImportPage(workstation_.import());
   pages_ = new QStackedWidget;
@@ -164,8 +164,14 @@ void CasesWorkspace::askForFile() {
 
 void CasesWorkspace::askForExercise() {
   QFileDialog* dialog = messages_.fileDialog(
-      "sceneDialog", tr("Open an exercise, or any file in the folder of one that was exported"),
+      "sceneDialog", tr("Open an exercise, or the folder of one that was exported"),
       tr("Exercise (*.json)"));
+  // Who exported a folder looks for that folder, and not for one of its files.
+  connect(dialog, &QFileDialog::directoryEntered, this, [this, dialog](const QString& folder) {
+    if (exportedExercise(toPath(folder)).empty()) return;
+    dialog->reject();
+    open(toPath(folder));
+  });
   connect(dialog, &QFileDialog::fileSelected, this,
           [this](const QString& file) { open(toPath(file)); });
   dialog->open();

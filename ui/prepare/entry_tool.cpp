@@ -6,6 +6,7 @@
 
 #include "exercise/entry_point.h"
 #include "ui/common/colours.h"
+#include "ui/common/words.h"
 #include "ui/views/slice_view.h"
 
 namespace trephine {
@@ -33,9 +34,10 @@ EntryTool::EntryTool(Workstation& workstation, Toolbox& toolbox, Messages& messa
   connect(&toolbox_, &Toolbox::taken, this, [this] { once_ = false; });
 }
 
-void EntryTool::useOnce() {
+void EntryTool::useOnce(const std::string& landmark) {
   toolbox_.take(*this);
   once_ = true;
+  landmark_ = landmark;
 }
 
 void EntryTool::letGo() {
@@ -72,7 +74,8 @@ void EntryTool::place(const Vec3& at_mm, const Vec3& from_mm) {
         tr("The entry point cannot be changed while an exercise runs: stop it first."));
   }
   const Exercise& exercise = *workstation_.exercise();
-  const Landmark* landmark = entryLandmark(exercise);
+  const Landmark* enters = entryLandmark(exercise);
+  const Landmark* landmark = once_ ? exercise.findLandmarkById(landmark_) : enters;
   if (!landmark) return messages_.say(tr("This exercise is fixed in its own patient."));
   Vec3 outward = from_mm - at_mm;
   if (!(glm::length(outward) > 0.0)) {
@@ -86,7 +89,9 @@ void EntryTool::place(const Vec3& at_mm, const Vec3& from_mm) {
       depthInTissue_mm(*of->volume, workstation_.placedTissues(),
                        workstation_.placed()->labels.get(), at_mm, entry.outward);
   constexpr double kSurface_mm = 6.0;  // a click is that exact
-  const QString done = deep_mm <= kSurface_mm
+  const QString done = landmark != enters
+                           ? tr("The landmark %1 is here now.").arg(toQt(landmark->id))
+                       : deep_mm <= kSurface_mm
                            ? tr("The exercise enters here now. Del: back to its own place.")
                            : tr("The exercise enters here now, %1 mm inside of tissue. A tool that "
                                 "begins in tissue has "

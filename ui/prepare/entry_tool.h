@@ -3,6 +3,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 #include <utility>
 
 #include "ui/views/toolbox.h"
@@ -15,8 +16,8 @@ class EntryTool : public ViewTool {
   // Adds itself to the toolbox. All four outlive it.
   EntryTool(Workstation& workstation, Toolbox& toolbox, Messages& messages, WorkGuards& guards);
 
-  // Takes it in hand until a place was taken.
-  void useOnce();
+  // Takes it in hand until a place was taken, which is that of the landmark of this id.
+  void useOnce(const std::string& landmark);
   // Puts it down where it was taken for one place.
   void letGo();
   // Whether a person has asked here for the placing that came to its end; the answer resets it.
@@ -41,6 +42,7 @@ class EntryTool : public ViewTool {
   Toolbox& toolbox_;
   std::optional<ToolEvent> pressed_;
   bool asked_ = false, once_ = false;
+  std::string landmark_;  // where it is used once: whose place it takes
 };
 
 }  // namespace trephine

@@ -231,8 +231,10 @@ QWidget* ExerciseForm::buildEntry() {
   auto* column = tight(new QVBoxLayout(row));
   auto* entry =
       settingButton("placeEntry", tr("Click it in a view"),
-                    tr("A click on skin, bone or a slice is where it enters (I)"), row);
-  connect(entry, &QToolButton::clicked, this, &ExerciseForm::entryWanted);
+                    tr("A click on skin, bone or a slice is the landmark's place from then on"), row);
+  connect(entry, &QToolButton::clicked, this, [this] {
+    if (landmark()) emit placeWanted(landmark()->id);
+  });
   landmark_kind_ = settingHint({}, row);
   landmark_kind_->setObjectName("landmarkKind");
   column->addWidget(entry, 0, Qt::AlignLeft);
@@ -257,7 +259,7 @@ void ExerciseForm::editLandmark(const std::string& what,
 void ExerciseForm::findLandmarkBy(int way) {
   if (way != kByPlace) return editLandmark("found", way == kByBulk ? findByBulk : findByRay);
   showLandmark();  // as it is until it has been clicked
-  emit entryWanted();
+  if (landmark()) emit placeWanted(landmark()->id);
 }
 
 void ExerciseForm::showLandmark() {

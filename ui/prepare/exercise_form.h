@@ -47,7 +47,8 @@ class ExerciseForm : public QWidget {
 
  signals:
   void drawingWanted(bool on);
-  void entryWanted();  // the tool that places it
+  // The tool that places the landmark of this id, to be used once.
+  void placeWanted(const std::string& landmark);
   void looksWanted();  // as they are now
   void operatorWanted();
   void labelsWanted();     // structures of the case from a file

@@ -10,6 +10,7 @@
 #include "base/system.h"
 #include "base/tr.h"
 #include "exchange/exercise_folder.h"
+#include "exchange/exercise_parts.h"
 #include "library/case_folders.h"
 #include "library/name_words.h"
 #include "session/operator_script.h"
@@ -35,7 +36,7 @@ ExerciseTab::ExerciseTab(Workstation& workstation, Messages& messages, WorkGuard
     return workstation_.edit(what, change);
   };
   connect(form_, &ExerciseForm::drawingWanted, this, &ExerciseTab::draw);
-  connect(form_, &ExerciseForm::entryWanted, this, &ExerciseTab::entryWanted);
+  connect(form_, &ExerciseForm::placeWanted, this, &ExerciseTab::placeWanted);
   connect(form_, &ExerciseForm::looksWanted, this, [this] {
     if (!workstation_.exercise()) return;
     const Status done = workstation_.edit("looks", [this](Exercise& exercise) {
@@ -294,7 +295,8 @@ void ExerciseTab::exportSaved() {
   if (!saved) return save(false, [this] { exportSaved(); });
   messages_.askForNewFolder(
       "exportExerciseDialog", tr("Export the exercise as a new folder"),
-      toQt(workstation_.exerciseFile().parent_path().filename()),
+      toQt(plainName(workstation_.exercise()->name,
+                     workstation_.exerciseFile().parent_path().filename().string())),
       [this, exercise = workstation_.exerciseFile()](const std::filesystem::path& folder) {
         workstation_.save(tr("The exercise is exported: one folder with all that it needs."),
                           [exercise, folder](const Progress& progress) {

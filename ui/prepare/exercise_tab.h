@@ -45,7 +45,7 @@ class ExerciseTab : public QObject {
   void takeInWanted(const std::filesystem::path& folder);  // of another workstation's exercise
   void tryWanted();
   void labelsWanted();  // structures of the case from a file
-  void entryWanted();   // the tool that places it, to be used once
+  void placeWanted(const std::string& landmark);  // as the form's
 
  private:
   void refresh();

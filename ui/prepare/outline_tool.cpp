@@ -13,6 +13,10 @@ OutlineTool::OutlineTool(Workstation& workstation, Toolbox& toolbox, Messages& m
       messages_(messages) {
   toolbox.add(*this);
   connect(&toolbox, &Toolbox::taken, this, [this] { first_mm_.reset(); });
+  connect(&workstation_, &Workstation::exerciseChanged, this, [this] {
+    const std::optional<Exercise>& exercise = workstation_.exercise();
+    if (exercise && exercise->outline) last_ = *exercise->outline;
+  });
 }
 
 void OutlineTool::press(const ToolEvent& event) {
@@ -45,6 +49,7 @@ void OutlineTool::add(const Vec3& at_mm) {
     const auto here = placedOutline(*exercise.outline, landmarks);
     outline = here ? *here : *exercise.outline;
   } else {
+    outline = last_;
     outline.points_mm = {*first_mm_};
     outline.frame = ExerciseOutline::Frame{with->id, with->frame};
   }

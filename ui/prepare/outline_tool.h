@@ -23,6 +23,7 @@ class OutlineTool : public ViewTool {
   Workstation& workstation_;
   Messages& messages_;
   std::optional<Vec3> first_mm_;  // of a new outline
+  ExerciseOutline last_;  // that was there: one that is drawn anew is closed and as wide as it
 };
 
 }  // namespace trephine

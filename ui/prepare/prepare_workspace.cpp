@@ -89,7 +89,7 @@ void PrepareWorkspace::connectTabs() {
   });
   connect(structures_, &StructureTab::frontWanted, tabs_,
           [this] { tabs_->setCurrentIndex(kStructureTab); });
-  connect(exercise_, &ExerciseTab::entryWanted, &structures_->entry(), &EntryTool::useOnce);
+  connect(exercise_, &ExerciseTab::placeWanted, &structures_->entry(), &EntryTool::useOnce);
   exercise_->exercises = [this] { return app_.exercises(); };
   connect(exercise_, &ExerciseTab::exercisesChanged, &app_, &AppContext::tellExercises);
   connect(exercise_, &ExerciseTab::takeInWanted, this, [this](const std::filesystem::path& folder) {

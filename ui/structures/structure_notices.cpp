@@ -109,13 +109,15 @@ void StructureNotices::showState() {
                      .arg(preview->hu.high, 0, 'f', 0);
   if (preview->leaked) {
     text += ' ' + tr("It reaches the border of the scan or fills much of it: look whether it is "
-                     "the organ alone. A larger ball or a range of HU holds it back.");
+                     "the organ alone, and all of it. A larger ball holds it back; Only HU takes "
+                     "more, or less.");
   }
   if (preview->seed_off_mm > 0.0) {
     text +=
         ' ' +
         tr("The place that was clicked lies %1 mm beside it.").arg(preview->seed_off_mm, 0, 'f', 1);
   }
+  text += ' ' + tr("Another click grows anew in its place.");
   preview_->setText(text);
   const bool doubtful = preview->leaked || preview->seed_off_mm > 0.0;
   colours::setText(*preview_, doubtful ? colours::kCaution : colours::kText);

@@ -118,7 +118,10 @@ void ResultPage::setResult(const ExerciseResult& result) {
       html += row(tr("Tissue that was cut and put back"), volumeWords(result.brought_back_mm3));
     }
   }
-  if (result.late > 0) html += row(tr("Force came late"), timesWords(result.late));
+  if (result.late > 0) {
+    html += title(tr("Touch"));
+    html += row(tr("Force came late"), timesWords(result.late));
+  }
   rows_->setText(QStringLiteral("<table width='100%'>%1</table>").arg(html));
   replay_->setEnabled(result.recorded);
   place();

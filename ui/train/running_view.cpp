@@ -115,7 +115,10 @@ void RunningView::showState(Session& session, const LoopState& state, bool all) 
     for (std::size_t i = 0; i < session.exercise().arms.size(); ++i) {
       if (state.record.arms[i].tissue_class < 0) continue;
       touched_ = true;
+      const bool first = !worked_at_mm_;
       worked_at_mm_ = state.record.arms[i].proxy_position_mm;
+      // The slices go where work begins; from then on a person may turn their pages.
+      if (first && !session.isPoke()) views_.setPoint(*worked_at_mm_);
     }
     touched_ = touched_ || hands_.taken();
     // Whoever pauses looks at what was cut.

@@ -107,12 +107,13 @@ QString SliceView::readout() const {
   const std::int16_t hu = volume.hu[index];
   const std::uint8_t label = mirror_->labels() ? mirror_->labels()->labels[index] : 0;
   QString words = tr("%1 HU").arg(hu);
-  if (const int tissue = colours_.classOf(hu, label); tissue >= 0) {
-    words += " \u00b7 " + toQt(colours_.tissues().tissues[std::size_t(tissue)].name);
-  }
   if (label != 0) {
     const Structure* of = mirror_->labels()->find(label);
     words += " \u00b7 " + (of ? toQt(of->name) : tr("label %1").arg(label));
+  }
+  if (const int tissue = colours_.classOf(hu, label); tissue >= 0) {
+    const QString name = toQt(colours_.tissues().tissues[std::size_t(tissue)].name);
+    words += " \u00b7 " + (label != 0 ? tr("felt as %1").arg(name) : name);
   }
   return words;
 }

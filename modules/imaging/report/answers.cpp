@@ -24,8 +24,8 @@ const std::set<Code>& codes() {
       code::kFaceRemains,   code::kFaceTakesMore, code::kFormsDiffer,        code::kHighBits,
       code::kImplausibleHu, code::kIncomplete,    code::kLocationMismatch,   code::kLossySource,
       code::kMissingSlices, code::kMixedSlices,   code::kOneLocation,        code::kParts,
-      code::kPhases,        code::kSlopesDiffer,  code::kSparseSlices,       code::kUnevenSpacing,
-      code::kValueMap};
+      code::kPhases,        code::kSlopesDiffer,  code::kSparseSlices,       code::kThickSlices,
+      code::kUnevenSpacing, code::kValueMap};
   return known;
 }
 

@@ -2,10 +2,13 @@
 
 #include <algorithm>
 
+#include "imaging/codes.h"
 #include "imaging/common/detail/text.h"
+#include "imaging/report/answers.h"
 #include "imaging/report/provenance.h"
 #include "volume/case_memory.h"
 #include "volume/reduce.h"
+#include "volume/thick_slices.h"
 
 namespace trephine {
 
@@ -20,11 +23,17 @@ Json orNull(const std::optional<T>& value) {
   return value ? Json(*value) : Json(nullptr);
 }
 
+bool interpolates(const ImportRequest& request) {
+  return answerTo(request.answers, code::kThickSlices) == "interpolate";
+}
+
 // How many voxels come out of it.
 std::size_t voxelsOf(const SeriesReport& series, const ImportRequest& request) {
   const GridGeometry& grid = series.geometry;
   const VoxelBox box = request.crop.value_or(VoxelBox{{0, 0, 0}, grid.size});
-  return outcomeOf(grid, box, request.reduction).voxelCount();
+  const GridGeometry out = outcomeOf(grid, box, request.reduction);
+  return interpolates(request) ? withThinSlices(out, stepsBetweenSlices(out)).voxelCount()
+                               : out.voxelCount();
 }
 
 Json findingJson(const Finding& finding) {
@@ -116,7 +125,8 @@ const char* verdictName(Verdict verdict) {
 }
 
 double readingMb(const SeriesReport& series, const ImportRequest& request) {
-  return series.reading_mb + (request.reduction > 1 ? voxelsMb(voxelsOf(series, request)) : 0.0);
+  const bool copied = request.reduction > 1 || interpolates(request);
+  return series.reading_mb + (copied ? voxelsMb(voxelsOf(series, request)) : 0.0);
 }
 
 double memoryMb(const SeriesReport& series, const ImportRequest& request) {

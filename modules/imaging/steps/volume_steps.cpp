@@ -12,6 +12,7 @@
 #include "imaging/steps/face.h"
 #include "imaging/steps/face_check.h"
 #include "volume/reduce.h"
+#include "volume/thick_slices.h"
 
 namespace trephine {
 
@@ -35,7 +36,10 @@ bool stepCouch(const CoarseGrid& grid, const Answers& answers, SeriesReport& ser
                                Severity::notice,
                                text,
                                {},
-                               tr("It was left in; tools can touch and cut it like tissue")});
+                               !answers.contains(code::kCouch)
+                                   ? tr("It stays in where nothing else is chosen; tools can touch "
+                                        "and cut it like tissue")
+                                   : tr("It was left in; tools can touch and cut it like tissue")});
     return false;
   }
   const std::uint64_t voxels = removeCouch(volume, couch);
@@ -189,6 +193,50 @@ Result<bool> stepFace(const CoarseGrid& grid, const ImportRequest& request, Seri
   return true;
 }
 
+// Whether slices were put between the slices. Errors: OUT_OF_MEMORY, BAD_SIZE.
+Result<bool> stepThickSlices(const Answers& answers, SeriesReport& series, Volume& volume) {
+  const int steps = stepsBetweenSlices(volume.geometry);
+  if (steps == 1) return false;
+  const double apart_mm = volume.geometry.spacing_mm.z;
+  const std::string thin = fixedText(apart_mm / steps, 2);
+  const std::string answer =
+      ask({code::kThickSlices,
+           tr("The slices lie {} mm apart. Interpolate slices {} mm apart between them?",
+              fixedText(apart_mm, 2), thin),
+           {"keep", "interpolate"},
+           {tr("Keep the slices: a thin tool cuts too much across them, a driven one sinks in up to "
+               "{} mm before it is held",
+               fixedText(0.5 * apart_mm, 1)),
+            tr("Interpolate: tools are felt and cut as wide as they are; detail between the slices "
+               "is only apparent")}},
+          answers, series.choices);
+  const std::string text = tr("The slices lie {} mm apart, which is coarse for touch: a tool meets "
+                              "and cuts voxels whole",
+                              fixedText(apart_mm, 2));
+  if (answer != "interpolate") {
+    series.findings.push_back(
+        {code::kThickSlices,
+         Severity::notice,
+         text,
+         {},
+         tr("As they are, touch and cuts are off by up to {} mm across them",
+            fixedText(0.5 * apart_mm, 1))});
+    return false;
+  }
+  Result<Volume> between = withThinSlices(volume, steps);
+  if (!between) return between.error();
+  series.findings.push_back(
+      {code::kThickSlices,
+       Severity::edit,
+       text,
+       {},
+       tr("Slices {} mm apart were interpolated between them, as was chosen: {} became {}. Detail "
+          "between the scanned slices is only apparent",
+          thin, volume.geometry.size[2], between->geometry.size[2])});
+  volume = *std::move(between);
+  return true;
+}
+
 }  // namespace
 
 Status takeVolumeSteps(const ImportRequest& request, const Progress& progress, SeriesReport& series,
@@ -230,6 +278,10 @@ Status takeVolumeSteps(const ImportRequest& request, const Progress& progress, S
     volume = *std::move(small);
     changed = true;
   }
+  if (progress.cancelled()) return cancelled();
+  const Result<bool> thinner = stepThickSlices(request.answers, series, volume);
+  if (!thinner) return thinner.error();
+  changed |= *thinner;
   if (progress.cancelled()) return cancelled();
   if (changed || !series.hu_min) {
     const auto [low, high] = std::ranges::minmax(volume.hu);

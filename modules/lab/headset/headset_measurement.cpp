@@ -93,6 +93,11 @@ class Measuring {
   Status begin(int size);
   // True where it ended as it was asked to, or because it was lost.
   bool finish();
+  // Why a headset is gone that nobody asked to end.
+  Error endedByItself() const {
+    if (rig_.end() && !rig_.end()->why) return rig_.end()->why.error();
+    return {code::kHeadsetEnded, "The headset ended by itself", "", "Try again"};
+  }
   Result<HeadsetRow> openXrRow(int size);
   HeadsetRow sideBySideRow(int size);
 
@@ -128,6 +133,7 @@ Result<HeadsetRow> Measuring::openXrRow(int size) {
   ready(size);
   if (Status begun = begin(size); !begun) return begun.error();
   rig_.pass(0.5);  // the level of detail finds its place
+  if (!rig_.headset()) return endedByItself();
   HeadsetRow row;
   row.kind = "openxr";
   std::vector<double> eyes_ms, age_ms;
@@ -144,11 +150,7 @@ Result<HeadsetRow> Measuring::openXrRow(int size) {
         return progress_.cancelled();
       },
       kRow_s);
-  if (!rig_.headset()) {
-    return rig_.end()->why.ok()
-               ? Error{code::kHeadsetEnded, "The headset ended by itself", "", "Try again"}
-               : rig_.end()->why.error();
-  }
+  if (!rig_.headset()) return endedByItself();
   const HeadsetState after = rig_.headset()->state();
   const double all = double(after.fresh + after.repeated + after.held) -
                      double(before.fresh + before.repeated + before.held);
@@ -259,6 +261,7 @@ Status Measuring::exercise(double seconds, std::vector<std::pair<std::uint64_t, 
     ticks[with] += double(after.ticks - before.ticks);
     missed[with] += double(after.missed - before.missed);
     if (with) {
+      if (!rig_.headset()) return endedByItself();
       rig_.stopHeadset();
       if (!finish()) return Error{code::kHeadsetStuck, "The headset does not end", "", "Try again"};
     }
@@ -297,8 +300,11 @@ Status Measuring::losses(int of_each) {
     std::int64_t lost_ns = monotonic_ns();
     if (kind == kHangs) {
       runtime_->hang(kHang_s);
-      rig_.until([&] { return rig_.headset()->stuck_s() > 0.2; }, kPatience_s);
-      lost_ns = monotonic_ns() + std::int64_t(1e9 * (kHang_s - rig_.headset()->stuck_s()));
+      // Where our own turns were slower than that, it may be over before we look.
+      rig_.until([&] { return !rig_.headset() || rig_.headset()->stuck_s() > 0.2; }, kPatience_s);
+      if (rig_.headset()) {
+        lost_ns = monotonic_ns() + std::int64_t(1e9 * (kHang_s - rig_.headset()->stuck_s()));
+      }
     } else {
       constexpr Loss kKinds[] = {Loss::instance, Loss::session, Loss::pending, Loss::event};
       runtime_->lose(kKinds[kind]);

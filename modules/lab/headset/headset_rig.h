@@ -58,7 +58,9 @@ class HeadsetRig {
   double takeLongestTurn_ms();
 
   Status startHeadset(const HeadsetOptions& options);
-  void stopHeadset() { headset_->stop(); }
+  void stopHeadset() {  // nothing where it ended by itself
+    if (headset_) headset_->stop();
+  }
   Headset* headset() { return headset_.get(); }
   // It has ended, and all that the panel had of it is gone.
   const std::optional<HeadsetEnd>& end() const { return end_; }

@@ -518,6 +518,16 @@ class ExerciseGuiTest : public test::WindowTest {
     QVERIFY(workstation().entry());
     QVERIFY(inHand("sliceWindowTool"));  // the next click turns the view
     undoAll();
+    // A second landmark gets the place that is clicked for it, and the first keeps its own.
+    find<QToolButton>("addLandmark")->click();
+    untilPlaced();
+    QCOMPARE(exercise().landmarks.size(), std::size_t(2));
+    find<QToolButton>("placeEntry")->click();
+    QTest::mouseClick(&window_->view(), Qt::LeftButton, {}, window_->view().rect().center());
+    untilPlaced();
+    QVERIFY(exercise().landmarks[1].is_place);
+    QVERIFY(!exercise().landmarks[0].is_place);
+    undoAll();
     // Locks hold at once, so the last.
     for (const char* lock : {"controller", "rate"}) {
       QVERIFY(!find<QCheckBox>(QString("scene:locks:") + lock)->isChecked());
@@ -693,8 +703,9 @@ class ExerciseGuiTest : public test::WindowTest {
     QCOMPARE(exercise().outline->frame->landmark, std::string("vault"));
     const auto seen = view.pickAt(middle + QPoint(30, 20));
     QVERIFY(seen && glm::length(seen->at_mm - exercise().outline->points_mm[2]) < 3.0);
-    find<QCheckBox>("outline:closed")->click();
+    // What was cleared was closed, and so is what is drawn anew.
     QVERIFY(exercise().outline->closed);
+    QVERIFY(find<QCheckBox>("outline:closed")->isChecked());
     enter("outline:width_mm", "2.5");
     QCOMPARE(exercise().outline->width_mm, 2.5);
     restRefined();

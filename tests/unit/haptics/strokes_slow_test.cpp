@@ -1,4 +1,7 @@
 // Many random strokes, and the same stroke on every grid, at every rate, by every arm.
+#include <cstdio>
+
+#include "slots_support.h"
 #include "strokes_support.h"
 
 namespace trephine {
@@ -25,6 +28,19 @@ TEST(Strokes, TakeTheSameAtAnyRate) {
   for (double spacing_mm : {0.25, 0.5, 0.8}) {
     for (const test::Tried& tried : test::triedTools()) {
       test::expectSameAtAnyRate(tried, spacing_mm, {250.0, 500.0, 1000.0, 2000.0, 4000.0});
+    }
+  }
+}
+
+TEST(Slots, AreAsLargeAsTheirGeometryOnAverage) {
+  constexpr unsigned kPlaces = 30;
+  for (const test::DrivenTool& driven : test::drivenTools()) {
+    for (const Vec3& spacing_mm : {Vec3(0.3), Vec3(0.5), Vec3(0.8, 0.8, 1.0), Vec3(1.0)}) {
+      const test::Slots slots = test::randomSlots(driven.tool, spacing_mm, kPlaces);
+      std::printf("%-18s %.1f x %.1f x %.1f mm  mean %.3f of the geometry, %.3f to %.3f\n",
+                  driven.name, spacing_mm.x, spacing_mm.y, spacing_mm.z, slots.mean, slots.least,
+                  slots.most);
+      EXPECT_NEAR(slots.mean, 1.0, 0.15) << driven.name << ", " << spacing_mm.z << " mm";
     }
   }
 }

@@ -70,6 +70,46 @@ TEST_F(VolumeSteps, HalfResolutionStatesWhatItCost) {
   EXPECT_EQ(series.hu_max, 300);
 }
 
+TEST_F(VolumeSteps, ThickSlicesAreKeptUnlessSlicesBetweenThemAreWanted) {
+  Volume whole = rampVolume({12, 10, 5});
+  whole.geometry.spacing_mm = {0.5, 0.5, 5.0};
+  write(whole);
+  CtFolder ct = scan();
+  const auto kept = readWith(ct, {});
+  ASSERT_TRUE(kept.ok()) << kept.error().sentence();
+  EXPECT_EQ(kept->hu, whole.hu);
+  const SeriesReport asked = ct.report().series.front();
+  ASSERT_NE(find(asked, "THICK_SLICES"), nullptr);
+  EXPECT_EQ(find(asked, "THICK_SLICES")->severity, Severity::notice);
+  ASSERT_EQ(asked.choices.size(), 1u);
+  EXPECT_EQ(asked.choices[0].code, code::kThickSlices);
+  EXPECT_NE(asked.choices[0].question.find("5.00 mm apart"), std::string::npos);
+
+  ImportRequest request;
+  request.answers[code::kThickSlices] = "interpolate";
+  const double mb = memoryMb(ct.report().series.front(), request);
+  const auto thin = readWith(ct, request);
+  ASSERT_TRUE(thin.ok()) << thin.error().sentence();
+  EXPECT_EQ(thin->geometry.size, (Index3{12, 10, 21}));
+  EXPECT_NEAR(thin->geometry.spacing_mm.z, 1.0, 1e-9);
+  EXPECT_EQ(thin->at(3, 4, 10), whole.at(3, 4, 2));
+  const SeriesReport& series = ct.report().series.front();
+  EXPECT_EQ(series.verdict, Verdict::pass) << "what a person asked for is no repair";
+  EXPECT_EQ(find(series, "THICK_SLICES")->severity, Severity::edit);
+  EXPECT_EQ(series.geometry, thin->geometry);
+  EXPECT_GT(mb, memoryMb(asked, {}));
+  EXPECT_EQ(ct.report().provenance->answers.at(code::kThickSlices), "interpolate");
+}
+
+TEST_F(VolumeSteps, SlicesThatAreThinEnoughAskNothing) {
+  Volume whole = rampVolume({12, 10, 5});
+  whole.geometry.spacing_mm = {0.8, 0.8, 1.25};
+  write(whole);
+  CtFolder ct = scan();
+  ASSERT_TRUE(readWith(ct, {}).ok());
+  EXPECT_TRUE(ct.report().series.front().choices.empty());
+}
+
 TEST(ImportMemory, IsThatOfWhatComesOutUnlessReadingItTakesMore) {
   SeriesReport series;
   series.geometry.size = {512, 512, 400};

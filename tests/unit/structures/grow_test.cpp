@@ -90,6 +90,21 @@ TEST(Grow, GivesNothingWhereOnlyAnotherThingBesideTheClickHasRoom) {
   EXPECT_NE(growth.error().sentence().find("another thing"), std::string::npos);
 }
 
+TEST(Grow, SaysThatAClickIsInBoneThatHasNoRoomAndWhatFindsIt) {
+  Volume volume;
+  volume.geometry.size = {70, 70, 70};
+  volume.hu.assign(volume.geometry.voxelCount(), -1000);
+  for (std::size_t n = 0; n < volume.hu.size(); ++n) {
+    const int i = volume.geometry.indicesOf(n)[0];
+    if (i > 32 && i < 38) volume.hu[n] = 800;
+  }
+  const auto growth = grow(volume, volume.geometry.toPatient_mm({35.0, 35.0, 35.0}));
+  ASSERT_FALSE(growth);
+  EXPECT_EQ(growth.error().code.str(), "NOTHING_GROWN");
+  EXPECT_NE(growth.error().sentence().find("bone"), std::string::npos) << growth.error().sentence();
+  EXPECT_NE(growth.error().sentence().find("Skull"), std::string::npos);
+}
+
 TEST_F(GrowInAbdomen, NoiseContrastAndSlicesDoNotLoseIt) {
   test::LiverCase other = of();
   other.addNoise(25.0);

@@ -1,0 +1,24 @@
+// Slices that lie far apart, and volumes with slices between them.
+#pragma once
+
+#include "base/result.h"
+#include "volume/volume.h"
+
+namespace trephine {
+
+// From here on slices are thick for touch: a tool meets voxels whole, so that on slices 2 mm apart
+// it takes up to 1.4 times what it sweeps, and on 5 mm half of it or three times as much.
+constexpr double kThickSlices_mm = 1.5;
+
+// Into how many equal steps each step between two slices is to be divided, so that they lie no
+// farther apart than 1 mm, or than a slice's own pixels where these are larger; 1: the slices are
+// no more than kThickSlices_mm apart, or not 1.5 times as far as the pixels.
+int stepsBetweenSlices(const GridGeometry& geometry);
+
+// The geometry of a volume with each step between two slices divided into so many.
+GridGeometry withThinSlices(GridGeometry geometry, int steps);
+// The volume: its own slices, and between each two of them those by linear interpolation, rounded to
+// the nearest. `steps` from 2 on. Needs the memory of the result. Errors: BAD_SIZE, OUT_OF_MEMORY.
+Result<Volume> withThinSlices(const Volume& volume, int steps);
+
+}  // namespace trephine
