@@ -319,7 +319,8 @@ Result<BlockMask> growBlocks(const Volume& volume, const WorkGrid& grid, const I
     const bool holds_click = here != 0 && core[grid.indexOf(at[0], at[1], at[2])];
     if (options.hu || holds_click || ml >= kCrumb_ml) break;
   }
-  const double said_HU = options.hu ? 0.0 : seed_HU;
+  // A thin bone is no bone any more where it was smoothed.
+  const double said_HU = options.hu ? 0.0 : double(volume.at(voxel[0], voxel[1], voxel[2]));
   if (core.empty()) return nothingGrown(hu, options.open_mm, said_HU);
   for (int estimate = 1; !options.hu && estimate <= kMostEstimates; ++estimate) {
     const HuSpan next = around(spreadOf(smooth, core), kCoreMostHalf_HU);
