@@ -16,6 +16,7 @@ struct HapticCore::ArmTick {
   Vec3 velocity_m_s{0.0};  // device axes, backward difference
   bool jumped = false;     // faster than any hand: no work was done on the way
   Motion motion{};
+  bool drags = false;  // dry friction of solid tissue holds the proxy back
   // contact and proxy
   LawInput contact{};
   // demanded: by the tissue, patient axes

@@ -94,11 +94,12 @@ class HapticCore {
     std::optional<Proxy> proxy;  // where a law stops it at solid tissue; else it is at its arm
     Removal removal;
     std::vector<TouchPoint> points;
+    double rubs_N = 0.0;  // dry friction of the solid tissue that it touched in the last tick
     Cutting cutting = Cutting::by_hand;
 
     template <class Self, class Archive>
     static void visitState(Self& self, Archive& archive) {
-      archive(self.laws, self.contact, self.removal);
+      archive(self.laws, self.contact, self.removal, self.rubs_N);
       if (self.proxy) archive(*self.proxy);
     }
   };
@@ -202,6 +203,7 @@ class HapticCore {
   void letGoOfHook(ArmTick& now);
   bool wouldTouch(const ArmTool& tool, const Pose& pose_mm) const;
   void touchPoints(ArmTool& tool, const Motion& motion) const;
+  double rubbing_N(const ArmTool& tool) const;
   bool atWork(const Arm& arm) const;
   static bool motorIsOff(const Arm& arm, std::uint32_t buttons);
 

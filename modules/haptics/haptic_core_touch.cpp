@@ -64,7 +64,11 @@ void HapticCore::followArm(ArmTick& now) {
   const bool still = paused_ || arm.faults != 0;
   const Pose before = tool.proxy->pose_mm();
   const bool may_cut = !still && !journal_.busy();
-  tool.proxy->follow(tissue_, now.motion.arm_mm, may_cut ? tool.cutting : Cutting::nothing);
+  const Cutting cutting = may_cut ? tool.cutting : Cutting::nothing;
+  // What a motor cuts rubs on the arm, and holds the tool by what is left to be cut alone.
+  const bool runs = cutting == Cutting::driven && !motorIsOff(arm, now.out.buttons);
+  now.drags = !runs && names(parameters_.laws, LawKind::coulomb);
+  tool.proxy->follow(tissue_, now.motion.arm_mm, cutting, now.drags ? tool.rubs_N : 0.0);
   if (!still) {
     letGoOfHook(now);
   } else if (wouldTouch(tool, tool.proxy->pose_mm())) {
@@ -106,12 +110,15 @@ void HapticCore::touch(ArmTick& now) {
   LawInput& in = now.contact;
   in.tip_m = 0.001 * motion.pose_mm.position;
   in.velocity_m_s = motion.velocity_m_s;
+  in.period_s = parameters_.period_s;
   in.tool_direction = motion.pose_mm.orientation * Vec3(0.0, 0.0, -1.0);
   in.points = tool.points;
   in.tissue_class = contact.tissue_class;
   in.tip_class = tool.contact.classes()[0];
   in.tissues = &tissue_.tissues();
   if (tool.proxy) in.pull = tool.proxy->pull();
+  in.pull.drags = now.drags && in.pull.stiffness > 0.0;
+  tool.rubs_N = rubbing_N(tool);
   for (Law& law : tool.laws) law_tissues_.ask(law, tissue_, motion.pose_mm, in);
 
   out.tissue_class = contact.tissue_class;
@@ -135,6 +142,15 @@ void HapticCore::touchPoints(ArmTool& tool, const Motion& motion) const {
     p.lever_m = motion.pose_mm.orientation * tool.made.points_m[i];
     p.rotational_m_s = glm::cross(motion.angular_velocity_rad_s, p.lever_m);
   }
+}
+
+double HapticCore::rubbing_N(const ArmTool& tool) const {
+  double sum_N = 0.0;
+  for (const TouchPoint& p : tool.points) {
+    if (p.tissue_class < 0 || !tissue_.isSolid(p.tissue_class)) continue;
+    sum_N += p.weight * tissue_.ofClass(p.tissue_class).friction_N;
+  }
+  return sum_N;
 }
 
 // Whether the tool is at something that it may cut: its motor works on it, and what is lost there

@@ -33,6 +33,7 @@ struct TouchPoint {
 struct LawInput {
   Vec3 tip_m{0.0};
   Vec3 velocity_m_s{0.0};  // of the arm, at the tip
+  double period_s = 0.0;   // since the tick before
   Vec3 tool_direction{0.0};  // from the handle to the tip, unit
   std::span<const TouchPoint> points;
   std::int32_t tissue_class = -1;  // the firmest that any of the tool touches; -1 none

@@ -285,6 +285,17 @@ bool Proxy::putBack(const SmallMotion& motion, double least_mm, Pose& there, Pla
   return false;
 }
 
+// What friction leaves of a motion along what bears load: without it the tool would stop where the
+// motion ends, with it as far before as the friction's pull stretches.
+SmallMotion Proxy::dragged(const SmallMotion& motion, const Way& way) const {
+  if (!(way.friction_N > 0.0) || !(way.stiff > 0.0)) return motion;
+  const double behind_mm = 1000.0 * way.friction_N * way.load / way.stiff;
+  const double left_mm = std::sqrt(cost(motion));
+  if (left_mm <= behind_mm) return {};
+  const double share = 1.0 - behind_mm / left_mm;
+  return {share * motion.shift_mm, share * motion.turn};
+}
+
 // A step along what it touches. True when the arm is farther and another step may come nearer. Only
 // a pose that is nearer to the arm is taken, so that a tool at rest neither creeps nor alternates.
 bool Proxy::slide(const TissueField& tissue, Way& way) {
@@ -304,6 +315,7 @@ bool Proxy::slide(const TissueField& tissue, Way& way) {
     way.stiff += load * tissue.ofClass(piece.tissue_class).stiffness_N_per_m;
     if (piece.cuttable) blockers_[blocker_count_++] = {piece.voxel, piece.tissue_class};
   }
+  if (!way.inside) motion = dragged(motion, way);
   const double arrived_mm = kArrived * surface_.voxel_mm();
   const double length_mm = way_mm(motion);
   if (length_mm < arrived_mm && !way.inside) return false;
@@ -325,10 +337,12 @@ bool Proxy::slide(const TissueField& tissue, Way& way) {
   return false;
 }
 
-void Proxy::follow(const TissueField& tissue, const Pose& arm_mm, Cutting cutting) {
+void Proxy::follow(const TissueField& tissue, const Pose& arm_mm, Cutting cutting,
+                   double friction_N) {
   arm_ = arm_mm;
   blocker_count_ = 0;
   Way way{surface_.place(pose_)};
+  way.friction_N = friction_N;
   if (!surface_.mayMeet(tissue, way.body, surface_.place(arm_mm))) {
     place(arm_mm);
     return;

@@ -17,6 +17,7 @@ struct Pull {
   Vec3 turn{0.0};      // from the arm's orientation to the proxy's: 2 sin(angle / 2) along its axis
   double turn_mm2 = 0.0;        // |turn|^2 times this counts as much as |shift|^2
   double stiffness = 0.0;       // N/m, of the tissue that holds; 0: nothing does
+  bool drags = false;           // the tissue's dry friction is in it: the tool stays behind its arm
 };
 
 class Proxy {
@@ -28,7 +29,11 @@ class Proxy {
   // One tick towards the arm: as near to it as the solid tissue on the way allows, in steps of less
   // than half a voxel, kMostSteps of them. Voxels changed since the last tick only where changed()
   // or removed() said so.
-  void follow(const TissueField& tissue, const Pose& arm_mm, Cutting cutting);
+  // `friction_N`: the dry friction of the solid tissue that it touches. Where that bears load the
+  // tool does not slide before the pull along the surface is more, and then stays behind its arm by
+  // so much pull: of what the arm does nothing is stored but in that one pull.
+  void follow(const TissueField& tissue, const Pose& arm_mm, Cutting cutting,
+              double friction_N = 0.0);
   // Back to where it was before follow(). The tissue that held it in the last step of that still
   // pulls; where none did, nothing pulls.
   void hold(const Pose& pose_mm);
@@ -88,6 +93,7 @@ class Proxy {
   struct Way {
     PlacedBody body;
     double step_mm = 0.0;            // at most, in the next step
+    double friction_N = 0.0;
     // Of the touches in the last step: the sum of loads, that of load times stiffness, the greatest
     // load and the class of its tissue.
     double load = 0.0, stiff = 0.0, most = 0.0;
@@ -114,6 +120,7 @@ class Proxy {
   std::size_t nearPieces(const PlacedBody& body, double within_mm, double moved_mm);
   std::size_t merge(std::size_t first, std::size_t count);
   double touches(const PlacedBody& body, double within_mm, double moved_mm, double clear_mm);
+  SmallMotion dragged(const SmallMotion& motion, const Way& way) const;
   void move(const Pose& to, const PlacedBody& body, Way& way);
   bool goFreely(Way& way);
   bool slide(const TissueField& tissue, Way& way);

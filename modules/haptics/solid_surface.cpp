@@ -428,8 +428,10 @@ void SolidSurface::addPiece(const TissueField& tissue, const Found& found) {
       cutting != Cutting::nothing && tissue.ofClass(c).cuttable != 0;
   Vec3 at = Vec3(i, j, k) * spacing_mm_;
   if (piece.cuttable && cutting == Cutting::driven) {
-    // Held by what removal takes and by no row beside it: that would be erased too.
-    piece.size_mm = std::max(0.0, kHalfVoxel * voxel_mm_ - radius);
+    // Held by what removal takes and by no row beside it, which would be erased too. Between the
+    // centres a tool thinner than a voxel would slip through: nothing does between such spheres.
+    const double most_mm = std::max({spacing_mm_.x, spacing_mm_.y, spacing_mm_.z});
+    piece.size_mm = radius >= kHalfVoxel * most_mm ? 0.0 : std::max(0.0, half_diagonal_mm_ - radius);
   } else {
     const VoxelSurroundings around(tissue, found.voxel, cells_[found.part].apart, c);
     const SurfaceFit fit = fitSurface(around, found.away_mm);

@@ -6,9 +6,9 @@
 
 namespace trephine {
 
-// From here on slices are thick for touch: a tool meets voxels whole, so that on slices 2 mm apart
-// it takes up to 1.4 times what it sweeps, and on 5 mm half of it or three times as much.
-constexpr double kThickSlices_mm = 1.5;
+// Beyond this slices are thick for touch: a tool meets voxels whole, so that on slices 3 mm apart a
+// thin blade takes up to 2.6 times what it sweeps, and on 5 mm a burr a third of it or a half more.
+constexpr double kThickSlices_mm = 2.5;
 
 // Into how many equal steps each step between two slices is to be divided, so that they lie no
 // farther apart than 1 mm, or than a slice's own pixels where these are larger; 1: the slices are

@@ -246,6 +246,10 @@ void ArmsPanel::showState(const LoopState& state, const TissueSet& tissues,
                          "kept steady by '%1'.")
                           .arg(controllerWord(ControllerKind::bounded)));
     }
+    if (card.soft.look(arm, now_s)) {
+      wrong << tr("Tissue is felt much softer here: the arm shook. Hold it firmer, or lift it out "
+                  "and come back.");
+    }
     if (arm.controller_parts & kPartArmNotAsStated) {
       wrong << tr("The arm's mass or delay is not what its device file states.");
     }

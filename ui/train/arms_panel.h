@@ -12,6 +12,7 @@
 #include "exercise/exercise.h"
 #include "haptics/haptic_loop.h"
 #include "session/energy_watch.h"
+#include "session/soft_watch.h"
 #include "ui/train/force_bar.h"
 #include "ui/train/trace_view.h"
 
@@ -49,6 +50,7 @@ class ArmsPanel : public QWidget {
     TraceView *force_trace, *energy_trace;
     double device_per_model;  // energy
     EnergyWatch watch;
+    SoftWatch soft;
   };
   Card addCard(const Exercise& exercise, std::size_t index);
   static void showTool(Card& card, std::int32_t in_hand, std::int32_t wanted);

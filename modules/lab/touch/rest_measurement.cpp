@@ -137,6 +137,7 @@ Result<RestFigures> measureRest(std::optional<double> seconds, const Progress& p
   const bool finished = onAllProcessors(rows.size(), "Rest", part, [&](std::size_t n) {
     const HoldCell& cell = (*cells)[n / 3];
     const HoldKind kind = kKinds[n % 3];
+    if (cell.rest_only && kind != HoldKind::rest) return;
     const double s = kind == HoldKind::rest ? figures.seconds : std::min(kSwing_s, figures.seconds);
     const auto run = [&](bool ideal) {
       return hold(cell.parameters, *cell.volume, cell.rig, cell.paths, kind, s, ideal,
@@ -146,6 +147,7 @@ Result<RestFigures> measureRest(std::optional<double> seconds, const Progress& p
     for (std::size_t i = 0; i < held.size(); ++i) {
       RestRow row{cell.exercise, cell.arms[i], cell.tools[i],        cell.place,
                   kind,       held[i],      cell.rig[i].encoder_m};
+      row.on_edge = cell.rest_only;
       row.unstable = faultsOf(kind, held[i], row.encoder_m).any();
       rows[n].push_back(std::move(row));
     }
@@ -196,13 +198,15 @@ struct RestSum {
   }
 };
 
-bool isBlock(const RestRow& row) {
-  return row.exercise.rfind("block", 0) == 0;
+// Of exercises, blocks and edges.
+std::size_t placeOf(const RestRow& row) {
+  if (row.exercise.rfind("block", 0) == 0) return 1;
+  return row.on_edge ? 2 : 0;
 }
 
-// Exercises and blocks, at rest, swung and creeping; and all.
+// Exercises and blocks, at rest, swung and creeping; edges at rest; and all.
 std::vector<RestSum> sumsOf(const RestFigures& figures) {
-  std::vector<RestSum> sums(7);
+  std::vector<RestSum> sums(8);
   const std::string minute = plainNumber(figures.seconds) + " s";
   const std::string names[] = {"scenes at rest, " + minute,
                                "scenes swung",
@@ -210,10 +214,11 @@ std::vector<RestSum> sumsOf(const RestFigures& figures) {
                                "blocks at rest, " + minute,
                                "blocks swung",
                                "blocks creeping",
+                               "edges at rest, " + minute,
                                "all"};
   for (std::size_t i = 0; i < sums.size(); ++i) sums[i].name = names[i];
   for (const RestRow& row : figures.rows) {
-    sums[3 * std::size_t(isBlock(row)) + std::size_t(row.kind)].add(row);
+    sums[3 * placeOf(row) + std::size_t(row.kind)].add(row);
     sums.back().add(row);
   }
   return sums;

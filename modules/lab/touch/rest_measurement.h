@@ -6,7 +6,9 @@
 //            once: where the hands' devices have their origins, and pressed into each tissue that
 //            lies before the first solid one and into that, beside each other, by hands of 300, 600
 //            and 1000 N/m;
-//   blocks   each tool, sum of laws, tissue and arm once: pressed into a block of the tissue.
+//   blocks   each tool, sum of laws, tissue and arm once: pressed into a block of the tissue;
+//   edges    each tool on an edge, a corner, a ridge and a comb of bone, at places across it, with
+//            0.3 and 1 N by hands of 50, 300 and 600 N/m: at rest alone.
 // Hands come from outside, motors are off, and a tool that cuts by hand meanwhile is said so. Each
 // is held still for a minute, `rest`; swung to and fro by 4 mm at 1 Hz along the press, `swing`;
 // and drawn across it at 0.2 mm/s, `creep`. Of a rest is judged
@@ -68,6 +70,7 @@ struct RestRow {
   HoldResult result;
   double encoder_m = 0.0;
   bool unstable = false, also_ideal = false;
+  bool on_edge = false;
 };
 struct RestFigures {
   std::vector<RestRow> rows;

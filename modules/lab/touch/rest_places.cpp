@@ -1,6 +1,7 @@
 #include "lab/touch/rest_places.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "lab/touch/placed_exercise.h"
@@ -141,6 +142,84 @@ void addBlocks(const Exercise& exercise, const std::vector<const ExerciseTool*>&
   }
 }
 
+// Bone with an edge, a corner, a ridge 2 mm wide, or a comb with teeth of 1.5 mm, below the plane
+// through the origin.
+enum class Shape { edge, corner, ridge, comb };
+const std::pair<const char*, Shape> kShapes[] = {{"edge", Shape::edge},
+                                                 {"corner", Shape::corner},
+                                                 {"ridge", Shape::ridge},
+                                                 {"comb", Shape::comb}};
+constexpr double kRidge_mm = 2.0, kTooth_mm = 1.5, kTeeth_mm = 6.0;
+
+bool holds(Shape shape, const Vec3& mm) {
+  switch (shape) {
+    case Shape::edge:
+      return mm.x < 0.0;
+    case Shape::corner:
+      return mm.x < 0.0 && mm.y < 0.0;
+    case Shape::ridge:
+      return std::abs(mm.x) < 0.5 * kRidge_mm;
+    case Shape::comb:
+      return mm.z < -kTeeth_mm || std::fmod(mm.x + 100.0 * kTooth_mm, 2.0 * kTooth_mm) < kTooth_mm;
+  }
+  return false;
+}
+
+std::shared_ptr<const Volume> shapeOf(Shape shape) {
+  constexpr double kSpacing_mm = 0.8;
+  Volume volume;
+  GridGeometry& g = volume.geometry;
+  g.size = {48, 48, 48};
+  g.spacing_mm = Vec3(kSpacing_mm);
+  g.origin_mm = Vec3(-0.5 * kSpacing_mm * 47);
+  volume.hu.assign(g.voxelCount(), kAirHu);
+  for (std::size_t n = 0; n < volume.hu.size(); ++n) {
+    const Index3 v = g.indicesOf(n);
+    const Vec3 mm = g.origin_mm + kSpacing_mm * Vec3(v[0], v[1], v[2]);
+    if (mm.z < 0.0 && holds(shape, mm)) volume.hu[n] = 1000;
+  }
+  return std::make_shared<const Volume>(std::move(volume));
+}
+
+// Each tool, its motor off, on each of these shapes, at places across the edge and beside it,
+// pressed with 0.3 and 1 N by a hand that is light, one that is usual and one that is firm: what
+// friction, proxy and controller do there.
+void addShapes(const Exercise& exercise, const std::vector<const ExerciseTool*>& tools,
+               std::vector<HoldCell>& cells) {
+  const auto bone = std::ranges::find(exercise.tissues.tissues, true, &Tissue::solid);
+  if (bone == exercise.tissues.tissues.end()) return;
+  Exercise of_bone = exercise;
+  of_bone.tissues.tissues = {*bone};
+  for (const auto& [name, shape] : kShapes) {
+    const auto volume = shapeOf(shape);
+    for (const ExerciseTool* tool : tools) {
+      for (const Impedance& hand : {Impedance{1.0, 50.0}, {2.0, 300.0}, {4.0, 600.0}}) {
+        for (const double press_N : {0.3, 1.0}) {
+          for (const double beside_mm : {-1.0, -0.3, 0.0, 0.3, 1.0}) {
+            const NamedArm& arm = kArms[0];
+            HoldCell cell;
+            cell.exercise = std::string(name) + " of " + bone->id;
+            cell.place = plainNumber(beside_mm) + " mm beside it, pressed with " +
+                         plainNumber(press_N) + " N by " + plainNumber(hand.stiffness) + " N/m";
+            cell.arms = {arm.name};
+            cell.tools = {tool->id};
+            cell.volume = volume;
+            cell.parameters = withoutMotors(hapticParameters(of_bone));
+            cell.parameters.laws = {LawKind::viscous, LawKind::coulomb, LawKind::elastic};
+            cell.parameters.arms = {{withoutMotor(tool->tool), WorkspaceMap{}, 3.3, arm.dynamics}};
+            cell.rig = {rigArmOf(arm.dynamics, hand)};
+            cell.rest_only = true;
+            const Vec3 above_m(0.001 * beside_mm, 0.0003, 0.012);
+            const Vec3 held_m(above_m.x, above_m.y, -press_N / hand.stiffness);
+            cell.paths = {{above_m, held_m, Vec3(0.0, 0.0, -kSwing_m)}};
+            cells.push_back(std::move(cell));
+          }
+        }
+      }
+    }
+  }
+}
+
 }  // namespace
 
 Result<std::vector<HoldCell>> restPlaces(const Progress& progress) {
@@ -169,6 +248,7 @@ Result<std::vector<HoldCell>> restPlaces(const Progress& progress) {
     if (!known) sets.push_back(&exercise);
   }
   for (const Exercise* exercise : sets) addBlocks(*exercise, tools, cells);
+  if (!sets.empty()) addShapes(*sets.front(), tools, cells);
   return cells;
 }
 

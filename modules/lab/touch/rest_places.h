@@ -1,4 +1,5 @@
-// Where the set `rest` holds its tools: the shipped exercises' places, and blocks of each tissue.
+// Where the set `rest` holds its tools: the shipped exercises' places, blocks of each
+// tissue, and edges of bone.
 #pragma once
 
 #include <memory>
@@ -21,6 +22,7 @@ struct HoldCell {
   std::shared_ptr<const LabelMap> labels{};  // for tissues of a structure
   std::vector<RigArm> rig;
   std::vector<HoldPath> paths;
+  bool rest_only = false;  // it would slip off where it was moved
 };
 
 // From the program's resources. It reads their cases, and the cells keep all volumes in memory.

@@ -353,7 +353,7 @@ TEST(Laws, AreMadeByName) {
   const auto made = [&](LawKind kind) { return makeLaw(kind, 3, tool, geometry); };
   EXPECT_TRUE(std::holds_alternative<LawOfTool<ViscousLaw>>(made(LawKind::viscous)));
   const Law coulomb = made(LawKind::coulomb);
-  EXPECT_EQ(std::get<LawOfTool<CoulombLaw>>(coulomb).rendered.anchors_m.size(), 3u);
+  EXPECT_EQ(std::get<LawOfTool<CoulombLaw>>(coulomb).rendered.springs.size(), 3u);
   EXPECT_TRUE(std::holds_alternative<LawOfTool<ElasticLaw>>(made(LawKind::elastic)));
   EXPECT_TRUE(std::holds_alternative<LawOfTool<RuptureLaw>>(made(LawKind::rupture)));
 }

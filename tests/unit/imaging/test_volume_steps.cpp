@@ -103,7 +103,7 @@ TEST_F(VolumeSteps, ThickSlicesAreKeptUnlessSlicesBetweenThemAreWanted) {
 
 TEST_F(VolumeSteps, SlicesThatAreThinEnoughAskNothing) {
   Volume whole = rampVolume({12, 10, 5});
-  whole.geometry.spacing_mm = {0.8, 0.8, 1.25};
+  whole.geometry.spacing_mm = {0.8, 0.8, 2.5};
   write(whole);
   CtFolder ct = scan();
   ASSERT_TRUE(readWith(ct, {}).ok());

@@ -14,11 +14,11 @@ GridGeometry spaced(const Vec3& spacing_mm) {
 }
 
 TEST(ThickSlices, AreThoseFarApartForTouchAndForTheirPixels) {
-  EXPECT_EQ(stepsBetweenSlices(spaced({0.5, 0.5, 1.5})), 1);
-  EXPECT_EQ(stepsBetweenSlices(spaced({0.5, 0.5, 1.6})), 2);
+  EXPECT_EQ(stepsBetweenSlices(spaced({0.5, 0.5, 2.5})), 1);
+  EXPECT_EQ(stepsBetweenSlices(spaced({0.5, 0.5, 2.6})), 3);
   EXPECT_EQ(stepsBetweenSlices(spaced({0.5, 0.5, 5.0})), 5);
   EXPECT_EQ(stepsBetweenSlices(spaced({0.8, 0.8, 6.0})), 6);
-  EXPECT_EQ(stepsBetweenSlices(spaced({2.0, 2.0, 2.5})), 1) << "reduced in all directions";
+  EXPECT_EQ(stepsBetweenSlices(spaced({2.0, 2.0, 2.9})), 1) << "reduced in all directions";
   EXPECT_EQ(stepsBetweenSlices(spaced({2.0, 2.0, 6.0})), 3) << "no finer than the pixels";
   GridGeometry one = spaced({0.5, 0.5, 5.0});
   one.size[2] = 1;
