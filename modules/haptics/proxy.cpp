@@ -46,8 +46,8 @@ Quat turned(const Vec3& by, const Quat& q) {
 
 }  // namespace
 
-Proxy::Proxy(const Tool& tool, const GridGeometry& geometry)
-    : surface_(tool, geometry),
+Proxy::Proxy(const Tool& tool, const GridGeometry& geometry, bool wide_spheres)
+    : surface_(tool, geometry, wide_spheres),
       turn_mm2_(std::pow(std::max(surface_.reach_mm(), kHandle_mm), 2) / 6.0) {}
 
 void Proxy::place(const Pose& pose_mm) {

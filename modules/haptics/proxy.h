@@ -22,7 +22,8 @@ struct Pull {
 
 class Proxy {
  public:
-  Proxy(const Tool& tool, const GridGeometry& geometry);
+  // `wide_spheres`: as SolidSurface has it.
+  Proxy(const Tool& tool, const GridGeometry& geometry, bool wide_spheres = false);
 
   // At the arm, whatever is there.
   void place(const Pose& pose_mm);

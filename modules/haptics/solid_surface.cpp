@@ -109,10 +109,11 @@ Touch blended(const Touch& touch, const SurfacePiece& piece, const PlacedBody& b
   return out;
 }
 
-SolidSurface::SolidSurface(const Tool& tool, const GridGeometry& geometry)
+SolidSurface::SolidSurface(const Tool& tool, const GridGeometry& geometry, bool wide_spheres)
     : geometry_(geometry),
       patient_to_voxel_(geometry.patientToVoxel()),
-      spacing_mm_(geometry.spacing_mm) {
+      spacing_mm_(geometry.spacing_mm),
+      wide_spheres_(wide_spheres) {
   const Vec3& s = spacing_mm_;
   voxel_mm_ = std::min({s.x, s.y, s.z});
   half_diagonal_mm_ = 0.5 * glm::length(s);
@@ -431,7 +432,8 @@ void SolidSurface::addPiece(const TissueField& tissue, const Found& found) {
     // Held by what removal takes and by no row beside it, which would be erased too. Between the
     // centres a tool thinner than a voxel would slip through: nothing does between such spheres.
     const double most_mm = std::max({spacing_mm_.x, spacing_mm_.y, spacing_mm_.z});
-    piece.size_mm = radius >= kHalfVoxel * most_mm ? 0.0 : std::max(0.0, half_diagonal_mm_ - radius);
+    const bool by_centres = radius >= kHalfVoxel * most_mm && !wide_spheres_;
+    piece.size_mm = by_centres ? 0.0 : std::max(0.0, half_diagonal_mm_ - radius);
   } else {
     const VoxelSurroundings around(tissue, found.voxel, cells_[found.part].apart, c);
     const SurfaceFit fit = fitSurface(around, found.away_mm);

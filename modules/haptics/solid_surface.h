@@ -71,7 +71,9 @@ enum class Cutting { nothing, by_hand, driven };
 // fraction of that. No allocation after it is made.
 class SolidSurface {
  public:
-  SolidSurface(const Tool& tool, const GridGeometry& geometry);
+  // `wide_spheres`: a driven tool thinner than a voxel's diagonal meets spheres between which nothing
+  // slips, whatever its thickness.
+  SolidSurface(const Tool& tool, const GridGeometry& geometry, bool wide_spheres = false);
 
   PlacedBody place(const Pose& pose_mm) const;
   // Whether there may be solid tissue near the body on its straight way between two poses.
@@ -179,6 +181,7 @@ class SolidSurface {
   std::vector<Cells> cells_;
   Vec3 spacing_mm_;
   double voxel_mm_, half_diagonal_mm_, margin_mm_, reach_mm_;
+  bool wide_spheres_;
   std::vector<SurfacePiece> pieces_;
   double near_reach_mm_ = 0.0;
   // The search that is under way.

@@ -11,7 +11,9 @@
 
 namespace trephine {
 
-constexpr int kRecordingVersion = 9, kOldestRecording = 8;  // those between are read
+// Up to this version touch was that of HapticParameters::touch_of_version_9.
+constexpr int kOlderTouch = 9;
+constexpr int kRecordingVersion = 10, kOldestRecording = 8;  // those between are read
 
 struct RecordingHeader {
   Json exercise;                 // toJson(RecordedExercise) with fixed maps and the controller at the start
@@ -19,6 +21,7 @@ struct RecordingHeader {
   GridGeometry geometry;
   std::string build;
   std::string labels_sha256{};  // of the label map, fitted to the volume; empty: none
+  int version = kRecordingVersion;  // as read
 };
 
 // Written when a session ends by itself; a recording without it was cut short.

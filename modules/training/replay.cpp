@@ -167,6 +167,13 @@ Result<RecordedLabels> recordedLabels(const RecordingHeader& header, const Tissu
   return RecordedLabels{structures, std::move(labels)};
 }
 
+// What the core was made of that the recording was made with.
+HapticParameters recordedParameters(const Exercise& exercise, const Rig& rig, int version) {
+  HapticParameters parameters = hapticParameters(exercise, rig);
+  parameters.touch_of_version_9 = version <= kOlderTouch;
+  return parameters;
+}
+
 }  // namespace
 
 struct ReplayedSession::Run {
@@ -177,7 +184,7 @@ struct ReplayedSession::Run {
         labels(std::move(fitted)),
         // The same voxels may come from a file that rounds their place.
         grid(Volume{of.header().geometry, volume.hu}, labels.placed),
-        core(hapticParameters(exercise, recorded.rig), *grid.takeWriter()) {}
+        core(recordedParameters(exercise, recorded.rig, of.header().version), *grid.takeWriter()) {}
 
   const SessionReader& recording;
   Exercise exercise;

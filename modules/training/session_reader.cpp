@@ -279,6 +279,7 @@ Result<std::unique_ptr<SessionReader>> SessionReader::open(const std::filesystem
   if (!geometry) return geometry.error();
   f.header.geometry = *geometry;
   f.header.build = *build;
+  f.header.version = version;
 
   f.ticks = openOwnDataset(f.file, "ticks");
   f.carves = openOwnDataset(f.file, "removed_voxels");

