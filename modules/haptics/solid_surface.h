@@ -71,8 +71,8 @@ enum class Cutting { nothing, by_hand, driven };
 // fraction of that. No allocation after it is made.
 class SolidSurface {
  public:
-  // `wide_spheres`: a driven tool thinner than a voxel's diagonal meets spheres between which nothing
-  // slips, whatever its thickness.
+  // `wide_spheres`: a driven tool thinner than a voxel's diagonal meets spheres between which
+  // nothing slips, whatever its thickness.
   SolidSurface(const Tool& tool, const GridGeometry& geometry, bool wide_spheres = false);
 
   PlacedBody place(const Pose& pose_mm) const;

@@ -8,8 +8,8 @@
 namespace trephine {
 
 // One for each arm, on one thread; shown records of the arm in order of time. What the controller
-// `bounded` has learnt of this hand (ArmRecord::learnt_scale, 0 of another controller) comes back by
-// itself once the arm has been calm; where it stays low, what is felt is not the tissue.
+// `bounded` has learnt of this hand (ArmRecord::learnt_scale, 0 of another controller) comes back
+// by itself once the arm has been calm; where it stays low, what is felt is not the tissue.
 class SoftWatch {
  public:
   static constexpr double kLow = 0.2;  // of what the arm could show

@@ -17,8 +17,9 @@ int stepsBetweenSlices(const GridGeometry& geometry);
 
 // The geometry of a volume with each step between two slices divided into so many.
 GridGeometry withThinSlices(GridGeometry geometry, int steps);
-// The volume: its own slices, and between each two of them those by linear interpolation, rounded to
-// the nearest. `steps` from 2 on. Needs the memory of the result. Errors: BAD_SIZE, OUT_OF_MEMORY.
+// The volume: its own slices, and between each two of them those by linear interpolation, rounded
+// to the nearest. `steps` from 2 on. Needs the memory of the result. Errors: BAD_SIZE,
+// OUT_OF_MEMORY.
 Result<Volume> withThinSlices(const Volume& volume, int steps);
 
 }  // namespace trephine

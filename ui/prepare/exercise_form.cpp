@@ -229,9 +229,9 @@ void ExerciseForm::buildPlaces() {
 QWidget* ExerciseForm::buildEntry() {
   auto* row = new QWidget(places_->fields());
   auto* column = tight(new QVBoxLayout(row));
-  auto* entry =
-      settingButton("placeEntry", tr("Click it in a view"),
-                    tr("A click on skin, bone or a slice is the landmark's place from then on"), row);
+  auto* entry = settingButton(
+      "placeEntry", tr("Click it in a view"),
+      tr("A click on skin, bone or a slice is the landmark's place from then on"), row);
   connect(entry, &QToolButton::clicked, this, [this] {
     if (landmark()) emit placeWanted(landmark()->id);
   });

@@ -247,8 +247,9 @@ void ArmsPanel::showState(const LoopState& state, const TissueSet& tissues,
                           .arg(controllerWord(ControllerKind::bounded)));
     }
     if (card.soft.look(arm, now_s)) {
-      wrong << tr("Tissue is felt much softer here: the arm shook. Hold it firmer, or lift it out "
-                  "and come back.");
+      wrong << tr(
+          "Tissue is felt much softer here: the arm shook. Hold it firmer, or lift it out "
+          "and come back.");
     }
     if (arm.controller_parts & kPartArmNotAsStated) {
       wrong << tr("The arm's mass or delay is not what its device file states.");

@@ -199,28 +199,28 @@ Result<bool> stepThickSlices(const Answers& answers, SeriesReport& series, Volum
   if (steps == 1) return false;
   const double apart_mm = volume.geometry.spacing_mm.z;
   const std::string thin = fixedText(apart_mm / steps, 2);
-  const std::string answer =
-      ask({code::kThickSlices,
-           tr("The slices lie {} mm apart. Interpolate slices {} mm apart between them?",
-              fixedText(apart_mm, 2), thin),
-           {"keep", "interpolate"},
-           {tr("Keep the slices: a thin tool cuts too much across them, a driven one sinks in up to "
-               "{} mm before it is held",
-               fixedText(0.5 * apart_mm, 1)),
-            tr("Interpolate: tools are felt and cut as wide as they are; detail between the slices "
-               "is only apparent")}},
-          answers, series.choices);
-  const std::string text = tr("The slices lie {} mm apart, which is coarse for touch: a tool meets "
-                              "and cuts voxels whole",
-                              fixedText(apart_mm, 2));
+  const std::string answer = ask(
+      {code::kThickSlices,
+       tr("The slices lie {} mm apart. Interpolate slices {} mm apart between them?",
+          fixedText(apart_mm, 2), thin),
+       {"keep", "interpolate"},
+       {tr("Keep the slices: a thin tool cuts too much across them, a driven one sinks in up to "
+           "{} mm before it is held",
+           fixedText(0.5 * apart_mm, 1)),
+        tr("Interpolate: tools are felt and cut as wide as they are; detail between the slices "
+           "is only apparent")}},
+      answers, series.choices);
+  const std::string text =
+      tr("The slices lie {} mm apart, which is coarse for touch: a tool meets "
+         "and cuts voxels whole",
+         fixedText(apart_mm, 2));
   if (answer != "interpolate") {
-    series.findings.push_back(
-        {code::kThickSlices,
-         Severity::notice,
-         text,
-         {},
-         tr("As they are, touch and cuts are off by up to {} mm across them",
-            fixedText(0.5 * apart_mm, 1))});
+    series.findings.push_back({code::kThickSlices,
+                               Severity::notice,
+                               text,
+                               {},
+                               tr("As they are, touch and cuts are off by up to {} mm across them",
+                                  fixedText(0.5 * apart_mm, 1))});
     return false;
   }
   Result<Volume> between = withThinSlices(volume, steps);

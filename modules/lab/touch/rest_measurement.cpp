@@ -208,14 +208,9 @@ std::size_t placeOf(const RestRow& row) {
 std::vector<RestSum> sumsOf(const RestFigures& figures) {
   std::vector<RestSum> sums(8);
   const std::string minute = plainNumber(figures.seconds) + " s";
-  const std::string names[] = {"scenes at rest, " + minute,
-                               "scenes swung",
-                               "scenes creeping",
-                               "blocks at rest, " + minute,
-                               "blocks swung",
-                               "blocks creeping",
-                               "edges at rest, " + minute,
-                               "all"};
+  const std::string names[] = {"scenes at rest, " + minute, "scenes swung", "scenes creeping",
+                               "blocks at rest, " + minute, "blocks swung", "blocks creeping",
+                               "edges at rest, " + minute,  "all"};
   for (std::size_t i = 0; i < sums.size(); ++i) sums[i].name = names[i];
   for (const RestRow& row : figures.rows) {
     sums[3 * placeOf(row) + std::size_t(row.kind)].add(row);

@@ -67,8 +67,8 @@ inline Slot randomSlot(const Tool& tool, const Vec3& spacing_mm, unsigned seed) 
   s.tissues.classes[0] = bone();
   s.block.spacing_mm = spacing_mm;
   s.block.half_mm = Vec3(40.0);
-  const Vec3 axis = glm::normalize(
-      Vec3(random.in(-1, 1), random.in(-1, 1), random.in(-1, 1)) + Vec3(0.0, 0.0, 1e-6));
+  const Vec3 axis = glm::normalize(Vec3(random.in(-1, 1), random.in(-1, 1), random.in(-1, 1)) +
+                                   Vec3(0.0, 0.0, 1e-6));
   const Vec3 turn_rad = random.in(0.0, 3.1) * axis;
   const Quat turn = turned(turn_rad);
   const Vec3 up = turn * Vec3(0, 0, 1), along = turn * Vec3(1, 0, 0), side = turn * Vec3(0, 1, 0);
@@ -76,8 +76,9 @@ inline Slot randomSlot(const Tool& tool, const Vec3& spacing_mm, unsigned seed) 
   s.block.up = up;
   s.block.half_mm = Vec3(13.0);
   // No deeper than that a round head leaves room for its shaft.
-  const double depth_mm = std::min(4.0, 1500.0 * tool.radius_m + (tool.blunt ? 0.0 : 4.0) +
-                                            1000.0 * glm::length(tool.solid_to_m - tool.solid_from_m));
+  const double depth_mm =
+      std::min(4.0, 1500.0 * tool.radius_m + (tool.blunt ? 0.0 : 4.0) +
+                        1000.0 * glm::length(tool.solid_to_m - tool.solid_from_m));
   s.way = {{0.0, start + 4.0 * up, turn_rad},
            {1.5, start - depth_mm * up, turn_rad},
            {4.5, start - depth_mm * up + 8.0 * along, turn_rad},
