@@ -116,9 +116,11 @@ void HapticCore::touch(ArmTick& now) {
   in.tissue_class = contact.tissue_class;
   in.tip_class = tool.contact.classes()[0];
   in.tissues = &tissue_.tissues();
-  if (tool.proxy) in.pull = tool.proxy->pull();
-  in.pull.drags = now.drags && in.pull.stiffness > 0.0;
-  tool.rubs_N = rubbing_N(tool);
+  if (tool.proxy) {
+    in.pull = tool.proxy->pull();
+    in.pull.drags = now.drags && in.pull.stiffness > 0.0;
+    tool.rubs_N = rubbing_N(tool);
+  }
   for (Law& law : tool.laws) law_tissues_.ask(law, tissue_, motion.pose_mm, in);
 
   out.tissue_class = contact.tissue_class;

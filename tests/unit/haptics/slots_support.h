@@ -26,7 +26,7 @@ inline double slotGeometry_mm3(const Stroke& stroke, const Vec3& up, const Quat&
       high = glm::max(high, end + radius_mm);
     }
   }
-  // Of a point to the parallelogram of an axis that is shifted: along the shift in small steps.
+  // Of its way, places a tenth of the radius apart.
   std::vector<Capsule> places;
   for (std::size_t n = 0; n + 1 < stroke.way.size(); ++n) {
     const Vec3 a = stroke.way[n].at_mm, b = stroke.way[n + 1].at_mm;
@@ -66,7 +66,6 @@ inline Slot randomSlot(const Tool& tool, const Vec3& spacing_mm, unsigned seed) 
   s.tissues.count = 1;
   s.tissues.classes[0] = bone();
   s.block.spacing_mm = spacing_mm;
-  s.block.half_mm = Vec3(40.0);
   const Vec3 axis = glm::normalize(Vec3(random.in(-1, 1), random.in(-1, 1), random.in(-1, 1)) +
                                    Vec3(0.0, 0.0, 1e-6));
   const Vec3 turn_rad = random.in(0.0, 3.1) * axis;
