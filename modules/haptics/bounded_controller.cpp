@@ -28,6 +28,7 @@ constexpr double kImpactAgain_s = 0.05;     // time constant with which it comes
 constexpr double kCreditAbove_J = 3.5707e-4;  // credit beyond what the spring holds
 // The tolerance is the energy that an encoder cannot see (unseen_energy.h).
 constexpr double kMostDebt_J = 1e-3;        // credit is never less than minus this
+constexpr double kCreditAtRest_s = 0.5;     // in which one tolerance of credit comes back
 constexpr double kCreditSlack = 0.01;       // tolerances by which credit may be overdrawn
 constexpr double kLossSeen = 0.39885;       // tolerances lost before stiffness is lowered
 constexpr double kLossStep = 0.94;          // to this share of itself
@@ -39,6 +40,9 @@ constexpr double kShakingStep = 0.95;        // to this share of itself
 constexpr double kObeyed = 1e-9;           // of the peak force: rounding of the clamp
 constexpr double kLeastDamping = 0.018;  // of sqrt(k m), always
 constexpr double kLearntDamping = 1.4433;  // of sqrt(k m), once stiffness was lowered
+// A scale that fell where the tissue is softer than it leaves the arm is not felt: the share of
+// that damping then, all of it once stiffness has fallen by kAllLearnt.
+constexpr double kUnfeltLearnt = 0.3, kAllLearnt = 0.1;
 constexpr double kFloorDamping = 0.008432;
 constexpr double kFloorStiffness = 0.2;
 constexpr double kForget_per_s = 0.5062;  // growth of a scale in air, of itself
@@ -115,8 +119,9 @@ void LearntScale::inAir(double period_s) {
   tried_ = std::min(1.0, tried_ * growth);
 }
 
-BoundedController::BoundedController(const ArmDynamics& arm, double period_s)
+BoundedController::BoundedController(const ArmDynamics& arm, double period_s, int touch_version)
     : T_(period_s),
+      before_11_(touch_version < 11),
       arm_(arm),
       tolerance_J_(unseenEnergy_J(arm.encoder_step_m)),
       estimator_(arm_, period_s),
@@ -205,6 +210,11 @@ void BoundedController::account(const ControllerInput& in, const Held& held) {
   // against it is seen: what it holds counts as put in.
   if (in.touching && not_obeyed_ticks_ > 0) credit_J_ = std::max(credit_J_, stored_J);
   owe();
+  // A force that is held gives out nothing over a cycle, but the counts between which an arm rests
+  // are counted as work: what they used up comes back, no faster than an encoder hides it.
+  if (!before_11_ && in.touching && hold_.rests() && credit_J_ < stored_J) {
+    credit_J_ += std::min(stored_J - credit_J_, T_ / kCreditAtRest_s * tolerance_J_);
+  }
   credit_J_ = std::clamp(credit_J_, -kMostDebt_J, stored_J + kCreditAbove_J);
 
   // Losses are counted on the samples: the forces follow the estimate, so that counted on the
@@ -297,8 +307,11 @@ Vec3 BoundedController::render(const ControllerInput& in, const Ahead& at) {
   if (k > 0.0) {
     const double critical = std::sqrt(k * m);
     b = std::max(b, kLeastDamping * critical);
-    if (parts_ & kPartLearned)
-      b = std::max(b, std::min(damping_.value * most_.damping, kLearntDamping * critical));
+    double share = 1.0;
+    if (!(parts_ & kPartLearned)) {
+      share = before_11_ ? 0.0 : kUnfeltLearnt * std::min(1.0, (1.0 - stiffness_.value) / kAllLearnt);
+    }
+    b = std::max(b, share * std::min(damping_.value * most_.damping, kLearntDamping * critical));
   }
   const Vec3& elastic_N = in.rendered.elastic_N;
   const Vec3& hand = estimator_.handAcceleration_m_s2();

@@ -12,6 +12,9 @@
 
 namespace trephine {
 
+// The version of recordings from which on touch is as it is (HapticParameters::touch_version).
+constexpr int kTouchVersion = 11;
+
 // Which parts changed the force of a tick: of every difference between the demanded and the bounded
 // force, and between that and the sent one, the parts that made it.
 enum ControllerPart : std::uint32_t {
@@ -59,8 +62,9 @@ struct LearntScale {
 
 class BoundedController {
  public:
-  // Everything in device metres and newtons.
-  BoundedController(const ArmDynamics& arm, double period_s);
+  // Everything in device metres and newtons. `touch_version` below 11: without credit that comes
+  // back at rest and without damping before a learnt scale is felt.
+  BoundedController(const ArmDynamics& arm, double period_s, int touch_version = kTouchVersion);
 
   // What the laws shall render of a tissue with this impedance at the arm.
   Impedance limit(const Impedance& tissue);
@@ -123,6 +127,7 @@ class BoundedController {
   void flag(ControllerPart part, const Vec3& difference_N);
 
   double T_;
+  bool before_11_;      // of touch
   ArmDynamics arm_;     // as stated
   Impedance most_;      // what this arm renders
   double tolerance_J_;  // energy that an encoder cannot see

@@ -22,11 +22,12 @@ std::string_view controllerName(ControllerKind kind) {
   return "";
 }
 
-Controller makeController(ControllerKind kind, const ArmDynamics& arm, double period_s) {
+Controller makeController(ControllerKind kind, const ArmDynamics& arm, double period_s,
+                          int touch_version) {
   switch (kind) {
     case ControllerKind::off: return OffController{};
     case ControllerKind::seed: return SeedController{};
-    case ControllerKind::bounded: return BoundedController(arm, period_s);
+    case ControllerKind::bounded: return BoundedController(arm, period_s, touch_version);
   }
   return OffController{};
 }

@@ -66,7 +66,8 @@ inline constexpr std::array<std::pair<std::string_view, ControllerKind>, 3> kCon
 std::string_view controllerName(ControllerKind kind);
 
 // Solves a small matrix equation for `bounded`: not for the tick.
-Controller makeController(ControllerKind kind, const ArmDynamics& arm, double period_s);
+Controller makeController(ControllerKind kind, const ArmDynamics& arm, double period_s,
+                          int touch_version = kTouchVersion);
 
 // The impedance that the laws shall render of a tissue with this one; before bound().
 inline Impedance limitImpedance(Controller& controller, const Impedance& tissue) {

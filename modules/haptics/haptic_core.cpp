@@ -20,7 +20,7 @@ HapticCore::ArmTool::ArmTool(const Tool& tool, const HapticParameters& all,
       removal(tool, geometry, all.removal, all.period_s),
       points(all.force_at == ForceAt::tip ? 1 : tool.points_m.size()) {
   for (LawKind kind : all.laws) laws.push_back(makeLaw(kind, points.size(), tool, geometry));
-  if (stopAtSolid(all.laws)) proxy.emplace(tool, geometry, all.touch_of_version_9);
+  if (stopAtSolid(all.laws)) proxy.emplace(tool, geometry, all.touch_version <= 9);
   const bool driven = tool.made_from.motor_W > 0.0;
   cutting = driven ? Cutting::driven : Cutting::by_hand;
   // A burr without a motor cuts nothing, but where there is no barrier: there it cuts as the seed
@@ -34,7 +34,7 @@ HapticCore::Arm::Arm(const ArmParameters& arm, const HapticParameters& all,
   tools.emplace_back(arm.tool, all, geometry);
   for (const Tool& other : arm.other_tools) tools.emplace_back(other, all, geometry);
   for (const auto& [name, kind] : kControllerNames) {
-    controllers.push_back(makeController(kind, arm.dynamics, all.period_s));
+    controllers.push_back(makeController(kind, arm.dynamics, all.period_s, all.touch_version));
   }
   controller = controllers[std::size_t(all.controller)];
   exercise_map = arm.map;

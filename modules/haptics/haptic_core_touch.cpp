@@ -67,7 +67,7 @@ void HapticCore::followArm(ArmTick& now) {
   const Cutting cutting = may_cut ? tool.cutting : Cutting::nothing;
   // What a motor cuts rubs on the arm, and holds the tool by what is left to be cut alone.
   const bool runs = cutting == Cutting::driven && !motorIsOff(arm, now.out.buttons);
-  now.drags = !runs && !parameters_.touch_of_version_9 && names(parameters_.laws, LawKind::coulomb);
+  now.drags = !runs && parameters_.touch_version > 9 && names(parameters_.laws, LawKind::coulomb);
   tool.proxy->follow(tissue_, now.motion.arm_mm, cutting, now.drags ? tool.rubs_N : 0.0);
   if (!still) {
     letGoOfHook(now);

@@ -45,10 +45,11 @@ struct HapticParameters {
   // Of the session's beginning, to each of which one can rewind; to none after them.
   std::size_t journal_seconds = 86'400;
   double stroke_gap_s = 0.3;  // this long out of tissue ends a stroke
-  // Touch as recordings up to version 9 have it, for replays of them: springs of dry friction
-  // beside the proxy's pull (laws/coulomb.h), and spheres for a driven tool thinner than a voxel's
-  // diagonal that its neighbours' rows hold (solid_surface.h).
-  bool touch_of_version_9 = false;
+  // Touch as recordings of an older version have it, for replays of them.
+  //  9: springs of dry friction beside the proxy's pull (laws/coulomb.h), and spheres for a driven
+  //     tool thinner than a voxel's diagonal that its neighbours' rows hold (solid_surface.h);
+  // 10: `bounded` without what kTouchVersion 11 added to it (bounded_controller.h).
+  int touch_version = kTouchVersion;
 };
 
 // Errors: IMPOSSIBLE_NUMBER of an arm's dynamics, map or max_force_N, of the period, or of a

@@ -78,6 +78,7 @@ Json toJson(const RunReport& report) {
           {"rate_hz", report.done.rate_hz},
           {"arms", arms},
           {"removed_mm3", removed},
+          {"removed_unnamed_mm3", report.done.removed_unnamed_mm3},
           {"removed_voxels", report.done.removed_voxels},
           {"undos", report.done.undos},
           {"rewinds", report.done.rewinds},
@@ -125,7 +126,11 @@ std::string toText(const RunReport& report) {
         arm.removed_mm3);
   }
   for (const auto& [tissue, mm3] : report.done.removed_mm3) {
-    if (mm3 > 0.0) add("  removed of %s: %.0f mm3\n", tissue.c_str(), mm3);
+    if (mm3 > 0.0) add("  removed of %s: %.1f mm3\n", tissue.c_str(), mm3);
+  }
+  if (report.done.removed_unnamed_mm3 > 0.0) {
+    add("  removed of no tissue of the exercise, or at an edge: %.1f mm3\n",
+        report.done.removed_unnamed_mm3);
   }
   if (const std::uint64_t back = report.done.undos + report.done.rewinds; back > 0) {
     add("  taken back %llu times (%llu by undo): %.0f mm3 were cut and put back\n",

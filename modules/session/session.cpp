@@ -445,7 +445,7 @@ RunReport Session::report() const {
   RunReport report;
   report.done = meter_->metrics();
   report.done.ticks = loop_->ticks();  // also those whose records found no room
-  setRemoved(report.done, exercise_, core_->journal(), grid_->geometry());
+  setRemoved(report.done, exercise_, core_->journal(), cut_, grid_->geometry());
   report.structures_cut = structures_cut_;
   report.warnings = warnings_;
   std::ranges::copy(report.done.warnings, std::back_inserter(report.warnings));

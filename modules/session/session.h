@@ -214,6 +214,7 @@ class Session : public SessionView {
   std::string sha256_before_, sha256_after_;
   std::shared_ptr<const Volume> before_;        // the case's
   std::shared_ptr<const LabelMap> structures_;  // the case's; null: none
+  CutVoxels cut_;                               // once it has ended
   std::vector<CutStructure> structures_cut_;    // once it has ended
   std::filesystem::path recording_file_;
   std::shared_ptr<Grid> grid_;

@@ -113,6 +113,9 @@ Status Session::finishRecording() {
   try {
     // Where no tick came the voxels are what they were.
     sha256_after_ = loop_->ticks() == 0 ? sha256_before_ : slabsSha256(slabsOf(*grid_));
+    const TrueTissues tissues(exercise_.tissues, *before_, grid_->labels().get(),
+                              exercise_.case_source);
+    cut_ = cutVoxels(tissues, *before_, *grid_);
     if (structures_) structures_cut_ = cutStructures(*structures_, *before_, *grid_);
   } catch (const std::bad_alloc&) {
     const Error error = outOfMemory(tr("to end the recording"), tr("the recording"));

@@ -189,7 +189,11 @@ Result<TissueSet> withoutTissue(const TissueSet& set, std::size_t tissue) {
                  tr("Add another one first")};
   }
   TissueSet out = set;
+  const std::string gone = out.tissues[tissue].id;
   out.tissues.erase(out.tissues.begin() + std::ptrdiff_t(tissue));
+  for (Tissue& t : out.tissues) {
+    if (t.within == gone) t.within.clear();
+  }
   return out;
 }
 

@@ -52,7 +52,7 @@ Tissue inStructure(const TissueSet& set, const Tissue& tissue, const std::string
 // there is none, in the topmost 100 HU of the widest within kCtHu. Error: NO_ROOM.
 constexpr HuRange kCtHu{-1024, 3071}, kNoAirHu{-200, 3071};
 Result<TissueSet> withNewTissue(const TissueSet& set);
-// Error: LAST_TISSUE.
+// What it enclosed is enclosed by none. Error: LAST_TISSUE.
 Result<TissueSet> withoutTissue(const TissueSet& set, std::size_t tissue);
 
 // What a set of one's own begins with: soft tissue, and bone from the common threshold on.

@@ -122,6 +122,11 @@ Status validate(const TissueSet& set, const std::string& file) {
                     shown(t.shell->thickness_mm)),
                  tr("Name a structure and a thickness of {}", kShellRange.words()));
     }
+    if (t.within == t.id || (!t.within.empty() && !set.find(t.within))) {
+      return bad(file, field + ".within",
+                 tr("'{}' cannot be enclosed by '{}'", t.id, t.within),
+                 tr("Name another tissue of the set, or none"));
+    }
     if (!kShareRange.holds(t.opacity)) {
       return bad(file, field + ".opacity",
                  tr("The opacity {} is not between 0 and 1", shown(t.opacity)));

@@ -47,6 +47,11 @@ struct Tissue : SetNumbers {
     bool operator==(const Shell&) const = default;
   };
   std::optional<Shell> shell{};
+  // The id of the tissue that encloses this one in a body, as a skull its brain; empty: none.
+  // What was cut is named after this one only there (exercise/true_tissues.h): HU like a brain's
+  // are those of a scalp's muscle, and of the edge between fat and bone. Touch and picture do not
+  // ask for it.
+  std::string within{};
   bool isAnywhere() const { return !label && structure.empty(); }
   Vec3 colour{1.0};          // r, g, b in [0, 1]
   double opacity = 0.0;      // [0, 1] per millimetre of depth; 0 hides the tissue
@@ -80,6 +85,13 @@ inline constexpr FieldOf<Tissue> kTissueFields[] = {
       trLater("per millimetre of depth; 0 hides the tissue, unless a view's `looks` name it "
               "(`scene.md`)")},
      &Tissue::opacity},
+    {{"within",
+      {},
+      Given::may_be,
+      trLater("the `id` of the tissue that encloses this one in a body, as a skull its brain: what "
+              "was cut is named after this one only there"),
+      trLater("Enclosed by")},
+     ReferenceIn<Tissue>{&Tissue::within}},
 };
 inline constexpr FieldOf<Tissue::Shell> kShellFields[] = {
     {{"of",
@@ -120,7 +132,8 @@ struct TissueSet {
 };
 
 // Every rule that a set must keep, whether read from a file or typed in a panel: 1 to kMaxTissues
-// tissues, unique ids, hu_min <= hu_max within int16, labels from 1 to 255, no two ranges that
+// tissues, unique ids, none enclosed by itself or by one that the set lacks, hu_min <= hu_max
+// within int16, labels from 1 to 255, no two ranges that
 // overlap in the same structure or label or both in none, finite numbers, none of the mechanics
 // negative, opacity and colour in [0, 1], a source for each number. The Error names `file`, field
 // and value.

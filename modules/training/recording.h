@@ -11,9 +11,8 @@
 
 namespace trephine {
 
-// Up to this version touch was that of HapticParameters::touch_of_version_9.
-constexpr int kOlderTouch = 9;
-constexpr int kRecordingVersion = 10, kOldestRecording = 8;  // those between are read
+// From version 9 on a recording replays by the touch of its version (HapticParameters).
+constexpr int kRecordingVersion = 11, kOldestRecording = 8;  // those between are read
 
 struct RecordingHeader {
   Json exercise;                 // toJson(RecordedExercise) with fixed maps and the controller at the start

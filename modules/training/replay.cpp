@@ -170,7 +170,7 @@ Result<RecordedLabels> recordedLabels(const RecordingHeader& header, const Tissu
 // What the core was made of that the recording was made with.
 HapticParameters recordedParameters(const Exercise& exercise, const Rig& rig, int version) {
   HapticParameters parameters = hapticParameters(exercise, rig);
-  parameters.touch_of_version_9 = version <= kOlderTouch;
+  parameters.touch_version = std::min(version, kTouchVersion);
   return parameters;
 }
 
@@ -275,8 +275,11 @@ const std::shared_ptr<const LabelMap>& ReplayedSession::structures() const {
   return run_->labels.structures;
 }
 
-void ReplayedSession::setRemovedIn(RunMetrics& metrics) const {
-  setRemoved(metrics, run_->exercise, run_->core.journal(), run_->grid.geometry());
+void ReplayedSession::setRemovedIn(RunMetrics& metrics, const Volume& before) const {
+  const TrueTissues tissues(run_->exercise.tissues, before, run_->grid.labels().get(),
+                            run_->exercise.case_source);
+  setRemoved(metrics, run_->exercise, run_->core.journal(), cutVoxels(tissues, before, run_->grid),
+             before.geometry);
 }
 
 Result<std::unique_ptr<ReplayedSession>> ReplayedSession::open(const SessionReader& recording,
@@ -407,7 +410,7 @@ Result<ReplayResult> replay(const SessionReader& recording, const Volume& volume
   }
   if (result.identical) session.tellRest(meter);
   result.metrics = meter.metrics();
-  session.setRemovedIn(result.metrics);
+  session.setRemovedIn(result.metrics, volume);
   return result;
 }
 

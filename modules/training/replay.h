@@ -58,8 +58,8 @@ class ReplayedSession : public SessionView {
   std::optional<ReplayDifference> differenceAtEnd(const std::string& volume_sha256) const;
   // Of the case, fitted; null: none.
   const std::shared_ptr<const LabelMap>& structures() const;
-  // What is removed by now.
-  void setRemovedIn(RunMetrics& metrics) const;
+  // What is removed by now; `before`: the volume that it was opened with.
+  void setRemovedIn(RunMetrics& metrics, const Volume& before) const;
 
  private:
   struct Run;

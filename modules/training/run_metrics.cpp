@@ -23,7 +23,7 @@ bool operator==(const RunMetrics& a, const RunMetrics& b) {
   return a.rate_hz == b.rate_hz && a.ticks == b.ticks && a.arms == b.arms &&
          a.controllers == b.controllers && a.strokes == b.strokes && a.faults == b.faults &&
          std::ranges::equal(a.warnings, b.warnings, same) && a.removed_mm3 == b.removed_mm3 &&
-         a.removed_voxels == b.removed_voxels && a.undos == b.undos && a.rewinds == b.rewinds &&
+         a.removed_unnamed_mm3 == b.removed_unnamed_mm3 && a.removed_voxels == b.removed_voxels && a.undos == b.undos && a.rewinds == b.rewinds &&
          a.brought_back_mm3 == b.brought_back_mm3;
 }
 
@@ -99,18 +99,18 @@ void RunMeter::warn(Warning warning) {
 }
 
 void setRemoved(RunMetrics& metrics, const Exercise& exercise, const CarveJournal& journal,
-                const GridGeometry& geometry) {
+                const CutVoxels& cut, const GridGeometry& geometry) {
   const double voxel_mm3 = geometry.voxelVolume_mm3();
+  const std::vector<Tissue>& tissues = exercise.tissues.tissues;
   metrics.removed_mm3.clear();
-  metrics.removed_voxels = 0;
-  for (const Tissue& tissue : exercise.tissues.tissues) {
-    metrics.removed_mm3.emplace_back(tissue.id, 0.0);
+  for (std::size_t t = 0; t < tissues.size(); ++t) {
+    metrics.removed_mm3.emplace_back(tissues[t].id, double(cut.of_tissue[t]) * voxel_mm3);
   }
+  metrics.removed_unnamed_mm3 = double(cut.unnamed) * voxel_mm3;
+  metrics.removed_voxels = 0;
   for (std::size_t i = 0; i < metrics.arms.size(); ++i) {
-    for (std::size_t t = 0; t < metrics.removed_mm3.size(); ++t) {
-      const std::uint64_t voxels = journal.removed(int(i), int(t));
-      metrics.removed_mm3[t].second += double(voxels) * voxel_mm3;
-      metrics.removed_voxels += voxels;
+    for (std::size_t t = 0; t < tissues.size(); ++t) {
+      metrics.removed_voxels += journal.removed(int(i), int(t));
     }
     metrics.arms[i].removed_mm3 = double(journal.paid(int(i))) * voxel_mm3 / kVoxelShares;
   }

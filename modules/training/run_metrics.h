@@ -10,6 +10,7 @@
 
 #include "base/progress.h"
 #include "base/result.h"
+#include "exercise/cut_tally.h"
 #include "exercise/exercise.h"
 #include "training/paused_ticks.h"
 #include "training/record_sink.h"
@@ -51,8 +52,10 @@ struct RunMetrics {
   std::vector<StrokeBegin> strokes;      // the first 10,000
   std::vector<ArmFault> faults;          // in the order in which they came; the first 1000
   std::vector<Warning> warnings;         // of tools: that began in tissue, that were let go
-  // What is removed at the end, by tissue in the exercise's order: setRemoved().
+  // What is removed at the end, by tissue in the exercise's order, as it truly was
+  // (exercise/true_tissues.h), and what is of none of them or lies at an edge: setRemoved().
   std::vector<std::pair<std::string, double>> removed_mm3;
+  double removed_unnamed_mm3 = 0.0;
   std::uint64_t removed_voxels = 0;
   // Once something had been cut: how often undo was asked for, and a rewind or reset; and how much
   // was cut and put back, cut again by the tool or not, less what a redo took: setRemoved().
@@ -83,9 +86,9 @@ class RunMeter : public RecordSink {
 // Of an exercise whose tool begins in tissue; `barrier`: it has the elastic law.
 Warning startsInTissue(const std::string& arm, bool barrier);
 
-// What is removed by the journal's count.
+// What is removed: by arm as the journal counts it, by tissue as `cut` has it.
 void setRemoved(RunMetrics& metrics, const Exercise& exercise, const CarveJournal& journal,
-                const GridGeometry& geometry);
+                const CutVoxels& cut, const GridGeometry& geometry);
 
 // Of a recording, but for removal, which only a replay can tell (replay.h). Errors: those of
 // SessionReader, CANCELLED.

@@ -27,35 +27,6 @@ std::vector<CutStructure> cutStructures(const LabelMap& structures, const Volume
   return rows;
 }
 
-std::vector<std::pair<int, double>> cutWithin(const LabelMap& structures, const Volume& before,
-                                              const Volume& now, const VoxelBox& box,
-                                              std::size_t most) {
-  const GridGeometry& grid = before.geometry;
-  const std::size_t count = grid.voxelCount();
-  if (structures.labels.size() != count || now.hu.size() != count || before.hu.size() != count) {
-    return {};
-  }
-  std::size_t within = 1;
-  for (int axis = 0; axis < 3; ++axis)
-    within *= std::size_t(std::max(0, box.high[axis] - box.low[axis]));
-  if (within > most) return {};
-  std::array<std::size_t, 256> cut{};
-  for (int k = box.low[2]; k < box.high[2]; ++k) {
-    for (int j = box.low[1]; j < box.high[1]; ++j) {
-      std::size_t voxel = grid.indexOf(box.low[0], j, k);
-      for (int i = box.low[0]; i < box.high[0]; ++i, ++voxel) {
-        cut[structures.labels[voxel]] += now.hu[voxel] != before.hu[voxel];
-      }
-    }
-  }
-  std::vector<std::pair<int, double>> rows;
-  for (int label = 1; label < 256; ++label) {
-    const std::size_t voxels = cut[std::size_t(label)];
-    if (voxels > 0) rows.emplace_back(label, double(voxels) * grid.voxelVolume_mm3());
-  }
-  return rows;
-}
-
 Json toJson(const std::vector<CutStructure>& structures) {
   Json rows = Json::array();
   for (const CutStructure& s : structures) {

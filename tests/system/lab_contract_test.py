@@ -21,7 +21,7 @@ SERIES_KEYS = {
     "verdict", "size", "spacing_mm", "origin_mm", "direction",
     "hu_min", "hu_max", "tilt_deg", "transfer_syntax", "lossy", "findings", "volume_sha256"}
 RUN_KEYS = {
-    "schema", "build", "controller", "controllers", "ticks", "rate_hz", "arms", "removed_mm3", "removed_voxels", "undos", "rewinds",
+    "schema", "build", "controller", "controllers", "ticks", "rate_hz", "arms", "removed_mm3", "removed_unnamed_mm3", "removed_voxels", "undos", "rewinds",
     "brought_back_mm3",
     "structures_cut",
     "missed_deadlines", "faults", "warnings", "memory_locked", "nonfinite", "events_dropped",
@@ -134,7 +134,11 @@ class ShippedScenes:
                     self.assertGreater(cut["liver"]["ml"], 500.0)
                     # In mm3 no more than went in all: what is no structure is not among them.
                     self.assertLessEqual(1000.0 * sum(row["cut_ml"] for row in cut.values()),
-                                         sum(run["removed_mm3"].values()) + 1e-6)
+                                         sum(run["removed_mm3"].values()) +
+                                         run["removed_unnamed_mm3"] + 1e-6)
+                self.assertAlmostEqual(
+                    sum(run["removed_mm3"].values()) + run["removed_unnamed_mm3"],
+                    sum(arm["removed_mm3"] for arm in run["arms"]), delta=1e-6)
                 self.assertEqual(run["nonfinite"], 0)
                 self.assertEqual(run["events_dropped"], 0)
                 self.assertIsNone(run["picture"], "without a display there is no picture")

@@ -52,9 +52,14 @@ class WholeScenes(LabTest):
         scenes = {row["scene"] for row in answer["rows"]}
         self.assertLessEqual({"burr-hole", "cranium", "cranium-one-arm", "liver", "liver-one-arm",
                               "block of bone"}, scenes)
-        self.assertEqual({row["kind"] for row in answer["rows"]}, {"rest", "swing", "creep"})
+        self.assertEqual({row["kind"] for row in answer["rows"]}, {"rest", "swing", "creep", "edge"})
         self.assertEqual({row["tool"] for row in answer["rows"]},
                          {"burr", "small burr", "craniotome", "blade", "needle"})
+        kinds = {kind["name"].split(",")[0]: kind for kind in answer["kinds"]}
+        for name in ("scaled blocks", "edges"):
+            self.assertLessEqual(kinds[name]["unstable"], 0.01 * kinds[name]["cells"], name)
+            self.assertGreater(kinds[name]["cells"], 50, name)
+        self.assertGreaterEqual(kinds["edges"]["least_shown"], 0.5)
         # A tool that a scene's hand holds in tissue feels it.
         self.assertEqual([row for row in answer["rows"] if "pressed" in row["place"]
                           and row["kind"] == "rest" and not row["felt"]

@@ -49,6 +49,7 @@ TissueForm::TissueForm(QWidget* parent) : QWidget(parent) {
   source_ = fieldsOf(kSourceFields, *form, "hu");
   where_ = fieldsOf(kFields.subspan(2, 1), *form, "where");
   form->addRow(tr("Label"), label_->withReason());
+  within_ = fieldsOf(kFields.subspan(5, 1), *form, "within");
   shell_ = std::make_unique<FieldRows<Tissue::Shell>>(FieldsOf<Tissue::Shell>(kShellFields), *form,
                                                       this, "shell:");
   shell_->entered = [this](const Tissue::Shell& shell, const char*) { shellEntered(shell); };
@@ -192,7 +193,15 @@ void TissueForm::showPlaces() {
                            ? tr("Only voxels of this structure are this tissue")
                            : tr("The case has no structure; they are made on the Structures tab"));
   (*shell_)["of"].offer(shells);
+  FieldEditor::Offers enclosing{{tr("nothing"), ""}};
+  for (const Tissue& other : tissues_.tissues) {
+    if (tissue && other.id != tissue->id) enclosing.emplace_back(shownName(other.name), other.id);
+  }
+  (*within_)["within"].offer(enclosing);
+  (*within_)["within"].setToolTip(
+      tr("What was cut is named after this tissue only inside of that one, as brain inside a skull"));
   if (!tissue) return;
+  within_->show(*tissue);
   where_->show(*tissue);
   shell_->show(tissue->shell.value_or(Tissue::Shell{}));
   shell_->setVisible(!tissue->structure.empty());

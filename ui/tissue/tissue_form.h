@@ -69,7 +69,7 @@ class TissueForm : public QWidget {
   bool labels_open_ = false;
   std::vector<std::string> structures_;
   std::string shown_;  // the tissue whose fields stand there
-  std::unique_ptr<FieldRows<Tissue>> name_, source_, where_;
+  std::unique_ptr<FieldRows<Tissue>> name_, source_, where_, within_;
   std::unique_ptr<FieldRows<Tissue::Shell>> shell_;
   QLabel *opacity_text_, *gaps_, *problem_;
   QToolButton* colour_;

@@ -3,6 +3,7 @@
 #include <QVBoxLayout>
 #include <cmath>
 
+#include "ui/common/colours.h"
 #include "ui/common/making.h"
 #include "ui/common/words.h"
 #include "ui/train/arms_panel.h"
@@ -56,6 +57,10 @@ QString toolWords(const Exercise& exercise, const std::array<std::int32_t, kMaxA
     lines << ExercisePanel::tr("%1: %2").arg(armName(exercise.arms[i]), toolWord(tool));
   }
   return lines.join('\n');
+}
+
+RemovedOf unnamedRemoved(double mm3) {
+  return {ExercisePanel::tr("Not told apart"), colours::kQuiet, mm3};
 }
 
 ExercisePanel::ExercisePanel(QWidget* parent) : QWidget(parent) {

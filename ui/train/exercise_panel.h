@@ -21,6 +21,9 @@ struct RemovedOf {
   double mm3 = 0.0;
 };
 
+// What is of no tissue of the exercise, or lies at an edge.
+RemovedOf unnamedRemoved(double mm3);
+
 class ExercisePanel : public QWidget {
   Q_OBJECT
  public:

@@ -89,11 +89,12 @@ void ResultPage::setResult(const ExerciseResult& result) {
     ++removed;
     html += row(one.name, cutWords(one.mm3, structureOf(one, result)));
   }
-  if (removed == 0) html += row(tr("nothing"), {});
-  if (removed > 1) {
+  if (removed == 0 && !(result.unnamed_mm3 > 0.0)) html += row(tr("nothing"), {});
+  if (result.unnamed_mm3 > 0.0) {
+    const RemovedOf rest = unnamedRemoved(result.unnamed_mm3);
+    html += row(rest.name, volumeWords(rest.mm3));
     html += QStringLiteral("<tr><td colspan='2'><i>%1</i></td></tr>")
-                .arg(tr("Tissues are told by how dense they are: at an edge a little counts as "
-                        "something softer.")
+                .arg(tr("What lies at the edge of two tissues, or is none of this exercise's.")
                          .toHtmlEscaped());
   }
   bool any = false;

@@ -15,6 +15,7 @@ struct ExerciseResult {
   QString exercise, goal;
   double seconds = 0.0;
   std::vector<RemovedOf> tissues;
+  double unnamed_mm3 = 0.0;  // that was removed, of none of these
   std::vector<CutStructure> structures;
   struct Way {
     QString hand;

@@ -7,7 +7,6 @@
 #include "ui/common/preferences.h"
 #include "ui/common/words.h"
 #include "ui/train/hand_bar.h"
-#include "volume/cut_structures.h"
 #include "volume/label_map.h"
 
 namespace trephine {
@@ -57,7 +56,16 @@ RunningView::RunningView(AppContext& app, const Panels& panels, const PointerHan
   cards_clock_.start();
 }
 
-void RunningView::begin(const Session& session) {
+RunningView::Tally::Tally(const Case& of, Session& session)
+    : before(of.volume),
+      labels(session.grid().labels()),
+      structures(of.structures),
+      tissues(session.exercise().tissues, *before, labels.get(), session.exercise().case_source),
+      cut(tissues, *before, structures.get()) {}
+
+void RunningView::begin(Session& session) {
+  const Case* of = workstation_.currentCase();
+  tally_ = of ? std::make_unique<Tally>(*of, session) : nullptr;
   limits_N_.clear();
   for (const ExerciseArm& arm : session.exercise().arms) limits_N_.push_back(arm.max_force_N);
   going_back_.reset();
@@ -76,6 +84,7 @@ void RunningView::end(Session& session) {
   arms_.showIdle();
   arms_.showController(workstation_.exercise()->controller);
   showTools({});
+  tally_.reset();
   emit ratesChanged({});
 }
 
@@ -129,7 +138,7 @@ void RunningView::showState(Session& session, const LoopState& state, bool all) 
     if (cards_wanted_ && isDue(all, cards_clock_, kCardsEvery_ms)) tellCards(session, shown);
     if (!session.isPoke()) exercise_.showTime(double(state.seconds));
     exercise_.showTools(session.exercise(), state.tools);
-    if (isDue(all, removed_clock_, kRemovedEvery_ms)) showRemoved(session, state);
+    if (isDue(all, removed_clock_, kRemovedEvery_ms)) showRemoved(session, all);
     emit stateShown(state);
     if (!session.isPoke()) {
       app_.undoAction()->setEnabled(state.can_undo);
@@ -163,34 +172,35 @@ void RunningView::tellCards(const Session& session, const LoopState& state) {
   emit cardsChanged({forceCard(hands), exerciseCard(toQt(exercise.name), time, goal)});
 }
 
-// Of the tissues as the session counts them, of the structures as the views' copy shows them.
-void RunningView::showRemoved(Session& session, const LoopState& state) {
+// As the views' copy shows it. With `all` to its end, unless that takes long.
+void RunningView::showRemoved(const Session& session, bool all) {
   removed_clock_.restart();
+  const VolumeMirror& mirror = views_.mirror();
+  if (!tally_) return;
+  constexpr qint64 kMost_ms = 200;
+  bool whole = false;
+  do {
+    whole = tally_->cut.look(mirror.volume(), mirror.touched(), {});
+  } while (all && !whole && removed_clock_.elapsed() < kMost_ms);
+  if (!whole) return;
+  const CutVoxels& cut = tally_->cut.counts();
   const std::vector<Tissue>& tissues = session.exercise().tissues.tissues;
-  const double voxel_mm3 = session.grid().geometry().voxelVolume_mm3();
+  const double voxel_mm3 = tally_->before->geometry.voxelVolume_mm3();
   std::vector<RemovedOf> removed, of_structures;
   for (std::size_t t = 0; t < tissues.size(); ++t) {
-    std::uint64_t voxels = 0;
-    for (std::size_t arm = 0; arm < session.exercise().arms.size(); ++arm) {
-      voxels += state.removed[arm][t];
-    }
-    removed.push_back(
-        {toQt(tissues[t].name), colours::of(tissues[t].colour), double(voxels) * voxel_mm3});
+    removed.push_back({toQt(tissues[t].name), colours::of(tissues[t].colour),
+                       double(cut.of_tissue[t]) * voxel_mm3});
   }
-  const Case* of = workstation_.currentCase();
-  const VolumeMirror& mirror = views_.mirror();
-  if (of && of->structures && !(mirror.touched() == VoxelBox{})) {
-    // That of a tissue that is this structure is said already.
-    const auto is_tissue = [&](const Structure& s) {
-      return std::ranges::any_of(tissues, [&](const Tissue& t) {
+  removed.push_back(unnamedRemoved(double(cut.unnamed) * voxel_mm3));
+  if (tally_->structures) {
+    for (const Structure& s : tally_->structures->structures) {
+      // That of a tissue that is this structure is said already.
+      const bool is_tissue = std::ranges::any_of(tissues, [&](const Tissue& t) {
         return !t.structure.empty() && sameName(t.structure, s.name);
       });
-    };
-    for (const auto& [label, mm3] :
-         cutWithin(*of->structures, *of->volume, mirror.volume(), mirror.touched())) {
-      if (const Structure* s = of->structures->find(label); s && !is_tissue(*s)) {
-        of_structures.push_back({toQt(s->name), colours::of(s->colour), mm3});
-      }
+      if (is_tissue) continue;
+      of_structures.push_back({toQt(s.name), colours::of(s.colour),
+                               double(cut.of_label[std::size_t(s.label)]) * voxel_mm3});
     }
   }
   exercise_.showRemoved(removed, of_structures);

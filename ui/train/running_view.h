@@ -6,9 +6,11 @@
 #include <QElapsedTimer>
 #include <QObject>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <vector>
 
+#include "exercise/cut_tally.h"
 #include "ui/headset/eye_cards.h"
 #include "ui/train/arms_panel.h"
 #include "ui/train/exercise_panel.h"
@@ -33,7 +35,7 @@ class RunningView : public QObject {
   RunningView(AppContext& app, const Panels& panels, const PointerHands& hands, QObject* parent);
 
   // An exercise has started; it has ended, as it is shown last.
-  void begin(const Session& session);
+  void begin(Session& session);
   void end(Session& session);
   // What moves: with every picture.
   void showPicture(Session& session, const LoopState& state);
@@ -55,7 +57,7 @@ class RunningView : public QObject {
   void showTools(const std::vector<ToolView>& tools);
   void showState(Session& session, const LoopState& state, bool all);
   void tellCards(const Session& session, const LoopState& state);
-  void showRemoved(Session& session, const LoopState& state);
+  void showRemoved(const Session& session, bool all);
   void showRates();
   void showRewind(const LoopState& state);
 
@@ -69,6 +71,15 @@ class RunningView : public QObject {
   ExercisePanel& exercise_;
   const PointerHands& hands_;
   QElapsedTimer panel_clock_, rate_clock_, removed_clock_, cards_clock_;
+  // What is cut of the running session's case, which is kept meanwhile.
+  struct Tally {
+    std::shared_ptr<const Volume> before;
+    std::shared_ptr<const LabelMap> labels, structures;  // as tissues were placed; the case's
+    TrueTissues tissues;
+    CutTally cut;
+    Tally(const Case& of, Session& session);
+  };
+  std::unique_ptr<Tally> tally_;
   std::vector<double> limits_N_;  // of the running session's arms
   struct GoingBack {
     std::uint32_t second;

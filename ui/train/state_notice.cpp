@@ -117,23 +117,19 @@ QString backWords(std::uint32_t second, const LoopState& state, const Exercise& 
       .arg(back, whoWords(waiting, exercise));
 }
 
+// By arm: what tissue it was is said by the panel's tally.
 QString undoneWords(const LoopState& before, const LoopState& after, const Exercise& exercise,
                     double voxel_mm3) {
   QStringList undone, redone;
   for (std::size_t arm = 0; arm < exercise.arms.size(); ++arm) {
-    const std::vector<Tissue>& tissues = exercise.tissues.tissues;
-    QStringList back, again;
-    for (std::size_t t = 0; t < tissues.size(); ++t) {
-      const double voxels = double(before.removed[arm][t]) - double(after.removed[arm][t]);
-      if (voxels == 0.0) continue;
-      const QString words =
-          StateNotice::tr("%1 of %2")
-              .arg(volumeWords(std::abs(voxels) * voxel_mm3), toQt(tissues[t].name));
-      (voxels > 0.0 ? back : again) << words;
+    double voxels = 0.0;
+    for (std::size_t t = 0; t < exercise.tissues.tissues.size(); ++t) {
+      voxels += double(before.removed[arm][t]) - double(after.removed[arm][t]);
     }
-    const QString who = armName(exercise.arms[arm]);
-    if (!back.isEmpty()) undone << StateNotice::tr("%1, %2").arg(who, back.join(", "));
-    if (!again.isEmpty()) redone << StateNotice::tr("%1, %2").arg(who, again.join(", "));
+    if (voxels == 0.0) continue;
+    (voxels > 0.0 ? undone : redone)
+        << StateNotice::tr("%1, %2").arg(armName(exercise.arms[arm]),
+                                         volumeWords(std::abs(voxels) * voxel_mm3));
   }
   QStringList all;
   if (!undone.isEmpty()) all << StateNotice::tr("Brought back: %1.").arg(undone.join("; "));

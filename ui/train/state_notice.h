@@ -25,7 +25,7 @@ ForceNotice forceNotice(const LoopState& state, const Exercise& exercise, double
 
 // What is said once a rewind has come to its second: the state is the one after it.
 QString backWords(std::uint32_t second, const LoopState& state, const Exercise& exercise);
-// What an undo brought back, or a redo took again, of which arm; empty: nothing.
+// How much an undo brought back, or a redo took again, of which arm; empty: nothing.
 QString undoneWords(const LoopState& before, const LoopState& after, const Exercise& exercise,
                     double voxel_mm3);
 

@@ -422,6 +422,7 @@ void TrainWorkspace::showResult(Session& session, const RunReport& report) {
     const Tissue* tissue = session.exercise().tissues.find(id);
     if (tissue) result.tissues.push_back({toQt(tissue->name), colours::of(tissue->colour), mm3});
   }
+  result.unnamed_mm3 = report.done.removed_unnamed_mm3;
   result.structures = report.structures_cut;
   for (std::size_t i = 0; i < report.done.arms.size(); ++i) {
     result.ways.push_back({handName(session.exercise().arms[i]), report.done.arms[i].path_mm,

@@ -15,20 +15,24 @@ namespace trephine {
 
 namespace {
 
-constexpr double kApproach_m_s = 0.02, kSettle_s = 3.0;
+constexpr double kApproach_m_s = 0.02, kSettle_s = 3.0, kSettleAtEdge_s = 8.0;
 constexpr double kSwing_s = 10.0, kSwing_Hz = 1.0, kCreep_m_s = 2e-4;
 constexpr double kIdealPeriod_s = 2e-4;
 constexpr double kStill_m = 20e-6, kStill_J = 2e-4, kGrave_J = 5e-4;
 constexpr double kAbove2Hz_s = 0.5, kBesideSwing_s = 0.1;  // of the mean that is taken off
 
+bool isAtRest(HoldKind kind) {
+  return kind == HoldKind::rest || kind == HoldKind::edge;
+}
+
 // Peak to peak and frequency of what is left along the axis that has most of it.
 void judgeMotion(const std::array<std::vector<double>, 3>& x, HoldKind kind, double period_s,
                  HoldResult& result) {
-  const double mean_s = kind == HoldKind::rest ? kAbove2Hz_s : kBesideSwing_s;
+  const double mean_s = isAtRest(kind) ? kAbove2Hz_s : kBesideSwing_s;
   const auto half = std::size_t(std::lround(0.5 * mean_s / period_s));
   for (const std::vector<double>& axis : x) {
     std::vector<double> left = lessItsMean(axis, half);
-    if (kind != HoldKind::rest) left = lessItsMean(left, half);
+    if (!isAtRest(kind)) left = lessItsMean(left, half);
     const std::size_t end = 2 * half;  // where the mean is narrower
     if (left.size() <= 2 * end + 1) continue;
     const auto first = left.begin() + std::ptrdiff_t(end), last = left.end() - std::ptrdiff_t(end);
@@ -48,7 +52,7 @@ Vec3 acrossOf(const Vec3& v) {
 }
 
 std::string kindName(HoldKind kind) {
-  constexpr const char* kNames[] = {"rest", "swing", "creep"};
+  constexpr const char* kNames[] = {"rest", "swing", "creep", "edge"};
   return kNames[std::size_t(kind)];
 }
 
@@ -56,7 +60,7 @@ std::string kindName(HoldKind kind) {
 
 HoldFaults faultsOf(HoldKind kind, const HoldResult& r, double encoder_m) {
   // Not a number is a fault.
-  if (kind == HoldKind::rest) {
+  if (isAtRest(kind)) {
     return {!(r.cycle_m <= std::max(kStill_m, encoder_m)), !(r.energy_out_J <= kStill_J)};
   }
   return {!(r.cycle_m <= std::max(kStill_m, 2.0 * encoder_m)),
@@ -64,7 +68,7 @@ HoldFaults faultsOf(HoldKind kind, const HoldResult& r, double encoder_m) {
 }
 
 bool isGrave(HoldKind kind, const HoldResult& r, double encoder_m) {
-  return kind == HoldKind::rest &&
+  return isAtRest(kind) &&
          !(r.cycle_m <= std::max(kStill_m, 2.0 * encoder_m) && r.energy_out_J <= kGrave_J);
 }
 
@@ -85,7 +89,7 @@ std::vector<HoldResult> hold(HapticParameters parameters, const Volume& volume,
     rig.place(i, paths[i].start_m);
     way_m = std::max(way_m, glm::length(paths[i].held_m - paths[i].start_m));
   }
-  const double arrived_s = way_m / kApproach_m_s, judged_s = arrived_s + kSettle_s;
+  const double arrived_s = way_m / kApproach_m_s, judged_s = arrived_s + (kind == HoldKind::edge ? kSettleAtEdge_s : kSettle_s);
   const auto ticks = std::size_t(std::llround((judged_s + seconds) / T));
   std::vector<HoldResult> results(paths.size());
   std::vector<std::array<std::vector<double>, 3>> x(paths.size());
@@ -121,6 +125,7 @@ std::vector<HoldResult> hold(HapticParameters parameters, const Volume& volume,
   for (std::size_t i = 0; i < paths.size(); ++i) {
     results[i].energy_out_J = kind == HoldKind::rest ? rig.energyOut_J(i) : rig.trueEnergyOut_J(i);
     if (demanded_N[i] > 0.0) results[i].shown = sent_N[i] / demanded_N[i];
+    results[i].demanded_N = demanded_N[i] * T / seconds;
     judgeMotion(x[i], kind, T, results[i]);
   }
   return results;
@@ -131,14 +136,20 @@ Result<RestFigures> measureRest(std::optional<double> seconds, const Progress& p
   if (!cells) return cells.error();
   RestFigures figures;
   figures.seconds = seconds.value_or(kRest_s);
-  constexpr HoldKind kKinds[] = {HoldKind::rest, HoldKind::swing, HoldKind::creep};
-  std::vector<std::vector<RestRow>> rows(3 * cells->size());
+  struct Run {
+    const HoldCell* cell;
+    HoldKind kind;
+  };
+  std::vector<Run> runs;
+  for (const HoldCell& cell : *cells) {
+    for (const HoldKind kind : cell.kinds) runs.push_back({&cell, kind});
+  }
+  std::vector<std::vector<RestRow>> rows(runs.size());
   const Progress part(progress, 0.1, 1.0);
   const bool finished = onAllProcessors(rows.size(), "Rest", part, [&](std::size_t n) {
-    const HoldCell& cell = (*cells)[n / 3];
-    const HoldKind kind = kKinds[n % 3];
-    if (cell.rest_only && kind != HoldKind::rest) return;
-    const double s = kind == HoldKind::rest ? figures.seconds : std::min(kSwing_s, figures.seconds);
+    const HoldCell& cell = *runs[n].cell;
+    const HoldKind kind = runs[n].kind;
+    const double s = isAtRest(kind) ? figures.seconds : std::min(kSwing_s, figures.seconds);
     const auto run = [&](bool ideal) {
       return hold(cell.parameters, *cell.volume, cell.rig, cell.paths, kind, s, ideal,
                   cell.labels);
@@ -147,7 +158,6 @@ Result<RestFigures> measureRest(std::optional<double> seconds, const Progress& p
     for (std::size_t i = 0; i < held.size(); ++i) {
       RestRow row{cell.exercise, cell.arms[i], cell.tools[i],        cell.place,
                   kind,       held[i],      cell.rig[i].encoder_m};
-      row.on_edge = cell.rest_only;
       row.unstable = faultsOf(kind, held[i], row.encoder_m).any();
       rows[n].push_back(std::move(row));
     }
@@ -181,7 +191,7 @@ struct RestSum {
     ++cells;
     cutting += row.result.removed_voxels > 0;
     apart += row.result.waited || !row.result.touched;
-    if (row.result.touched && !row.result.waited) {
+    if (row.result.touched && !row.result.waited && row.result.demanded_N >= kWorthShowing_N) {
       least_shown = std::min(least_shown, row.result.shown);
     }
     if (row.also_ideal) {
@@ -198,22 +208,22 @@ struct RestSum {
   }
 };
 
-// Of exercises, blocks and edges.
-std::size_t placeOf(const RestRow& row) {
-  if (row.exercise.rfind("block", 0) == 0) return 1;
-  return row.on_edge ? 2 : 0;
+// Exercises and blocks, at rest, swung and creeping; scaled blocks; edges.
+std::size_t sumOf(const RestRow& row) {
+  if (row.kind == HoldKind::edge) return row.exercise.rfind("scaled", 0) == 0 ? 6 : 7;
+  return (row.exercise.rfind("block", 0) == 0 ? 3 : 0) + std::size_t(row.kind);
 }
 
-// Exercises and blocks, at rest, swung and creeping; edges at rest; and all.
+// These, and all.
 std::vector<RestSum> sumsOf(const RestFigures& figures) {
-  std::vector<RestSum> sums(8);
+  std::vector<RestSum> sums(9);
   const std::string minute = plainNumber(figures.seconds) + " s";
   const std::string names[] = {"scenes at rest, " + minute, "scenes swung", "scenes creeping",
                                "blocks at rest, " + minute, "blocks swung", "blocks creeping",
-                               "edges at rest, " + minute,  "all"};
+                               "scaled blocks, " + minute, "edges, " + minute, "all"};
   for (std::size_t i = 0; i < sums.size(); ++i) sums[i].name = names[i];
   for (const RestRow& row : figures.rows) {
-    sums[3 * placeOf(row) + std::size_t(row.kind)].add(row);
+    sums[sumOf(row)].add(row);
     sums.back().add(row);
   }
   return sums;
@@ -254,6 +264,7 @@ Json toJson(const RestFigures& figures) {
                             {"cycle_Hz", row.result.cycle_Hz},
                             {"energy_out_mJ", 1e3 * row.result.energy_out_J},
                             {"shown", row.result.shown},
+                            {"demanded_N", row.result.demanded_N},
                             {"unstable", row.unstable},
                             {"also_ideal", row.also_ideal},
                             {"cuts", row.result.removed_voxels > 0},

@@ -7,15 +7,17 @@
 //            lies before the first solid one and into that, beside each other, by hands of 300, 600
 //            and 1000 N/m;
 //   blocks   each tool, sum of laws, tissue and arm once: pressed into a block of the tissue;
+//            and, by maps that scale the force by 10 and 100, as edges are;
 //   edges    each tool on an edge, a corner, a ridge and a comb of bone, at places across it, with
-//            0.3 and 1 N by hands of 50, 300 and 600 N/m: at rest alone.
+//            0.3 and 1 N by hands of 50, 300 and 600 N/m: at rest alone, once it has slid to where
+//            it stays.
 // Hands come from outside, motors are off, and a tool that cuts by hand meanwhile is said so. Each
 // is held still for a minute, `rest`; swung to and fro by 4 mm at 1 Hz along the press, `swing`;
 // and drawn across it at 0.2 mm/s, `creep`. Of a rest is judged
 //   cycle       what is left of the arm's true position above 2 Hz (less its centred mean over
 //               0.5 s), peak to peak over the minute: over 20 um and over a count of the encoder;
 //   energy      the most that the arm had ever given out, net, as a session reports it: over 0.2
-//   mJ;
+//   mJ; at an edge, where it slides, on where the arm truly was;
 // and of the others the same beyond the motion itself (less its centred 0.1 s mean, twice), at the
 // bars of a cell under a moving hand (stability_cell.h) and as there where the arm truly was: a
 // count that is passed under force adds up to k q^2 that nobody gave out.
@@ -32,7 +34,7 @@
 
 namespace trephine {
 
-enum class HoldKind { rest, swing, creep };
+enum class HoldKind { rest, swing, creep, edge };
 
 // Where one hand is: from `start` to `held`, and there it stays, swings by +-`swing` or creeps
 // across it.
@@ -47,6 +49,7 @@ struct HoldResult {
   bool waited = false;               // it began in tissue: nothing was felt
   std::uint64_t removed_voxels = 0;  // while it was judged
   double shown = 1.0;  // of the demanded force was sent, on average, while it was judged
+  double demanded_N = 0.0;  // on average
 };
 struct HoldFaults {
   bool cycles = false, gives_out = false;
@@ -57,7 +60,7 @@ HoldFaults faultsOf(HoldKind kind, const HoldResult& result, double encoder_m);
 // Beyond what is accepted of a rest anywhere: two counts of the encoder, 0.5 mJ.
 bool isGrave(HoldKind kind, const HoldResult& result, double encoder_m);
 
-// Every arm on its path, judged for so long after it arrived. `ideal`: the continuous law on
+// Every arm on its path, judged for so long from 3 s after it arrived, at an edge from 8 s. `ideal`: the continuous law on
 // perfect arms: no controller, no encoder, 5 kHz. `labels`: for tissues of a structure.
 std::vector<HoldResult> hold(HapticParameters parameters, const Volume& volume,
                              std::vector<RigArm> arms, const std::vector<HoldPath>& paths,
@@ -70,7 +73,6 @@ struct RestRow {
   HoldResult result;
   double encoder_m = 0.0;
   bool unstable = false, also_ideal = false;
-  bool on_edge = false;
 };
 struct RestFigures {
   std::vector<RestRow> rows;
@@ -78,13 +80,16 @@ struct RestFigures {
 };
 
 constexpr double kRest_s = 60.0;
+// What is shown of a force says something from here on.
+constexpr double kWorthShowing_N = 0.05;
 // Errors: those of the shipped exercises' files and devices, CANCELLED.
 Result<RestFigures> measureRest(std::optional<double> seconds, const Progress& progress);
 
 // {cells, unstable, also_ideal, energy_out_mJ_max, cycle_um_max, cycle_Hz, beyond_accepted,
 // cutting,
 //  kinds: [{name, ...}], rows: [{exercise, arm, tool, place, kind, cycle_um, cycle_Hz,
-//  energy_out_mJ, shown, unstable, also_ideal, cuts}]}
+//  energy_out_mJ, shown, demanded_N, unstable, also_ideal, cuts}]}; least_shown of those that
+//  demand at least kWorthShowing_N
 Json toJson(const RestFigures& figures);
 std::string toText(const RestFigures& figures);
 

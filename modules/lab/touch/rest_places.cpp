@@ -135,7 +135,17 @@ void addBlocks(const Exercise& exercise, const std::vector<const ExerciseTool*>&
           cell.parameters.arms = {{withoutMotor(tool->tool), WorkspaceMap{}, 3.3, arm.dynamics}};
           cell.rig = {rigArmOf(arm.dynamics, {4.0, 600.0})};
           cell.paths = {{Vec3(0.0, 0.0, 0.01), Vec3(0.0, 0.0, -0.002), Vec3(0.0, 0.0, -kSwing_m)}};
-          cells.push_back(std::move(cell));
+          cells.push_back(cell);
+          // Of a map that scales the force, what differs is how firm it is at the arm.
+          if (&arm != &kArms[0] || laws.size() != 3) continue;
+          for (const double scale : {10.0, 100.0}) {
+            HoldCell scaled = cell;
+            scaled.exercise = std::string("scaled block of ") + tissue.id;
+            scaled.place += ", force by " + plainNumber(scale);
+            scaled.parameters.arms[0].map.force_scale = scale;
+            scaled.kinds = {HoldKind::edge};  // it slides where a scale makes it weak
+            cells.push_back(std::move(scaled));
+          }
         }
       }
     }
@@ -208,7 +218,7 @@ void addShapes(const Exercise& exercise, const std::vector<const ExerciseTool*>&
             cell.parameters.laws = {LawKind::viscous, LawKind::coulomb, LawKind::elastic};
             cell.parameters.arms = {{withoutMotor(tool->tool), WorkspaceMap{}, 3.3, arm.dynamics}};
             cell.rig = {rigArmOf(arm.dynamics, hand)};
-            cell.rest_only = true;
+            cell.kinds = {HoldKind::edge};  // it would slip off where it was moved
             const Vec3 above_m(0.001 * beside_mm, 0.0003, 0.012);
             const Vec3 held_m(above_m.x, above_m.y, -press_N / hand.stiffness);
             cell.paths = {{above_m, held_m, Vec3(0.0, 0.0, -kSwing_m)}};

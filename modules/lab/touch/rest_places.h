@@ -22,7 +22,7 @@ struct HoldCell {
   std::shared_ptr<const LabelMap> labels{};  // for tissues of a structure
   std::vector<RigArm> rig;
   std::vector<HoldPath> paths;
-  bool rest_only = false;  // it would slip off where it was moved
+  std::vector<HoldKind> kinds{HoldKind::rest, HoldKind::swing, HoldKind::creep};
 };
 
 // From the program's resources. It reads their cases, and the cells keep all volumes in memory.

@@ -1,4 +1,5 @@
-// The grid's resolution: the same channel milled into the same bone.
+// The grid's resolution: the same channels milled into the same bone.
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <set>
@@ -15,12 +16,26 @@ namespace {
 
 constexpr int kTissue_hu = 226;
 
-// A channel 1.5 mm deep over the top of the shell, at 10 mm/s.
-Pose channelPose_mm(double t_s, double duration_s) {
-  const Vec3& a = EllipsoidShell().half_axes_mm;
-  const double x_mm = 10.0 * (t_s - 0.5 * duration_s);
-  return {{x_mm, 0.0, a.z * std::sqrt(1.0 - x_mm * x_mm / (a.x * a.x)) - 1.5}, Quat(1, 0, 0, 0)};
-}
+// A channel over the top of the shell, straight from above.
+struct Channel {
+  Vec3 along, aside_mm;
+  double deep_mm, speed_mm_s;
+
+  explicit Channel(int stroke) {
+    StrokeDice dice(stroke);
+    along = dice.heading();
+    aside_mm = dice.between(0.0, 4.0) * dice.heading();
+    deep_mm = dice.between(1.0, 2.5);
+    speed_mm_s = dice.between(6.0, 12.0);
+  }
+  Pose pose_mm(double t_s, double duration_s) const {
+    const Vec3& a = EllipsoidShell().half_axes_mm;
+    const Vec3 at = aside_mm + (speed_mm_s * (t_s - 0.5 * duration_s)) * along;
+    const double x = at.x / a.x, y = at.y / a.y;
+    const double high = std::sqrt(std::max(0.0, 1.0 - x * x - y * y));
+    return {{at.x, at.y, a.z * high - deep_mm}, Quat(1, 0, 0, 0)};
+  }
+};
 
 // The height of the first tissue below the box's top at (x, y), in steps of `step_mm`.
 double surfaceHeight_mm(const Grid& grid, const Mat4& to_voxel, double x_mm, double y_mm,
@@ -85,43 +100,71 @@ TradeRows tradeGrid(const TradesOptions& options, const Progress& progress) {
       *makeTool(burr), tradeTissue(kTissue_hu, true, 0.06),
       {LawKind::viscous, LawKind::coulomb, LawKind::elastic}, ForceAt::tip, kTradePeriod_s);
   const auto ticks = std::size_t(std::llround(options.stroke_s / kTradePeriod_s));
-  std::vector<TradeRow> rows;
-  std::set<std::pair<int, int>> columns;
-  std::vector<double> full_mm;
-  double full_mm3 = 0.0;
-  for (const auto& [name, factor] :
-       {std::pair("full", 1), std::pair("half", 2), std::pair("quarter", 4)}) {
-    Grid grid(averaged(fine, factor));
-    const std::optional<StrokeRun> run = runStroke(
-        parameters, grid, ticks, [&](double t_s) { return channelPose_mm(t_s, options.stroke_s); },
-        true, progress);
-    if (!run) return tradesCancelled();
+  struct OfGrid {
+    const char* name;
+    int factor;
+    std::vector<double> volume_percent, off_mm, removed_mm3, tick_ns;
+    double megabytes = 0.0;
+  };
+  std::vector<OfGrid> grids{{"full", 1}, {"half", 2}, {"quarter", 4}};
+  // By stroke: what was taken of the full grid, its columns, and how deep.
+  struct Full {
+    std::set<std::pair<int, int>> columns;
+    std::vector<double> heights_mm;
+    double mm3 = 0.0;
+  };
+  std::vector<Full> full(std::size_t(options.strokes));
+  for (OfGrid& of : grids) {
+    Grid grid(averaged(fine, of.factor));
     const GridGeometry& g = grid.geometry();
-    if (factor == 1) {
-      for (std::size_t voxel : run->removed) {
-        const Index3 v = g.indicesOf(voxel);
-        columns.insert({v[0], v[1]});
+    of.megabytes = double(g.voxelCount()) * sizeof(std::int16_t) / (1024.0 * 1024.0);
+    for (std::size_t n = 0; n < full.size(); ++n) {
+      const Channel channel(options.first_stroke + int(n));
+      const std::optional<StrokeRun> run = runStroke(
+          parameters, grid, ticks,
+          [&](double t_s) { return channel.pose_mm(t_s, options.stroke_s); }, true, progress);
+      if (!run) return tradesCancelled();
+      Full& reference = full[n];
+      const double mm3 = double(run->removed.size()) * g.voxelVolume_mm3();
+      if (of.factor == 1) {
+        for (std::size_t voxel : run->removed) {
+          const Index3 v = g.indicesOf(voxel);
+          reference.columns.insert({v[0], v[1]});
+        }
+        reference.mm3 = mm3;
       }
+      const std::vector<double> heights_mm =
+          channelHeights_mm(grid, fine.geometry, reference.columns);
+      if (of.factor == 1) reference.heights_mm = heights_mm;
+      double off_mm = 0.0;
+      for (std::size_t c = 0; c < heights_mm.size(); ++c) {
+        off_mm += std::abs(heights_mm[c] - reference.heights_mm[c]);
+      }
+      of.off_mm.push_back(heights_mm.empty() ? 1e3 : off_mm / double(heights_mm.size()));
+      of.volume_percent.push_back(reference.mm3 > 0.0 ? 100.0 * std::abs(mm3 / reference.mm3 - 1.0)
+                                                      : 100.0);
+      of.removed_mm3.push_back(mm3);
+      of.tick_ns.push_back(run->tick_ns);
+      putBack(grid, *run);
     }
-    const std::vector<double> heights_mm = channelHeights_mm(grid, fine.geometry, columns);
-    const double removed_mm3 = double(run->removed.size()) * g.voxelVolume_mm3();
-    if (factor == 1) {
-      full_mm3 = removed_mm3;
-      full_mm = heights_mm;
-    }
-    double off_mm = 0.0;
-    for (std::size_t n = 0; n < full_mm.size(); ++n) off_mm += std::abs(heights_mm[n] - full_mm[n]);
+  }
+  std::vector<TradeRow> rows;
+  for (const OfGrid& of : grids) {
+    const StrokeErrors volume = overStrokes(of.volume_percent);
     TradeRow row;
     row.knob = "grid";
-    row.setting = name;
-    row.error = full_mm3 > 0.0 ? 100.0 * std::abs(removed_mm3 / full_mm3 - 1.0) : 100.0;
+    row.setting = of.name;
+    row.error = volume.stated;
     row.error_unit = "% of removed volume";
-    row.cost = double(g.voxelCount()) * sizeof(std::int16_t) / (1024.0 * 1024.0);
+    row.cost = of.megabytes;
     row.cost_unit = "MB";
-    row.reference = "the same channel milled in the full grid: its volume, and its floor";
-    row.extra = {{"surface_distance_mm", full_mm.empty() ? 1e3 : off_mm / double(full_mm.size())},
-                 {"tick_ns", run->tick_ns},
-                 {"removed_mm3", removed_mm3}};
+    row.reference = tr("the same channel milled in the full grid: its volume, and its floor; {}",
+                       strokesWords(options.strokes));
+    row.extra = {{"surface_distance_mm", overStrokes(of.off_mm).stated},
+                 {"tick_ns", overStrokes(of.tick_ns).median},
+                 {"removed_mm3", overStrokes(of.removed_mm3).median},
+                 {"error_median", volume.median},
+                 {"error_most", volume.most}};
     rows.push_back(row);
   }
   return rows;

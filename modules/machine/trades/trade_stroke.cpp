@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cmath>
 
+#include "base/tr.h"
 #include "machine/common/quantile.h"
 
 namespace trephine {
@@ -84,6 +85,15 @@ void putBack(Grid& grid, const StrokeRun& run) {
   for (std::size_t n = 0; n < run.removed.size(); ++n) {
     writer.store(run.removed[n], run.removed_hu[n]);
   }
+}
+
+StrokeErrors overStrokes(std::vector<double> errors) {
+  std::sort(errors.begin(), errors.end());
+  return {quantile(errors, 900), quantile(errors, 500), quantile(errors, 1000)};
+}
+
+std::string strokesWords(int strokes) {
+  return tr("the 90th percentile of {} random strokes", strokes);
 }
 
 double rmsError_percent(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {

@@ -1,8 +1,12 @@
 // What the knobs share: a core on one arm without a bound, run along prescribed poses.
 #pragma once
 
+#include <cmath>
+#include <cstdint>
 #include <functional>
 #include <optional>
+#include <random>
+#include <string>
 #include <vector>
 
 #include "base/progress.h"
@@ -36,6 +40,32 @@ std::optional<StrokeRun> runStroke(const HapticParameters& parameters, Grid& gri
 
 // Puts back what a stroke took.
 void putBack(Grid& grid, const StrokeRun& run);
+
+// What a stroke varies in, drawn at random: the same in every build.
+class StrokeDice {
+ public:
+  explicit StrokeDice(int stroke) : random_(std::uint32_t(stroke) + 1) {}
+  double between(double low, double high) {
+    return low + (high - low) * double(random_()) / 4294967296.0;
+  }
+  // A heading all around, in the plane z = 0.
+  Vec3 heading() {
+    const double angle = between(0.0, 6.283185307179586);
+    return {std::cos(angle), std::sin(angle), 0.0};
+  }
+
+ private:
+  std::mt19937 random_;
+};
+
+// What a setting gets wrong over several strokes. It is stated by the 90th percentile, so that it
+// holds for most strokes that are not among them.
+struct StrokeErrors {
+  double stated = 0.0, median = 0.0, most = 0.0;
+};
+StrokeErrors overStrokes(std::vector<double> errors);
+// "the 90th percentile of 24 random strokes".
+std::string strokesWords(int strokes);
 
 // RMS |a - b| over RMS |b|, in percent; 0 where b is nothing and a is too, else 100.
 double rmsError_percent(const std::vector<Vec3>& a, const std::vector<Vec3>& b);

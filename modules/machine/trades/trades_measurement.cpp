@@ -48,6 +48,10 @@ Status check(const TradesOptions& options) {
   if (!(options.stroke_s >= 0.2 && options.stroke_s <= 20.0)) {
     return bad(tr("A stroke takes 0.2 to 20 s"), "stroke_s");
   }
+  if (options.strokes < 1 || options.strokes > 1000 || options.first_stroke < 0 ||
+      options.first_stroke > 1'000'000) {
+    return bad(tr("There are 1 to 1000 strokes"), "strokes");
+  }
   return {};
 }
 

@@ -53,7 +53,7 @@ inline constexpr std::array<Knob, 6> kKnobs{{
     {"force_at", trLater("Where the force acts"), 10.0},
     // Bone by two springs (coulomb, elastic), of what the arm shows at that rate: the rest is for
     // what the hand and its delays take.
-    {"rate_hz", trLater("Rate of touch"), 10.0, "cost", 25.0, "bone_of_k_max_percent", 60.0, "Hz"},
+    {"rate_hz", trLater("Rate of touch"), 5.0, "cost", 25.0, "bone_of_k_max_percent", 60.0, "Hz"},
     {"grid", trLater("Resolution of the grid"), 5.0, "surface_distance_mm", 0.5},
     // The worst picture: 1 % of 255 are 40 dB. Beyond, bone is seen to shine through thin skin.
     {"ray_casting", trLater("Samples of a ray"), 4.0, "luminance_error_percent", 2.5,
@@ -66,6 +66,8 @@ struct TradesOptions {
   std::vector<double> rates_hz{250.0, 500.0, 1000.0, 2000.0, 4000.0, 10000.0, 20000.0};
   int grid = 256;         // voxels along an edge of 49.2 mm, a multiple of 4, 32 to 512
   double stroke_s = 2.0;  // 0.2 to 20
+  int strokes = 24;       // 1 to 1000, at random (trade_stroke.h), from
+  int first_stroke = 0;   // this number on
   // Voxels, 0.1 to 8; none: the rays are left out.
   std::vector<double> ray_distances{0.25, 0.5, 0.75, 1.0, 2.0};
   std::array<int, 2> ray_picture{800, 600};

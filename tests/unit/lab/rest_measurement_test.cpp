@@ -109,6 +109,50 @@ TEST(TheBarsOfRest, AreACountOrTwentyMicrometresAndAFifthOfAMillijoule) {
   EXPECT_TRUE(faults(std::nan(""), 0.0, 55e-6).cycles);
 }
 
+TEST(TheBarsOfRest, HoldAtAnEdgeToo) {
+  HoldResult r;
+  r.cycle_m = 60e-6;
+  EXPECT_TRUE(faultsOf(HoldKind::edge, r, 55e-6).cycles);
+  r = {};
+  r.energy_out_J = 2.1e-4;
+  EXPECT_TRUE(faultsOf(HoldKind::edge, r, 55e-6).gives_out);
+  r.energy_out_J = 6e-4;
+  EXPECT_TRUE(isGrave(HoldKind::edge, r, 55e-6));
+}
+
+// The bone's edge at x = 0, by a hand that hardly damps: friction, proxy and controller.
+TEST(AToolThatALightHandHolds, RestsOnAnEdgeOnceItHasSlidThere) {
+  Volume edge = block();
+  const GridGeometry& g = edge.geometry;
+  for (std::size_t n = 0; n < edge.hu.size(); ++n) {
+    const Index3 v = g.indicesOf(n);
+    if (g.toPatient_mm(Vec3(v[0], v[1], v[2])).x > 0.0) edge.hu[n] = kAirHu;
+  }
+  RigArm arm;
+  arm.hand = {1.0, 50.0};
+  for (const double beside_m : {-0.3e-3, 0.0, 0.3e-3}) {
+    const HoldPath path{Vec3(beside_m, 0.0, 0.01), Vec3(beside_m, 0.0, -0.006),
+                        Vec3(0.0, 0.0, -0.004)};
+    const HoldResult held =
+        hold(burrOnBone(), edge, {arm}, {path}, HoldKind::edge, 2.0).front();
+    EXPECT_FALSE(faultsOf(HoldKind::edge, held, 0.055e-3).any())
+        << beside_m << ": " << 1e6 * held.cycle_m << " um, " << 1e3 * held.energy_out_J << " mJ";
+    EXPECT_GE(held.shown, 0.5) << beside_m;
+  }
+}
+
+// A map that scales the force makes a tissue firmer at the arm than it shows.
+TEST(AToolThatAHandHolds, RestsWhateverTheMapScalesTheForceBy) {
+  for (const double scale : {10.0, 30.0, 100.0}) {
+    HapticParameters scaled = burrOnBone();
+    scaled.arms[0].map.force_scale = scale;
+    const HoldResult held = hold(scaled, block(), {RigArm{}}, {kPress}, HoldKind::edge, 2.0).front();
+    EXPECT_FALSE(faultsOf(HoldKind::edge, held, 0.055e-3).any())
+        << scale << ": " << 1e6 * held.cycle_m << " um, " << 1e3 * held.energy_out_J << " mJ";
+    EXPECT_TRUE(held.touched);
+  }
+}
+
 TEST(TheRowsOfRest, AreCountedByKindAndTheIdealLawsApart) {
   RestFigures figures;
   figures.seconds = 60.0;

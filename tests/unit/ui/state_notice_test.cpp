@@ -211,9 +211,9 @@ TEST_F(StateNoticeTest, AnUndoSaysWhoseCutCameBackAndARedoWhichWasMadeAgain) {
   LoopState undone = cut;
   undone.removed[1][0] = 0;
   EXPECT_EQ(undoneWords(cut, undone, exercise_, 0.5).toStdString(),
-            "Brought back: Right arm, 150 mm\u00b3 of Bone.");
+            "Brought back: Right arm, 150 mm\u00b3.");
   EXPECT_EQ(undoneWords(undone, cut, exercise_, 0.5).toStdString(),
-            "Cut again: Right arm, 150 mm\u00b3 of Bone.");
+            "Cut again: Right arm, 150 mm\u00b3.");
   EXPECT_TRUE(undoneWords(cut, cut, exercise_, 0.5).isEmpty());
 }
 

@@ -1,0 +1,177 @@
+#include "exercise/true_tissues.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace trephine {
+
+namespace {
+
+// Neighbours that stand for what lies on one side of a voxel, in voxels from its centre.
+constexpr double kNear = 1.0, kFar = 2.3, kAside = 1.2;
+constexpr int kReach = 2;
+// Air: what is enclosed does not look through it at its wall.
+constexpr int kOutside_HU = -300;
+// A wall is looked for so far, and in each direction every so many of the finest spacing.
+constexpr double kWall_mm = 160.0, kWallStep = 0.9;
+
+// What lies within the skull of the built-in head.
+bool isInSkull(PhantomTissue tissue) {
+  return tissue >= PhantomTissue::dura && tissue <= PhantomTissue::ventricle;
+}
+
+// The middles of the faces, edges and corners of a cube, as unit vectors.
+const std::array<Vec3, 26>& around() {
+  static const std::array<Vec3, 26> directions = [] {
+    std::array<Vec3, 26> made;
+    std::size_t n = 0;
+    for (int c = 0; c < 27; ++c) {
+      if (c == 13) continue;
+      made[n++] = glm::normalize(Vec3(c % 3 - 1, c / 3 % 3 - 1, c / 9 - 1));
+    }
+    return made;
+  }();
+  return directions;
+}
+
+}  // namespace
+
+TrueTissues::TrueTissues(const TissueSet& tissues, const Volume& before, const LabelMap* labels,
+                         const std::string& case_source)
+    : table_(tissueTable(tissues)), before_(before), labels_(labels) {
+  within_.fill(-1);
+  for (std::size_t t = 0; t < std::size_t(table_.count); ++t) {
+    for (std::size_t by = 0; by < std::size_t(table_.count); ++by) {
+      if (tissues.tissues[t].within == tissues.tissues[by].id) within_[t] = int(by);
+    }
+  }
+  if (labels_ && labels_->labels.size() != before.hu.size()) labels_ = nullptr;
+  to_mm_ = before.geometry.voxelToPatient();
+  if (const auto name = phantomNamed(case_source)) {
+    const auto geometry = phantomGeometry(*name);
+    const auto truth = phantomTruth(*name);
+    if (geometry && truth && *geometry == before.geometry) formula_ = *truth;
+  }
+}
+
+int TrueTissues::at(std::size_t voxel) const {
+  const int hu = before_.hu[voxel];
+  if (hu == kRemovedHu) return kUnnamed;
+  const int label = labels_ ? labels_->labels[voxel] : 0;
+  if (const int of = ofLabel(hu, label); of >= 0) return of;
+  const Index3 at = before_.geometry.indicesOf(voxel);
+  return formula_ ? ofFormula(at) : ofHu(at);
+}
+
+// Of several with that label, the one whose range holds the HU or is nearest to it.
+int TrueTissues::ofLabel(int hu, int label) const {
+  if (label == 0) return -1;
+  int nearest = -1, least = 0;
+  for (int t = 0; t < table_.count; ++t) {
+    const TissueClass& tissue = table_.classes[std::size_t(t)];
+    if (tissue.label != label) continue;
+    const int beside = std::max({0, tissue.hu_min - hu, hu - tissue.hu_max});
+    if (nearest < 0 || beside < least) {
+      nearest = t;
+      least = beside;
+    }
+  }
+  return nearest;
+}
+
+int TrueTissues::ofFormula(const Index3& voxel) const {
+  const PhantomTissue truth =
+      (*formula_)(Vec3(to_mm_ * glm::dvec4(voxel[0], voxel[1], voxel[2], 1.0)));
+  if (truth == PhantomTissue::air) return kUnnamed;
+  const int of = classify(table_, phantomHu(truth));
+  return of >= 0 && within_[std::size_t(of)] >= 0 && !isInSkull(truth) ? kUnnamed : of;
+}
+
+int TrueTissues::ofHu(const Index3& voxel) const {
+  const GridGeometry& g = before_.geometry;
+  const double hu = before_.at(voxel[0], voxel[1], voxel[2]);
+  // The scan's end goes on beyond it.
+  const auto huAt = [&](int i, int j, int k) {
+    return double(before_.at(std::clamp(voxel[0] + i, 0, g.size[0] - 1),
+                             std::clamp(voxel[1] + j, 0, g.size[1] - 1),
+                             std::clamp(voxel[2] + k, 0, g.size[2] - 1)));
+  };
+  Vec3 rise(0.0);
+  double mean = 0.0;
+  for (int n = 0; n < 27; ++n) {
+    const int i = n % 3 - 1, j = n / 3 % 3 - 1, k = n / 9 - 1;
+    const double there = huAt(i, j, k);
+    mean += there / 27.0;
+    if (n != 13) rise += (there - hu) / double(i * i + j * j + k * k) * Vec3(i, j, k);
+  }
+  double low = hu, high = hu;
+  if (const double steep = glm::length(rise); steep > 0.0) {
+    rise /= steep;
+    double sum[2] = {0.0, 0.0};
+    int count[2] = {0, 0};
+    for (int k = -kReach; k <= kReach; ++k) {
+      for (int j = -kReach; j <= kReach; ++j) {
+        for (int i = -kReach; i <= kReach; ++i) {
+          const Vec3 to(i, j, k);
+          const double along = glm::dot(to, rise);
+          if (std::abs(along) < kNear || std::abs(along) > kFar) continue;
+          const Vec3 aside = to - along * rise;
+          if (glm::dot(aside, aside) > kAside * kAside) continue;
+          sum[along > 0.0] += huAt(i, j, k);
+          ++count[along > 0.0];
+        }
+      }
+    }
+    if (count[0] > 0 && count[1] > 0) {
+      low = sum[0] / count[0];
+      high = sum[1] / count[1];
+    }
+  }
+  int of = -1;
+  if (high - low >= kEdge_HU) {
+    const int own = classify(table_, hu);
+    if (hu - low > high - hu) {
+      of = classify(table_, std::round(high));
+    } else if (own == classify(table_, std::round(low))) {
+      of = own;
+    }
+  } else {
+    // A wall that is thinner than its neighbourhood keeps its own.
+    of = classify(table_, std::abs(mean - hu) < kEdge_HU ? std::round(mean) : hu);
+  }
+  if (of < 0) return kUnnamed;
+  const int by = within_[std::size_t(of)];
+  return by >= 0 && !isEnclosed(voxel, by) ? kUnnamed : of;
+}
+
+bool TrueTissues::isEnclosed(const Index3& voxel, int by) const {
+  const GridGeometry& g = before_.geometry;
+  const TissueClass& wall = table_.classes[std::size_t(by)];
+  const double step_mm = kWallStep * std::min({g.spacing_mm.x, g.spacing_mm.y, g.spacing_mm.z});
+  const int steps = int(kWall_mm / step_mm);
+  const int all = int(around().size());
+  const int needed = int(std::ceil(kEnclosed * all));
+  int met = 0, missed = 0;
+  for (const Vec3& direction : around()) {
+    const Vec3 step = direction * step_mm / g.spacing_mm;
+    Vec3 at = Vec3(voxel[0], voxel[1], voxel[2]) + 0.5;
+    bool is_wall = false;
+    for (int n = 0; n < steps && !is_wall; ++n) {
+      at += step;
+      const int i = int(std::floor(at.x)), j = int(std::floor(at.y)), k = int(std::floor(at.z));
+      if (!g.contains(i, j, k)) break;
+      const std::size_t index = g.indexOf(i, j, k);
+      const int hu = before_.hu[index];
+      if (hu < kOutside_HU) break;
+      is_wall = hu >= wall.hu_min && hu <= wall.hu_max &&
+                (wall.label == 0 || (labels_ && labels_->labels[index] == wall.label));
+    }
+    is_wall ? ++met : ++missed;
+    if (met >= needed) return true;
+    if (missed > all - needed) return false;
+  }
+  return false;
+}
+
+}  // namespace trephine
