@@ -8,8 +8,10 @@ namespace trephine {
 
 namespace {
 
-// Neighbours that stand for what lies on one side of a voxel, in voxels from its centre.
-constexpr double kNear = 1.0, kFar = 2.3, kAside = 1.2;
+// Neighbours that stand for what lies on one side of a voxel, in voxels from its centre: those from
+// kFar on; and nearer ones, between which the HU rise where the voxel itself lies on the edge, by
+// this share of the whole. Between two edges, in a layer, they hardly do.
+constexpr double kNear = 0.7, kFar = 1.3, kFarthest = 2.3, kAside = 1.2, kRise = 0.15;
 constexpr int kReach = 2;
 // Air: what is enclosed does not look through it at its wall.
 constexpr int kOutside_HU = -300;
@@ -105,31 +107,32 @@ int TrueTissues::ofHu(const Index3& voxel) const {
     mean += there / 27.0;
     if (n != 13) rise += (there - hu) / double(i * i + j * j + k * k) * Vec3(i, j, k);
   }
-  double low = hu, high = hu;
+  // The mean HU on both sides, near and far.
+  struct Side {
+    double sum = 0.0;
+    int count = 0;
+    void add(double there) { sum += there, ++count; }
+    double mean(double otherwise) const { return count > 0 ? sum / count : otherwise; }
+  };
+  Side near[2], far[2];
   if (const double steep = glm::length(rise); steep > 0.0) {
     rise /= steep;
-    double sum[2] = {0.0, 0.0};
-    int count[2] = {0, 0};
     for (int k = -kReach; k <= kReach; ++k) {
       for (int j = -kReach; j <= kReach; ++j) {
         for (int i = -kReach; i <= kReach; ++i) {
           const Vec3 to(i, j, k);
-          const double along = glm::dot(to, rise);
-          if (std::abs(along) < kNear || std::abs(along) > kFar) continue;
+          const double along = glm::dot(to, rise), off = std::abs(along);
           const Vec3 aside = to - along * rise;
-          if (glm::dot(aside, aside) > kAside * kAside) continue;
-          sum[along > 0.0] += huAt(i, j, k);
-          ++count[along > 0.0];
+          if (off < kNear || off > kFarthest || glm::dot(aside, aside) > kAside * kAside) continue;
+          (off < kFar ? near : far)[along > 0.0].add(huAt(i, j, k));
         }
       }
     }
-    if (count[0] > 0 && count[1] > 0) {
-      low = sum[0] / count[0];
-      high = sum[1] / count[1];
-    }
   }
+  const double low = far[0].mean(hu), high = far[1].mean(hu);
+  const double here = near[1].mean(hu) - near[0].mean(hu);
   int of = -1;
-  if (high - low >= kEdge_HU) {
+  if (here >= std::max(kEdge_HU, kRise * (high - low))) {
     const int own = classify(table_, hu);
     if (hu - low > high - hu) {
       of = classify(table_, std::round(high));

@@ -6,8 +6,8 @@
 // mostly of, or not at all. In this order:
 // 1. A label that a tissue is restricted to says it.
 // 2. Of a built-in case, the formula that painted it says what lies at the voxel's centre.
-// 3. Else HU. Where they differ by kEdge_HU across the voxel, along their gradient, it lies at an
-//    edge: mostly of the upper side, it is of that side's tissue; mostly of the lower, of its own
+// 3. Else HU. Where they rise by kEdge_HU across the voxel, along their gradient, it lies at an
+//    edge, unless it is a layer between two: mostly of the upper side, it is of that side's tissue; mostly of the lower, of its own
 //    where that is the lower side's too, else of none. (The rule by which the picture tells tissue
 //    from partial volume.) Elsewhere its neighbours' mean takes the noise away.
 // 4. A tissue that is enclosed by another (Tissue::within) only where that one is met in at least

@@ -1,4 +1,6 @@
-// The controller `bounded`: stable on any arm at any setting, and silent where nothing is wrong.
+// The controller `bounded`: keeps an arm from shaking and from giving out energy, and is silent where
+// nothing is wrong. On which arms, hands and tissues it does, and in how many of them not:
+// CONTROLLERS.md.
 // Its parts, in the order of a tick, with equations, sources and what each gave: CONTROLLERS.md.
 #pragma once
 

@@ -27,13 +27,17 @@ bool interpolates(const ImportRequest& request) {
   return answerTo(request.answers, code::kThickSlices) == "interpolate";
 }
 
-// How many voxels come out of it.
-std::size_t voxelsOf(const SeriesReport& series, const ImportRequest& request) {
+// What comes out of it: before slices are interpolated, into how many steps, and the voxels in all.
+struct Outcome {
+  int steps = 1;
+  std::size_t voxels = 0;
+};
+Outcome outcomeOf(const SeriesReport& series, const ImportRequest& request) {
   const GridGeometry& grid = series.geometry;
   const VoxelBox box = request.crop.value_or(VoxelBox{{0, 0, 0}, grid.size});
   const GridGeometry out = outcomeOf(grid, box, request.reduction);
-  return interpolates(request) ? withThinSlices(out, stepsBetweenSlices(out)).voxelCount()
-                               : out.voxelCount();
+  const int steps = interpolates(request) ? stepsBetweenSlices(out) : 1;
+  return {steps, steps > 1 ? withThinSlices(out, steps).voxelCount() : out.voxelCount()};
 }
 
 Json findingJson(const Finding& finding) {
@@ -125,12 +129,13 @@ const char* verdictName(Verdict verdict) {
 }
 
 double readingMb(const SeriesReport& series, const ImportRequest& request) {
-  const bool copied = request.reduction > 1 || interpolates(request);
-  return series.reading_mb + (copied ? voxelsMb(voxelsOf(series, request)) : 0.0);
+  const Outcome out = outcomeOf(series, request);
+  const bool copied = request.reduction > 1 || out.steps > 1;
+  return series.reading_mb + (copied ? voxelsMb(out.voxels) : 0.0);
 }
 
 double memoryMb(const SeriesReport& series, const ImportRequest& request) {
-  return kWindow_mb + std::max(readingMb(series, request), openedMb(voxelsOf(series, request)));
+  return kWindow_mb + std::max(readingMb(series, request), openedMb(outcomeOf(series, request).voxels));
 }
 
 Json toJson(const ImportReport& report, Identity identity) {

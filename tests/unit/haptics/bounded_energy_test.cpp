@@ -59,6 +59,50 @@ TEST(BoundedController, TakesWhatTheSpringHoldsForPutInWhereItBeginsInContact) {
       << "the force is there at once: the limiter lets it in slowly";
 }
 
+// An arm that rests 7 counts deep, and has as much counted as given out as an encoder cannot see.
+struct Drained {
+  double stored_J = 0.0, drained_J = 0.0, soon_J = 0.0, late_J = 0.0;  // the credit, but for stored
+
+  explicit Drained(int touch_version) {
+    constexpr double kK_N_per_m = 900.0;
+    const double deep_m = 7 * kOmniStep_m;
+    stored_J = 0.5 * kK_N_per_m * deep_m * deep_m;
+    BoundedController controller(arm(0.045, kOmniStep_m), kT, touch_version);
+    ControllerInput in;
+    in.touching = true;
+    const auto tick = [&](double x, double rotation_work_J) {
+      in.velocity_m_s.x = (x - in.position_m.x) / kT;
+      in.position_m.x = x;
+      in.rotation_work_J = rotation_work_J;
+      const Impedance allowed = controller.limit({1.0, kK_N_per_m});
+      in.demanded_N.x = -kK_N_per_m * x - in.velocity_m_s.x;
+      in.rendered = springAndDamper({-allowed.stiffness * x, 0.0, 0.0}, allowed.stiffness,
+                                    allowed.damping);
+      in.last_sent_N = controller.bound(in);
+    };
+    for (int count = 0; count < 7; ++count) {
+      for (int i = 0; i < 30; ++i) tick(-count * kOmniStep_m, 0.0);
+    }
+    for (int i = 0; i < 300; ++i) tick(-deep_m, 0.0);
+    for (int i = 0; i < 40; ++i) tick(-deep_m, -1e-6);
+    drained_J = controller.credit_J();
+    for (int i = 0; i < 100; ++i) tick(-deep_m, 0.0);
+    soon_J = controller.credit_J();
+    for (int i = 0; i < 2000; ++i) tick(-deep_m, 0.0);
+    late_J = controller.credit_J();
+  }
+};
+
+TEST(BoundedController, GetsBackAtRestTheCreditThatCountsUsedUp) {
+  const Drained now(kTouchVersion), before(10);
+  ASSERT_LT(before.drained_J, 0.8 * before.stored_J);
+  EXPECT_NEAR(before.late_J, before.drained_J, 1e-9) << "it stayed lost";
+  EXPECT_GT(now.soon_J, now.drained_J + 5e-6);
+  EXPECT_LE(now.soon_J, now.drained_J + 0.1 / 0.5 * unseen_J(arm(0.045, kOmniStep_m)) + 1e-12)
+      << "no faster than an encoder hides it in half a second";
+  EXPECT_NEAR(now.late_J, now.stored_J, 0.02 * now.stored_J) << "what the spring holds, no more";
+}
+
 // A tool is turned while its arm stays: the spring that held it at 1 N comes to pull at 2 N.
 struct Turned {
   double least_N = 1e9, alpha = 0.0;

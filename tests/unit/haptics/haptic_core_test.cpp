@@ -35,6 +35,38 @@ TEST(HapticCore, RemovesOnlyWhatMayBeCut) {
   EXPECT_EQ(hashOf(bench.grid), before);
 }
 
+// Into soft tissue, out again the same way: by the elastic law alone.
+struct InAndOut {
+  double in_N = 0.0, out_N = 0.0;  // the greatest push
+
+  explicit InAndOut(bool cuts) {
+    HapticParameters p = oneArm();
+    p.arms[0].tool = *makeTool({.kind = ToolKind::needle, .length_mm = 60.0});
+    p.laws = {LawKind::elastic};
+    p.removal = RemovalKind::work;
+    p.tissues.classes[0] = {{0.0, 384.0, 0.0, 0.0, cuts ? 1e-5 : 1.0}, 200, 3071, 1, 0, 0, 0};
+    Bench bench(p);
+    const auto push_N = [&] { return bench.record.arms[0].demanded_N.z; };
+    for (double z = 8.0; z > -8.0; z -= 0.02) {
+      bench.at({0.3, 0.2, z});
+      in_N = std::max(in_N, push_N());
+    }
+    for (double z = -8.0; z < 8.0; z += 0.02) {
+      bench.at({0.3, 0.2, z});
+      out_N = std::max(out_N, push_N());
+    }
+    EXPECT_EQ(bench.core.journal().removed(0, 0) > 0, cuts);
+  }
+};
+
+TEST(HapticCore, ASharpToolsPushHardlyComesBackOnTheWayOut) {
+  const InAndOut whole(false), cut(true);
+  EXPECT_GT(whole.in_N, 0.3);
+  EXPECT_LT(whole.out_N, 1e-9) << "nothing was cut: nothing comes back";
+  EXPECT_GT(cut.in_N, 0.3);
+  EXPECT_LT(cut.out_N, 0.15 * cut.in_N) << "the sides of what was cut push a little";
+}
+
 TEST(HapticCore, NeverExceedsTheArmsLimit) {
   HapticParameters p = oneArm();
   p.tissues = test::boneTable(1e9, 1e9, 1e9);

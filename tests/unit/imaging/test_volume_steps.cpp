@@ -123,6 +123,11 @@ TEST(ImportMemory, IsThatOfWhatComesOutUnlessReadingItTakesMore) {
   EXPECT_NEAR(memoryMb(series, cropped), kWindow_mb + kExercise_mb + kHeld_mb + 4 * 100.0, 3.0);
   series.reading_mb = 2000.0;
   EXPECT_NEAR(memoryMb(series, half), kWindow_mb + 2025.0, 1e-6) << "and the half itself";
+  ImportRequest thin;
+  thin.answers[code::kThickSlices] = "interpolate";
+  EXPECT_NEAR(readingMb(series, thin), 2000.0, 1e-6) << "slices that are thin already";
+  series.geometry.spacing_mm = {0.5, 0.5, 3.0};
+  EXPECT_NEAR(readingMb(series, thin), 2599.0, 1e-6) << "and all that come out";
 }
 
 TEST_F(VolumeSteps, WhatDoesNotFitTheMemoryIsRefusedInWordsBeforeItIsRead) {

@@ -78,6 +78,41 @@ Recorded record(const std::string& name, const std::string& case_source) {
   return out;
 }
 
+// What was removed in the skull of the built-in head, by its formula; and brain and dura by the
+// HU of their voxels, as they are felt [mm3].
+struct InSkull {
+  double truly_mm3 = 0.0, felt_mm3 = 0.0;
+  explicit InSkull(const Recorded& run) {
+    const PhantomTruth truth = *phantomTruth("cranium");
+    const GridGeometry& g = run.before.geometry;
+    for (const CarveRecord& carve : run.carves) {
+      const Index3 v = g.indicesOf(carve.voxel);
+      const PhantomTissue is = truth(g.toPatient_mm(Vec3(v[0], v[1], v[2])));
+      const std::string felt = run.exercise.tissues.tissues[std::size_t(carve.tissue_class)].id;
+      const double mm3 = g.voxelVolume_mm3();
+      if (is >= PhantomTissue::dura && is <= PhantomTissue::ventricle) truly_mm3 += mm3;
+      if (felt == "brain" || felt == "dura") felt_mm3 += mm3;
+    }
+  }
+};
+
+TEST(ShippedExercises, NameBrainAndDuraInResultsWhereTheyAreAndNowhereElse) {
+  for (const char* name : {"burr-hole", "cranium"}) {
+    const Recorded run = record(name, "");
+    const InSkull expected(run);
+    double brain_mm3 = 0.0, all_mm3 = run.report.done.removed_unnamed_mm3;
+    for (const auto& [tissue, mm3] : run.report.done.removed_mm3) {
+      if (tissue == "brain" || tissue == "dura") brain_mm3 += mm3;
+      all_mm3 += mm3;
+    }
+    std::printf("%-12s brain and dura %.1f mm3, felt as such %.1f mm3\n", name, brain_mm3,
+                expected.felt_mm3);
+    EXPECT_NEAR(brain_mm3, expected.truly_mm3, 1e-6) << name;
+    EXPECT_GT(expected.felt_mm3, expected.truly_mm3 + 20.0) << name << ": by HU alone";
+    EXPECT_NEAR(all_mm3, double(run.carves.size()) * run.before.geometry.voxelVolume_mm3(), 1e-6);
+  }
+}
+
 // What a run's recording says of one arm.
 struct Seen {
   std::string arm;

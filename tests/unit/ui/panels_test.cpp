@@ -503,7 +503,12 @@ TEST_F(PanelTest, AResultSaysWhatWasAskedAndAnOrganThatIsATissueOnce) {
   EXPECT_TRUE(rows.contains("120 mm\u00b3 of 1500.00 mL")) << rows.toStdString();
   // Bone outside of the structure counts to the tissue alone.
   EXPECT_EQ(rows.count("Bone&nbsp;", Qt::CaseInsensitive), 2) << rows.toStdString();
-  EXPECT_TRUE(rows.contains("how dense"));
+  EXPECT_FALSE(rows.contains("Not told apart"));
+  result.unnamed_mm3 = 3.0;
+  page.setResult(result);
+  const QString with_rest = find<QLabel>(page, "resultRows").text();
+  EXPECT_TRUE(with_rest.contains("Not told apart")) << with_rest.toStdString();
+  EXPECT_TRUE(with_rest.contains("at the edge of two tissues"));
   result.goal.clear();
   page.setResult(result);
   EXPECT_TRUE(find<QLabel>(page, "resultGoal").isHidden());
