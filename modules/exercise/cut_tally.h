@@ -39,6 +39,8 @@ class CutTally {
   // a copy of the voxels. True: it has been through, and counts() is what it found.
   bool look(const Volume& now, const VoxelBox& box, const Step& step);
   const CutVoxels& counts() const { return counts_; }
+  // The next look() begins anew, so that the pass that it begins misses nothing of now.
+  void beginAgain() { next_.reset(); }
 
  private:
   int nameOf(std::size_t voxel, int& left);

@@ -54,6 +54,7 @@ TrueTissues::TrueTissues(const TissueSet& tissues, const Volume& before, const L
     const auto geometry = phantomGeometry(*name);
     const auto truth = phantomTruth(*name);
     if (geometry && truth && *geometry == before.geometry) formula_ = *truth;
+    is_head_ = *name == "cranium";
   }
 }
 
@@ -87,7 +88,54 @@ int TrueTissues::ofFormula(const Index3& voxel) const {
       (*formula_)(Vec3(to_mm_ * glm::dvec4(voxel[0], voxel[1], voxel[2], 1.0)));
   if (truth == PhantomTissue::air) return kUnnamed;
   const int of = classify(table_, phantomHu(truth));
-  return of >= 0 && within_[std::size_t(of)] >= 0 && !isInSkull(truth) ? kUnnamed : of;
+  const int by = of >= 0 ? within_[std::size_t(of)] : -1;
+  if (by < 0) return of;
+  // Of the built-in head's skull the formula knows the inside too.
+  const int bone = phantomHu(PhantomTissue::outerTable);
+  const TissueClass& wall = table_.classes[std::size_t(by)];
+  const bool is_bone = truth >= PhantomTissue::outerTable && truth <= PhantomTissue::innerTable;
+  const bool by_skull = is_head_ && !is_bone && bone >= wall.hu_min && bone <= wall.hu_max;
+  return (by_skull ? isInSkull(truth) : isEnclosed(voxel, by)) ? of : kUnnamed;
+}
+
+// `huAt`: by the distance in voxels; `rise`: up their gradient, of any length.
+template <class HuAt>
+int TrueTissues::ofNeighbours(double hu, double mean, const Vec3& rise, const HuAt& huAt) const {
+  // The mean HU on both sides, near and far.
+  struct Side {
+    double sum = 0.0;
+    int count = 0;
+    void add(double there) { sum += there, ++count; }
+    double mean(double otherwise) const { return count > 0 ? sum / count : otherwise; }
+  };
+  Side near[2], far[2];
+  if (const double steep = glm::length(rise); steep > 0.0) {
+    const Vec3 up = rise / steep;
+    for (int k = -kReach; k <= kReach; ++k) {
+      for (int j = -kReach; j <= kReach; ++j) {
+        for (int i = -kReach; i <= kReach; ++i) {
+          const Vec3 to(i, j, k);
+          const double along = glm::dot(to, up), off = std::abs(along);
+          const Vec3 aside = to - along * up;
+          if (off < kNear || off > kFarthest || glm::dot(aside, aside) > kAside * kAside) continue;
+          (off < kFar ? near : far)[along > 0.0].add(huAt(i, j, k));
+        }
+      }
+    }
+  }
+  const double below = near[0].mean(hu), above = near[1].mean(hu);
+  // Where the HU turn back farther on, something else begins there.
+  const double low = std::min(below, far[0].mean(below)), high = std::max(above, far[1].mean(above));
+  const int own = classify(table_, hu);
+  // Over or under both of its sides it is a layer between them: thin bone, a gap.
+  const bool layer = hu > above + kEdge_HU / 2 || hu < below - kEdge_HU / 2;
+  if (layer) return own;
+  if (above - below >= std::max(kEdge_HU, kRise * (high - low))) {
+    if (hu - low > high - hu) return classify(table_, std::round(high));
+    return own == classify(table_, std::round(low)) ? own : -1;
+  }
+  // A wall that is thinner than its neighbourhood keeps its own.
+  return classify(table_, std::abs(mean - hu) < kEdge_HU ? std::round(mean) : hu);
 }
 
 int TrueTissues::ofHu(const Index3& voxel) const {
@@ -100,48 +148,21 @@ int TrueTissues::ofHu(const Index3& voxel) const {
                              std::clamp(voxel[2] + k, 0, g.size[2] - 1)));
   };
   Vec3 rise(0.0);
-  double mean = 0.0;
+  double mean = 0.0, least = hu, most = hu;
   for (int n = 0; n < 27; ++n) {
     const int i = n % 3 - 1, j = n / 3 % 3 - 1, k = n / 9 - 1;
     const double there = huAt(i, j, k);
     mean += there / 27.0;
+    least = std::min(least, there);
+    most = std::max(most, there);
     if (n != 13) rise += (there - hu) / double(i * i + j * j + k * k) * Vec3(i, j, k);
   }
-  // The mean HU on both sides, near and far.
-  struct Side {
-    double sum = 0.0;
-    int count = 0;
-    void add(double there) { sum += there, ++count; }
-    double mean(double otherwise) const { return count > 0 ? sum / count : otherwise; }
-  };
-  Side near[2], far[2];
-  if (const double steep = glm::length(rise); steep > 0.0) {
-    rise /= steep;
-    for (int k = -kReach; k <= kReach; ++k) {
-      for (int j = -kReach; j <= kReach; ++j) {
-        for (int i = -kReach; i <= kReach; ++i) {
-          const Vec3 to(i, j, k);
-          const double along = glm::dot(to, rise), off = std::abs(along);
-          const Vec3 aside = to - along * rise;
-          if (off < kNear || off > kFarthest || glm::dot(aside, aside) > kAside * kAside) continue;
-          (off < kFar ? near : far)[along > 0.0].add(huAt(i, j, k));
-        }
-      }
-    }
-  }
-  const double low = far[0].mean(hu), high = far[1].mean(hu);
-  const double here = near[1].mean(hu) - near[0].mean(hu);
-  int of = -1;
-  if (here >= std::max(kEdge_HU, kRise * (high - low))) {
-    const int own = classify(table_, hu);
-    if (hu - low > high - hu) {
-      of = classify(table_, std::round(high));
-    } else if (own == classify(table_, std::round(low))) {
-      of = own;
-    }
-  } else {
-    // A wall that is thinner than its neighbourhood keeps its own.
-    of = classify(table_, std::abs(mean - hu) < kEdge_HU ? std::round(mean) : hu);
+  const int own = classify(table_, hu);
+  int of = own;
+  // All about it are of one range of HU: there is nothing to tell apart.
+  if (own < 0 || least < table_.classes[std::size_t(own)].hu_min ||
+      most > table_.classes[std::size_t(own)].hu_max) {
+    of = ofNeighbours(hu, mean, rise, huAt);
   }
   if (of < 0) return kUnnamed;
   const int by = within_[std::size_t(of)];
@@ -153,28 +174,30 @@ bool TrueTissues::isEnclosed(const Index3& voxel, int by) const {
   const TissueClass& wall = table_.classes[std::size_t(by)];
   const double step_mm = kWallStep * std::min({g.spacing_mm.x, g.spacing_mm.y, g.spacing_mm.z});
   const int steps = int(kWall_mm / step_mm);
-  const int all = int(around().size());
-  const int needed = int(std::ceil(kEnclosed * all));
   int met = 0, missed = 0;
   for (const Vec3& direction : around()) {
     const Vec3 step = direction * step_mm / g.spacing_mm;
     Vec3 at = Vec3(voxel[0], voxel[1], voxel[2]) + 0.5;
-    bool is_wall = false;
-    for (int n = 0; n < steps && !is_wall; ++n) {
+    for (int n = 0; n < steps; ++n) {
       at += step;
       const int i = int(std::floor(at.x)), j = int(std::floor(at.y)), k = int(std::floor(at.z));
-      if (!g.contains(i, j, k)) break;
+      if (!g.contains(i, j, k)) break;  // nobody knows what is there
       const std::size_t index = g.indexOf(i, j, k);
       const int hu = before_.hu[index];
-      if (hu < kOutside_HU) break;
-      is_wall = hu >= wall.hu_min && hu <= wall.hu_max &&
-                (wall.label == 0 || (labels_ && labels_->labels[index] == wall.label));
+      if (hu >= wall.hu_min && hu <= wall.hu_max &&
+          (wall.label == 0 || (labels_ && labels_->labels[index] == wall.label))) {
+        ++met;
+        break;
+      }
+      if (hu < kOutside_HU || n + 1 == steps) {
+        ++missed;
+        break;
+      }
     }
-    is_wall ? ++met : ++missed;
-    if (met >= needed) return true;
-    if (missed > all - needed) return false;
+    if (missed > int((1.0 - kEnclosed) * double(around().size()))) return false;
   }
-  return false;
+  const bool all_known = met + missed == int(around().size());
+  return all_known ? met >= kEnclosed * double(met + missed) : met >= kLeastMet && missed == 0;
 }
 
 }  // namespace trephine

@@ -7,12 +7,19 @@
 // 1. A label that a tissue is restricted to says it.
 // 2. Of a built-in case, the formula that painted it says what lies at the voxel's centre.
 // 3. Else HU. Where they rise by kEdge_HU across the voxel, along their gradient, it lies at an
-//    edge, unless it is a layer between two: mostly of the upper side, it is of that side's tissue; mostly of the lower, of its own
-//    where that is the lower side's too, else of none. (The rule by which the picture tells tissue
-//    from partial volume.) Elsewhere its neighbours' mean takes the noise away.
+//    edge, unless it is a layer between two: mostly of the upper side, it is of that side's
+//    tissue; mostly of the lower, of its own where that is the lower side's too, else of none.
+//    (The rule by which the picture tells tissue from partial volume.) A layer that is over or
+//    under both of its sides, as thin bone, keeps its own. Elsewhere its neighbours' mean takes
+//    the noise away.
 // 4. A tissue that is enclosed by another (Tissue::within) only where that one is met in at least
 //    kEnclosed of 26 directions, with no air before it: HU like a brain's are no brain outside a
-//    skull.
+//    skull. Where directions leave the scan first, all others must meet it, and kLeastMet of them:
+//    beside a skull it is about half of them, at most.
+//
+// What a CT does not hold is not told: soft layers thinner than three voxels, as a membrane, are
+// taken for what lies about them, and noise over some 30 HU for tissue. A tissue whose encloser is
+// nowhere in the case is nowhere either.
 #pragma once
 
 #include <cstdint>
@@ -31,6 +38,7 @@ class TrueTissues {
   static constexpr int kUnnamed = -1;
   static constexpr double kEdge_HU = 60.0;
   static constexpr double kEnclosed = 0.9;
+  static constexpr int kLeastMet = 16;
 
   // `tissues`: placed in the case. `before`: its voxels, as they are while nothing is cut;
   // `labels`: those that the tissues were placed in, of its grid, or null. Both outlive it.
@@ -45,6 +53,8 @@ class TrueTissues {
   int ofLabel(int hu, int label) const;
   int ofFormula(const Index3& voxel) const;
   int ofHu(const Index3& voxel) const;
+  template <class HuAt>
+  int ofNeighbours(double hu, double mean, const Vec3& rise, const HuAt& huAt) const;
   bool isEnclosed(const Index3& voxel, int by) const;
 
   TissueTable table_;
@@ -52,6 +62,7 @@ class TrueTissues {
   const Volume& before_;
   const LabelMap* labels_;
   std::optional<PhantomTruth> formula_;
+  bool is_head_ = false;  // the built-in one
   Mat4 to_mm_{1.0};
 };
 

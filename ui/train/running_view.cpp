@@ -179,6 +179,7 @@ void RunningView::showRemoved(const Session& session, bool all) {
   if (!tally_) return;
   constexpr qint64 kMost_ms = 200;
   bool whole = false;
+  if (all) tally_->cut.beginAgain();
   do {
     whole = tally_->cut.look(mirror.volume(), mirror.touched(), {});
   } while (all && !whole && removed_clock_.elapsed() < kMost_ms);

@@ -109,7 +109,11 @@ std::vector<HoldResult> hold(HapticParameters parameters, const Volume& volume,
       rig.moveHand(i, at_m);
     }
     const TickRecord& record = rig.step();
-    if (double(n) * T < judged_s) continue;
+    if (double(n) * T < judged_s) {
+      if (kind != HoldKind::edge) continue;
+      for (std::size_t i = 0; i < paths.size(); ++i) rig.countTrueEnergyAnew(i);
+      continue;
+    }
     for (std::size_t i = 0; i < paths.size(); ++i) {
       const ArmRecord& arm = record.arms[i];
       results[i].touched = results[i].touched || arm.demanded_N != Vec3(0.0);

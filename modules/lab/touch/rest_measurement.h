@@ -17,7 +17,8 @@
 //   cycle       what is left of the arm's true position above 2 Hz (less its centred mean over
 //               0.5 s), peak to peak over the minute: over 20 um and over a count of the encoder;
 //   energy      the most that the arm had ever given out, net, as a session reports it: over 0.2
-//   mJ; at an edge, where it slides, on where the arm truly was;
+//   mJ; at an edge, where it slides, on where the arm truly was and from then on: what press and
+//   slide put in hides nothing;
 // and of the others the same beyond the motion itself (less its centred 0.1 s mean, twice), at the
 // bars of a cell under a moving hand (stability_cell.h) and as there where the arm truly was: a
 // count that is passed under force adds up to k q^2 that nobody gave out.

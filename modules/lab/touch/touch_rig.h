@@ -42,6 +42,10 @@ class TouchRig {
   // on where the arm truly was.
   double energyOut_J(std::size_t arm) const { return arms_[arm].most_out_J; }
   double trueEnergyOut_J(std::size_t arm) const { return arms_[arm].most_truly_out_J; }
+  // From now on: what was put in before hides nothing.
+  void countTrueEnergyAnew(std::size_t arm) {
+    arms_[arm].truly_out_J = arms_[arm].most_truly_out_J = 0.0;
+  }
   std::uint64_t tick() const { return input_.tick; }
   const HapticCore& core() const { return core_; }
   const Grid& grid() const { return grid_; }

@@ -19,18 +19,19 @@ constexpr int kTissue_hu = 226;
 // A channel over the top of the shell, straight from above.
 struct Channel {
   Vec3 along, aside_mm;
-  double deep_mm, speed_mm_s;
+  double deep_mm, length_mm;
 
   explicit Channel(int stroke) {
     StrokeDice dice(stroke);
     along = dice.heading();
-    aside_mm = dice.between(0.0, 4.0) * dice.heading();
+    aside_mm = dice.heading();
+    aside_mm *= dice.between(0.0, 4.0);
     deep_mm = dice.between(1.0, 2.5);
-    speed_mm_s = dice.between(6.0, 12.0);
+    length_mm = dice.between(12.0, 24.0);
   }
   Pose pose_mm(double t_s, double duration_s) const {
     const Vec3& a = EllipsoidShell().half_axes_mm;
-    const Vec3 at = aside_mm + (speed_mm_s * (t_s - 0.5 * duration_s)) * along;
+    const Vec3 at = aside_mm + (length_mm * (t_s / duration_s - 0.5)) * along;
     const double x = at.x / a.x, y = at.y / a.y;
     const double high = std::sqrt(std::max(0.0, 1.0 - x * x - y * y));
     return {{at.x, at.y, a.z * high - deep_mm}, Quat(1, 0, 0, 0)};

@@ -40,13 +40,15 @@ Quat about(const Vec3& axis, double angle) {
 
 // Into the shell's top at a slant, along it and out again, the tool leaning and turning.
 struct ObliqueStroke {
-  Vec3 along, aside_mm;
+  Vec3 along, leans_to, aside_mm;
   double length_mm, deep_mm, lean, sway, sways;
 
   explicit ObliqueStroke(int stroke) {
     StrokeDice dice(stroke);
     along = dice.heading();
-    aside_mm = dice.between(0.0, 4.0) * dice.heading();
+    leans_to = dice.heading();
+    aside_mm = dice.heading();
+    aside_mm *= dice.between(0.0, 4.0);
     length_mm = dice.between(12.0, 28.0);
     deep_mm = dice.between(3.0, 7.0);
     lean = dice.between(0.1, 0.7);
@@ -58,7 +60,7 @@ struct ObliqueStroke {
     const double deep = deep_mm * std::sin(3.14159265358979 * part) - 1.0;
     const Vec3 at = aside_mm + (length_mm * (part - 0.5)) * along;
     return {{at.x, at.y, top_mm - deep},
-            about({-along.y, along.x, 0.0}, lean + sway * std::sin(sways * part))};
+            about({-leans_to.y, leans_to.x, 0.0}, lean + sway * std::sin(sways * part))};
   }
 };
 
@@ -113,8 +115,8 @@ TradeRows tradePoints(ToolKind kind, const std::vector<int>& counts, const Trade
       wrong[c].force.push_back(
           rmsError_percent(one->whole.demanded_N, reference->whole.demanded_N));
       wrong[c].volume.push_back(
-          100.0 * (reference->removed > 0.0 ? std::abs(one->removed / reference->removed - 1.0)
-                                            : 1.0));
+          reference->removed > 0.0 ? 100.0 * std::abs(one->removed / reference->removed - 1.0)
+                                   : (one->removed > 0.0 ? 100.0 : 0.0));
       if (n == 0) wrong[c].tick_ns = one->whole.tick_ns;
     }
   }
@@ -145,10 +147,12 @@ TradeRows tradeForceAt(const TradesOptions& options, const Progress& progress) {
   Grid grid(block(options.grid, 49.2));
   const TissueTable tissues = tradeTissue(226, false, 1.0);
   const double b = tissues.classes[0].damping_Ns_per_m;
+  const double thick_m = makeBlade(kLength_m, 64).point_inset_m;
   std::vector<double> wrong[std::size(kForceAtNames)], costs_ns(std::size(kForceAtNames), 0.0);
   for (int stroke = 0; stroke < options.strokes; ++stroke) {
     StrokeDice dice(options.first_stroke + stroke);
-    const Vec3 velocity_m_s = dice.between(5e-3, 20e-3) * dice.heading();
+    Vec3 velocity_m_s = dice.heading();
+    velocity_m_s *= dice.between(5e-3, 14e-3);
     const Vec3 across = dice.heading();  // the axis about which it turns
     const Vec3 ahead(-across.y, across.x, 0.0);
     const double deep_m = dice.between(5e-3, 10e-3), turn_rad_per_s = dice.between(1.0, 3.0);
@@ -159,24 +163,26 @@ TradeRows tradeForceAt(const TradesOptions& options, const Progress& progress) {
       return Pose{1000.0 * (velocity_m_s * (t_s - half_s) + Vec3(0.0, 0.0, -deep_m)),
                   about(across, angle(t_s))};
     };
-    // -(b / L) integral from 0 to s of (v + omega x u r) dr, s where the blade leaves the tissue.
+    // -(b / L) integral from 0 to s of (v + omega x u r) dr, s where the blade leaves the tissue,
+    // which its points feel as far as it is thick.
     std::vector<Vec3> exact_N;
     for (std::size_t n = 0; n < ticks; ++n) {
       const double a = angle(double(n) * kTradePeriod_s);
       const Vec3 along = std::cos(a) * Vec3(0.0, 0.0, 1.0) - std::sin(a) * ahead;
       const Vec3 turning = glm::cross(turn_rad_per_s * across, along);
-      const double s = std::min(kLength_m, deep_m / std::cos(a));
+      const double s = std::min(kLength_m, (deep_m + thick_m) / std::cos(a));
       exact_N.push_back(-(b / kLength_m) * (velocity_m_s * s + turning * (0.5 * s * s)));
     }
-    exact_N[0] = Vec3(0.0);  // the first sample has no velocity yet
     for (std::size_t k = 0; k < std::size(kForceAtNames); ++k) {
       const HapticParameters parameters =
           tradeParameters(makeBlade(kLength_m, 64), tissues, {LawKind::viscous},
                           kForceAtNames[k].second, kTradePeriod_s);
-      const std::optional<StrokeRun> run =
+      std::optional<StrokeRun> run =
           leastCost([&] { return runStroke(parameters, grid, ticks, pose_mm, false, progress); },
                     stroke == 0 ? kTimes : 1);
       if (!run) return tradesCancelled();
+      // The first sample still has the velocity of the way there.
+      run->demanded_N[0] = exact_N[0];
       wrong[k].push_back(rmsError_percent(run->demanded_N, exact_N));
       if (stroke == 0) costs_ns[k] = run->tick_ns;
     }

@@ -30,7 +30,8 @@ struct HeldStroke {
   explicit HeldStroke(int stroke) {
     StrokeDice dice(stroke);
     along = dice.heading();
-    aside_m = dice.between(0.0, 2e-3) * dice.heading();
+    aside_m = dice.heading();
+    aside_m *= dice.between(0.0, 2e-3);
     deep_mm = dice.between(1.5, 4.0);
     length_mm = dice.between(10.0, 25.0);
     hand_stiffness = dice.between(150.0, 600.0);

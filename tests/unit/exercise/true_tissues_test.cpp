@@ -6,10 +6,13 @@
 #include <cmath>
 #include <initializer_list>
 #include <map>
+#include <utility>
+#include <vector>
 
 #include "base/system.h"
 #include "exercise/cut_tally.h"
 #include "support.h"
+#include "tissue/tissue_edits.h"
 
 namespace trephine {
 namespace {
@@ -104,6 +107,77 @@ TEST(TrueTissues, AnEdgeIsOfTheSideThatItIsMostlyOfOrOfNone) {
   EXPECT_GT(bone, 1000);
   EXPECT_GT(none, 1000);
   EXPECT_EQ(other, 0);
+}
+
+// Layers along x, from a voxel on: sharp, without noise.
+Volume layers(const std::vector<std::pair<int, int>>& from_hu) {
+  GridGeometry g;
+  g.size = {40, 12, 12};
+  Volume volume{g, Voxels(g.voxelCount())};
+  for (std::size_t v = 0; v < volume.hu.size(); ++v) {
+    for (const auto& [from, hu] : from_hu) {
+      if (g.indicesOf(v)[0] >= from) volume.hu[v] = std::int16_t(hu);
+    }
+  }
+  return volume;
+}
+
+TEST(TrueTissues, ThinBoneIsBoneWhateverLiesBehindIt) {
+  TissueSet set = cranium();
+  for (Tissue& tissue : set.tissues) tissue.within.clear();
+  for (const int before : {-1000, -80, 60}) {
+    for (const int behind : {35, -80, 60}) {
+      for (const int thick : {1, 2, 3, 4}) {
+        const Volume ct = layers({{0, before}, {20, 900}, {20 + thick, behind}});
+        const TrueTissues tissues(set, ct, nullptr, "");
+        for (int i = 20; i < 20 + thick; ++i) {
+          EXPECT_EQ(tissues.at(ct.geometry.indexOf(i, 6, 6)), kBone)
+              << thick << " voxels between " << before << " and " << behind << " HU, the "
+              << i - 19 << "th";
+        }
+      }
+    }
+  }
+}
+
+// A scan of half a head, from its middle on.
+TEST(TrueTissues, BrainIsBrainInAScanThatHoldsAPartOfTheSkull) {
+  const Volume whole = head();
+  Volume half;
+  half.geometry = whole.geometry;
+  half.geometry.size[2] /= 2;
+  half.hu.assign(whole.hu.begin() + std::ptrdiff_t(half.geometry.voxelCount()), whole.hu.end());
+  half.geometry.origin_mm.z += half.geometry.size[2] * half.geometry.spacing_mm.z;
+  const TrueTissues tissues(cranium(), half, nullptr, "");
+  int brain = 0, named = 0, outside = 0;
+  for (std::size_t v = 0; v < half.hu.size(); ++v) {
+    const double r = glm::length(place(half, v));
+    const int of = tissues.at(v);
+    if (r < kBrainTo_mm - 2.0) ++brain, named += of == kBrain;
+    if (r > kBoneTo_mm + 0.2) outside += of == kBrain || of == kDura;
+  }
+  EXPECT_GT(brain, 20000);
+  EXPECT_GE(named, 0.95 * brain);
+  EXPECT_EQ(outside, 0);
+}
+
+TEST(TrueTissues, WhatEnclosesInABuiltInAbdomenIsNoSkull) {
+  const GridGeometry g = *phantomGeometry("abdomen");
+  const PhantomTruth truth = *phantomTruth("abdomen");
+  Volume ct{g, Voxels(g.voxelCount(), 0)};
+  std::size_t kidney = 0;
+  for (std::size_t v = 0; v < ct.hu.size(); ++v) {
+    const bool is = truth(place(ct, v)) == PhantomTissue::kidney;
+    ct.hu[v] = is ? 120 : 40;
+    if (is && kidney == 0) kidney = v;
+  }
+  TissueSet set = startingSet("two");
+  set.tissues[0].hu_min = 100;
+  set.tissues[0].hu_max = 200;
+  set.tissues[1].hu_min = 0;
+  set.tissues[1].hu_max = 90;
+  set.tissues[0].within = set.tissues[1].id;
+  EXPECT_EQ(TrueTissues(set, ct, nullptr, "phantom:abdomen").at(kidney), 0);
 }
 
 TEST(TrueTissues, ALabelSaysExactlyWhateverTheHu) {
