@@ -64,7 +64,7 @@ struct StrokeErrors {
   double stated = 0.0, median = 0.0, most = 0.0;
 };
 StrokeErrors overStrokes(std::vector<double> errors);
-// "the 90th percentile of 24 random strokes".
+// "the 90th percentile of 12 random strokes".
 std::string strokesWords(int strokes);
 
 // RMS |a - b| over RMS |b|, in percent; 0 where b is nothing and a is too, else 100.

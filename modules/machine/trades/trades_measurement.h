@@ -66,7 +66,7 @@ struct TradesOptions {
   std::vector<double> rates_hz{250.0, 500.0, 1000.0, 2000.0, 4000.0, 10000.0, 20000.0};
   int grid = 256;         // voxels along an edge of 49.2 mm, a multiple of 4, 32 to 512
   double stroke_s = 2.0;  // 0.2 to 20
-  int strokes = 24;       // 1 to 1000, at random (trade_stroke.h), from
+  int strokes = 12;       // 1 to 1000, at random (trade_stroke.h), from
   int first_stroke = 0;   // this number on
   // Voxels, 0.1 to 8; none: the rays are left out.
   std::vector<double> ray_distances{0.25, 0.5, 0.75, 1.0, 2.0};
