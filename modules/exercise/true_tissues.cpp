@@ -125,7 +125,8 @@ int TrueTissues::ofNeighbours(double hu, double mean, const Vec3& rise, const Hu
   }
   const double below = near[0].mean(hu), above = near[1].mean(hu);
   // Where the HU turn back farther on, something else begins there.
-  const double low = std::min(below, far[0].mean(below)), high = std::max(above, far[1].mean(above));
+  const double low = std::min(below, far[0].mean(below)),
+               high = std::max(above, far[1].mean(above));
   const int own = classify(table_, hu);
   // Over or under both of its sides it is a layer between them: thin bone, a gap.
   const bool layer = hu > above + kEdge_HU / 2 || hu < below - kEdge_HU / 2;

@@ -1,9 +1,9 @@
 // What each voxel of a case is made of, as far as its CT and its labels tell: for results, live
 // tallies and summaries, which must not name what is not there.
 //
-// Touch goes by each voxel's own HU and label (classify), so that the border between fat and bone is
-// felt as whatever tissue has the HU half-way. Here such a voxel is named after the side that it is
-// mostly of, or not at all. In this order:
+// Touch goes by each voxel's own HU and label (classify), so that the border between fat and bone
+// is felt as whatever tissue has the HU half-way. Here such a voxel is named after the side that it
+// is mostly of, or not at all. In this order:
 // 1. A label that a tissue is restricted to says it.
 // 2. Of a built-in case, the formula that painted it says what lies at the voxel's centre.
 // 3. Else HU. Where they rise by kEdge_HU across the voxel, along their gradient, it lies at an

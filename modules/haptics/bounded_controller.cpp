@@ -309,7 +309,8 @@ Vec3 BoundedController::render(const ControllerInput& in, const Ahead& at) {
     b = std::max(b, kLeastDamping * critical);
     double share = 1.0;
     if (!(parts_ & kPartLearned)) {
-      share = before_11_ ? 0.0 : kUnfeltLearnt * std::min(1.0, (1.0 - stiffness_.value) / kAllLearnt);
+      share =
+          before_11_ ? 0.0 : kUnfeltLearnt * std::min(1.0, (1.0 - stiffness_.value) / kAllLearnt);
     }
     b = std::max(b, share * std::min(damping_.value * most_.damping, kLearntDamping * critical));
   }

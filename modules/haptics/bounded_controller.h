@@ -1,7 +1,6 @@
-// The controller `bounded`: keeps an arm from shaking and from giving out energy, and is silent where
-// nothing is wrong. On which arms, hands and tissues it does, and in how many of them not:
-// CONTROLLERS.md.
-// Its parts, in the order of a tick, with equations, sources and what each gave: CONTROLLERS.md.
+// The controller `bounded`: keeps an arm from shaking and from giving out energy, and is silent
+// where nothing is wrong. CONTROLLERS.md has its parts, in the order of a tick, with equations,
+// sources and what each gave, and on which arms, hands and tissues it does so, and on which not.
 #pragma once
 
 #include <cstdint>

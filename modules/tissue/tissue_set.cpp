@@ -123,8 +123,7 @@ Status validate(const TissueSet& set, const std::string& file) {
                  tr("Name a structure and a thickness of {}", kShellRange.words()));
     }
     if (t.within == t.id || (!t.within.empty() && !set.find(t.within))) {
-      return bad(file, field + ".within",
-                 tr("'{}' cannot be enclosed by '{}'", t.id, t.within),
+      return bad(file, field + ".within", tr("'{}' cannot be enclosed by '{}'", t.id, t.within),
                  tr("Name another tissue of the set, or none"));
     }
     if (!kShareRange.holds(t.opacity)) {

@@ -23,8 +23,8 @@ bool operator==(const RunMetrics& a, const RunMetrics& b) {
   return a.rate_hz == b.rate_hz && a.ticks == b.ticks && a.arms == b.arms &&
          a.controllers == b.controllers && a.strokes == b.strokes && a.faults == b.faults &&
          std::ranges::equal(a.warnings, b.warnings, same) && a.removed_mm3 == b.removed_mm3 &&
-         a.removed_unnamed_mm3 == b.removed_unnamed_mm3 && a.removed_voxels == b.removed_voxels && a.undos == b.undos && a.rewinds == b.rewinds &&
-         a.brought_back_mm3 == b.brought_back_mm3;
+         a.removed_unnamed_mm3 == b.removed_unnamed_mm3 && a.removed_voxels == b.removed_voxels &&
+         a.undos == b.undos && a.rewinds == b.rewinds && a.brought_back_mm3 == b.brought_back_mm3;
 }
 
 Warning startsInTissue(const std::string& arm, bool barrier) {

@@ -198,8 +198,8 @@ void TissueForm::showPlaces() {
     if (tissue && other.id != tissue->id) enclosing.emplace_back(shownName(other.name), other.id);
   }
   (*within_)["within"].offer(enclosing);
-  (*within_)["within"].setToolTip(
-      tr("What was cut is named after this tissue only inside of that one, as brain inside a skull"));
+  (*within_)["within"].setToolTip(tr(
+      "What was cut is named after this tissue only inside of that one, as brain inside a skull"));
   if (!tissue) return;
   within_->show(*tissue);
   where_->show(*tissue);

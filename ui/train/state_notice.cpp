@@ -127,9 +127,8 @@ QString undoneWords(const LoopState& before, const LoopState& after, const Exerc
       voxels += double(before.removed[arm][t]) - double(after.removed[arm][t]);
     }
     if (voxels == 0.0) continue;
-    (voxels > 0.0 ? undone : redone)
-        << StateNotice::tr("%1, %2").arg(armName(exercise.arms[arm]),
-                                         volumeWords(std::abs(voxels) * voxel_mm3));
+    (voxels > 0.0 ? undone : redone) << StateNotice::tr("%1, %2").arg(
+        armName(exercise.arms[arm]), volumeWords(std::abs(voxels) * voxel_mm3));
   }
   QStringList all;
   if (!undone.isEmpty()) all << StateNotice::tr("Brought back: %1.").arg(undone.join("; "));

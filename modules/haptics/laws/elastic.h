@@ -19,8 +19,8 @@ namespace trephine {
 // depth is counted from there along the normal with which it went in, however deep it sinks; where
 // K falls the push falls with it, where K rises the depth shrinks with 1 / K, so that no energy is
 // made. For a sharp tool, which cuts the tissue open, the push fades as the sphere sinks in. On the
-// way out nothing of it comes back where no voxel went; where some did, the sides of the cut push by
-// up to a tenth of it.
+// way out nothing of it comes back where no voxel went; where some did, the sides of the cut push
+// by up to a tenth of it.
 struct ElasticLaw {
   static constexpr LawWords kWords{
       "elastic", trLater("Elastic"),

@@ -135,7 +135,8 @@ double readingMb(const SeriesReport& series, const ImportRequest& request) {
 }
 
 double memoryMb(const SeriesReport& series, const ImportRequest& request) {
-  return kWindow_mb + std::max(readingMb(series, request), openedMb(outcomeOf(series, request).voxels));
+  return kWindow_mb +
+         std::max(readingMb(series, request), openedMb(outcomeOf(series, request).voxels));
 }
 
 Json toJson(const ImportReport& report, Identity identity) {

@@ -89,7 +89,8 @@ std::vector<HoldResult> hold(HapticParameters parameters, const Volume& volume,
     rig.place(i, paths[i].start_m);
     way_m = std::max(way_m, glm::length(paths[i].held_m - paths[i].start_m));
   }
-  const double arrived_s = way_m / kApproach_m_s, judged_s = arrived_s + (kind == HoldKind::edge ? kSettleAtEdge_s : kSettle_s);
+  const double arrived_s = way_m / kApproach_m_s,
+               judged_s = arrived_s + (kind == HoldKind::edge ? kSettleAtEdge_s : kSettle_s);
   const auto ticks = std::size_t(std::llround((judged_s + seconds) / T));
   std::vector<HoldResult> results(paths.size());
   std::vector<std::array<std::vector<double>, 3>> x(paths.size());
@@ -161,7 +162,7 @@ Result<RestFigures> measureRest(std::optional<double> seconds, const Progress& p
     const std::vector<HoldResult> held = run(false);
     for (std::size_t i = 0; i < held.size(); ++i) {
       RestRow row{cell.exercise, cell.arms[i], cell.tools[i],        cell.place,
-                  kind,       held[i],      cell.rig[i].encoder_m};
+                  kind,          held[i],      cell.rig[i].encoder_m};
       row.unstable = faultsOf(kind, held[i], row.encoder_m).any();
       rows[n].push_back(std::move(row));
     }
@@ -222,9 +223,9 @@ std::size_t sumOf(const RestRow& row) {
 std::vector<RestSum> sumsOf(const RestFigures& figures) {
   std::vector<RestSum> sums(9);
   const std::string minute = plainNumber(figures.seconds) + " s";
-  const std::string names[] = {"scenes at rest, " + minute, "scenes swung", "scenes creeping",
-                               "blocks at rest, " + minute, "blocks swung", "blocks creeping",
-                               "scaled blocks, " + minute, "edges, " + minute, "all"};
+  const std::string names[] = {"scenes at rest, " + minute, "scenes swung",     "scenes creeping",
+                               "blocks at rest, " + minute, "blocks swung",     "blocks creeping",
+                               "scaled blocks, " + minute,  "edges, " + minute, "all"};
   for (std::size_t i = 0; i < sums.size(); ++i) sums[i].name = names[i];
   for (const RestRow& row : figures.rows) {
     sums[sumOf(row)].add(row);

@@ -61,8 +61,9 @@ HoldFaults faultsOf(HoldKind kind, const HoldResult& result, double encoder_m);
 // Beyond what is accepted of a rest anywhere: two counts of the encoder, 0.5 mJ.
 bool isGrave(HoldKind kind, const HoldResult& result, double encoder_m);
 
-// Every arm on its path, judged for so long from 3 s after it arrived, at an edge from 8 s. `ideal`: the continuous law on
-// perfect arms: no controller, no encoder, 5 kHz. `labels`: for tissues of a structure.
+// Every arm on its path, judged for so long from 3 s after it arrived, at an edge from 8 s.
+// `ideal`: the continuous law on perfect arms: no controller, no encoder, 5 kHz. `labels`: for
+// tissues of a structure.
 std::vector<HoldResult> hold(HapticParameters parameters, const Volume& volume,
                              std::vector<RigArm> arms, const std::vector<HoldPath>& paths,
                              HoldKind kind, double seconds, bool ideal = false,

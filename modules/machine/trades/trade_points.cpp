@@ -114,9 +114,9 @@ TradeRows tradePoints(ToolKind kind, const std::vector<int>& counts, const Trade
       if (!one) return tradesCancelled();
       wrong[c].force.push_back(
           rmsError_percent(one->whole.demanded_N, reference->whole.demanded_N));
-      wrong[c].volume.push_back(
-          reference->removed > 0.0 ? 100.0 * std::abs(one->removed / reference->removed - 1.0)
-                                   : (one->removed > 0.0 ? 100.0 : 0.0));
+      wrong[c].volume.push_back(reference->removed > 0.0
+                                    ? 100.0 * std::abs(one->removed / reference->removed - 1.0)
+                                    : (one->removed > 0.0 ? 100.0 : 0.0));
       if (n == 0) wrong[c].tick_ns = one->whole.tick_ns;
     }
   }

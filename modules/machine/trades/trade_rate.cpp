@@ -136,8 +136,7 @@ TradeRows tradeRate(const TradesOptions& options, const Progress& progress) {
   // hide what the rate does: both are without, and what they add is a figure beside.
   ArmInHand perfect;
   perfect.encoder_m = 0.0;
-  const std::optional<RateRun> reference =
-      runAt(kReference_hz, perfect, options, grid, progress);
+  const std::optional<RateRun> reference = runAt(kReference_hz, perfect, options, grid, progress);
   if (!reference) return tradesCancelled();
   const ArmDynamics dynamics = parametersAt(1000.0, ArmInHand()).arms[0].dynamics;
   std::vector<TradeRow> rows;

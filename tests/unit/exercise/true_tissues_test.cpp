@@ -80,8 +80,8 @@ TEST(TrueTissues, InsideEachLayerIsWhatItIs) {
   for (std::size_t v = 0; v < ct.hu.size(); ++v) {
     const Vec3 mm = place(ct, v);
     const double r = glm::length(mm);
-    const int is = r < kBrainTo_mm - 1.5                            ? kBrain
-                   : r > kBrainTo_mm + 1.0 && r < kBoneTo_mm - 1.0  ? kBone
+    const int is = r < kBrainTo_mm - 1.5                                           ? kBrain
+                   : r > kBrainTo_mm + 1.0 && r < kBoneTo_mm - 1.0                 ? kBone
                    : r > kBoneTo_mm + 1.0 && r < kFatTo_mm - 1.0 && mm.x < 0.6 * r ? kScalp
                                                                                    : -1;
     if (is < 0) continue;
@@ -132,8 +132,8 @@ TEST(TrueTissues, ThinBoneIsBoneWhateverLiesBehindIt) {
         const TrueTissues tissues(set, ct, nullptr, "");
         for (int i = 20; i < 20 + thick; ++i) {
           EXPECT_EQ(tissues.at(ct.geometry.indexOf(i, 6, 6)), kBone)
-              << thick << " voxels between " << before << " and " << behind << " HU, the "
-              << i - 19 << "th";
+              << thick << " voxels between " << before << " and " << behind << " HU, the " << i - 19
+              << "th";
         }
       }
     }
@@ -209,19 +209,28 @@ TEST(TrueTissues, OfABuiltInCaseItsFormulaSays) {
     int expected = TrueTissues::kUnnamed;  // eye and muscle have HU of brain and dura
     switch (is) {
       case PhantomTissue::scalp:
-      case PhantomTissue::fat: expected = kScalp; break;
+      case PhantomTissue::fat:
+        expected = kScalp;
+        break;
       case PhantomTissue::outerTable:
       case PhantomTissue::diploe:
       case PhantomTissue::innerTable:
       case PhantomTissue::bone:
       case PhantomTissue::marrow:
-      case PhantomTissue::facialBone: expected = kBone; break;
-      case PhantomTissue::dura: expected = kDura; break;
+      case PhantomTissue::facialBone:
+        expected = kBone;
+        break;
+      case PhantomTissue::dura:
+        expected = kDura;
+        break;
       case PhantomTissue::csf:
       case PhantomTissue::greyMatter:
       case PhantomTissue::whiteMatter:
-      case PhantomTissue::ventricle: expected = kBrain; break;
-      default: break;
+      case PhantomTissue::ventricle:
+        expected = kBrain;
+        break;
+      default:
+        break;
     }
     EXPECT_EQ(tissues.at(v), expected) << phantomTissueName(is);
   }

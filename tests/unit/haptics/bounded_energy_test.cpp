@@ -76,8 +76,8 @@ struct Drained {
       in.rotation_work_J = rotation_work_J;
       const Impedance allowed = controller.limit({1.0, kK_N_per_m});
       in.demanded_N.x = -kK_N_per_m * x - in.velocity_m_s.x;
-      in.rendered = springAndDamper({-allowed.stiffness * x, 0.0, 0.0}, allowed.stiffness,
-                                    allowed.damping);
+      in.rendered =
+          springAndDamper({-allowed.stiffness * x, 0.0, 0.0}, allowed.stiffness, allowed.damping);
       in.last_sent_N = controller.bound(in);
     };
     for (int count = 0; count < 7; ++count) {

@@ -133,8 +133,7 @@ TEST(AToolThatALightHandHolds, RestsOnAnEdgeOnceItHasSlidThere) {
   for (const double beside_m : {-0.3e-3, 0.0, 0.3e-3}) {
     const HoldPath path{Vec3(beside_m, 0.0, 0.01), Vec3(beside_m, 0.0, -0.006),
                         Vec3(0.0, 0.0, -0.004)};
-    const HoldResult held =
-        hold(burrOnBone(), edge, {arm}, {path}, HoldKind::edge, 2.0).front();
+    const HoldResult held = hold(burrOnBone(), edge, {arm}, {path}, HoldKind::edge, 2.0).front();
     EXPECT_FALSE(faultsOf(HoldKind::edge, held, 0.055e-3).any())
         << beside_m << ": " << 1e6 * held.cycle_m << " um, " << 1e3 * held.energy_out_J << " mJ";
     EXPECT_GE(held.shown, 0.5) << beside_m;
@@ -146,7 +145,8 @@ TEST(AToolThatAHandHolds, RestsWhateverTheMapScalesTheForceBy) {
   for (const double scale : {10.0, 30.0, 100.0}) {
     HapticParameters scaled = burrOnBone();
     scaled.arms[0].map.force_scale = scale;
-    const HoldResult held = hold(scaled, block(), {RigArm{}}, {kPress}, HoldKind::edge, 2.0).front();
+    const HoldResult held =
+        hold(scaled, block(), {RigArm{}}, {kPress}, HoldKind::edge, 2.0).front();
     EXPECT_FALSE(faultsOf(HoldKind::edge, held, 0.055e-3).any())
         << scale << ": " << 1e6 * held.cycle_m << " um, " << 1e3 * held.energy_out_J << " mJ";
     EXPECT_TRUE(held.touched);

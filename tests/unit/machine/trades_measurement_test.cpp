@@ -182,11 +182,11 @@ void expectStated(const char* what, const TradeRows& stated, const TradeRows& ot
   ASSERT_TRUE(other);
   for (std::size_t n = 0; n < stated->size(); ++n) {
     const TradeRow &a = (*stated)[n], &b = (*other)[n];
-    std::printf("%-12s %-12s stated %6.2f, median %6.2f, most %6.2f; other strokes: %6.2f, %6.2f, "
-                "%6.2f\n",
-                what, a.setting.c_str(), a.error, a.extraOf("error_median"),
-                a.extraOf("error_most"), b.error, b.extraOf("error_median"),
-                b.extraOf("error_most"));
+    std::printf(
+        "%-12s %-12s stated %6.2f, median %6.2f, most %6.2f; other strokes: %6.2f, %6.2f, "
+        "%6.2f\n",
+        what, a.setting.c_str(), a.error, a.extraOf("error_median"), a.extraOf("error_most"),
+        b.error, b.extraOf("error_median"), b.extraOf("error_most"));
     EXPECT_LE(b.error, 1.25 * a.error + 0.1) << what << ' ' << a.setting;
     EXPECT_LE(a.error, 1.25 * b.error + 0.1) << what << ' ' << a.setting;
   }
