@@ -85,8 +85,8 @@ TEST(TradeCharts, SayErrorAndCostWithTheirUnitsAndWhatIsGoodEnough) {
   plot::test::expectTextsApart(*drawing);
   for (const std::string words :
        {"Rate of touch: error over cost", "Error against: truth", "Cost [ns]", "Error [%]",
-        "250 Hz", "1000 Hz", "20000 Hz", "tolerance 10 %", "at most 25 ns",
-        "Good enough: error at most 10 %; cost at most 25 ns; bone of k max at most 60 %"}) {
+        "250 Hz", "1000 Hz", "20000 Hz", "tolerance 5 %", "at most 25 ns",
+        "Good enough: error at most 5 %; cost at most 25 ns; bone of k max at most 60 %"}) {
     EXPECT_TRUE(std::any_of(drawing->texts.begin(), drawing->texts.end(),
                             [&](const plot::PlacedText& t) { return t.text == words; }))
         << words;
