@@ -90,7 +90,7 @@ inline constexpr FieldOf<Tissue> kTissueFields[] = {
       Given::may_be,
       trLater("the `id` of the tissue that encloses this one in a body, as a skull its brain: what "
               "was cut is named after this one only there"),
-      trLater("Enclosed by")},
+      trLater("Inside")},
      ReferenceIn<Tissue>{&Tissue::within}},
 };
 inline constexpr FieldOf<Tissue::Shell> kShellFields[] = {

@@ -546,8 +546,10 @@ class ExerciseGuiTest : public test::WindowTest {
     QCOMPARE(find<QLabel>("elsewhereSet")->text(), toQt(exercise().tissues_elsewhere->name));
     // It lacks the tissue of the landmark: beside the field, and what was there stays.
     TissueSet without = *readTissueSet(sets / "cranium.json");
+    const std::string lacking = exercise().landmarks[0].tissue;
     for (Tissue& tissue : without.tissues) {
-      if (tissue.id == exercise().landmarks[0].tissue) tissue.id = "stone";
+      if (tissue.id == lacking) tissue.id = "stone";
+      if (tissue.within == lacking) tissue.within = "stone";
     }
     const QString file = temporary_.filePath("without.json");
     QVERIFY(writeTextFile(toPath(file), toJson(without).dump()).ok());
