@@ -5,7 +5,6 @@
 #include <cstdint>
 #include <optional>
 #include <unordered_map>
-#include <vector>
 
 #include "exercise/true_tissues.h"
 #include "volume/grid.h"

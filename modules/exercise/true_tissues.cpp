@@ -37,6 +37,50 @@ const std::array<Vec3, 26>& around() {
   return directions;
 }
 
+// Of a voxel of `hu`, by which alone it is of `own`: the tissue by its neighbours, or -1. `mean`: of
+// it and the 26 next to it; `rise`: up their gradient, of any length; `huAt`: by the distance in
+// voxels.
+template <class HuAt>
+int ofNeighbours(const TissueTable& table, double hu, int own, double mean, const Vec3& rise,
+                 const HuAt& huAt) {
+  constexpr double kEdge_HU = TrueTissues::kEdge_HU;
+  // The mean HU on both sides, near and far.
+  struct Side {
+    double sum = 0.0;
+    int count = 0;
+    void add(double there) { sum += there, ++count; }
+    double mean(double otherwise) const { return count > 0 ? sum / count : otherwise; }
+  };
+  Side near[2], far[2];
+  if (const double steep = glm::length(rise); steep > 0.0) {
+    const Vec3 up = rise / steep;
+    for (int k = -kReach; k <= kReach; ++k) {
+      for (int j = -kReach; j <= kReach; ++j) {
+        for (int i = -kReach; i <= kReach; ++i) {
+          const Vec3 to(i, j, k);
+          const double along = glm::dot(to, up), off = std::abs(along);
+          const Vec3 aside = to - along * up;
+          if (off < kNear || off > kFarthest || glm::dot(aside, aside) > kAside * kAside) continue;
+          (off < kFar ? near : far)[along > 0.0].add(huAt(i, j, k));
+        }
+      }
+    }
+  }
+  const double below = near[0].mean(hu), above = near[1].mean(hu);
+  // Where the HU turn back farther on, something else begins there.
+  const double low = std::min(below, far[0].mean(below)),
+               high = std::max(above, far[1].mean(above));
+  // Over or under both of its sides it is a layer between them: thin bone, a gap.
+  const bool layer = hu > above + kEdge_HU / 2 || hu < below - kEdge_HU / 2;
+  if (layer) return own;
+  if (above - below >= std::max(kEdge_HU, kRise * (high - low))) {
+    if (hu - low > high - hu) return classify(table, std::round(high));
+    return own == classify(table, std::round(low)) ? own : -1;
+  }
+  // A wall that is thinner than its neighbourhood keeps its own.
+  return classify(table, std::abs(mean - hu) < kEdge_HU ? std::round(mean) : hu);
+}
+
 }  // namespace
 
 TrueTissues::TrueTissues(const TissueSet& tissues, const Volume& before, const LabelMap* labels,
@@ -98,47 +142,6 @@ int TrueTissues::ofFormula(const Index3& voxel) const {
   return (by_skull ? isInSkull(truth) : isEnclosed(voxel, by)) ? of : kUnnamed;
 }
 
-// `huAt`: by the distance in voxels; `rise`: up their gradient, of any length.
-template <class HuAt>
-int TrueTissues::ofNeighbours(double hu, double mean, const Vec3& rise, const HuAt& huAt) const {
-  // The mean HU on both sides, near and far.
-  struct Side {
-    double sum = 0.0;
-    int count = 0;
-    void add(double there) { sum += there, ++count; }
-    double mean(double otherwise) const { return count > 0 ? sum / count : otherwise; }
-  };
-  Side near[2], far[2];
-  if (const double steep = glm::length(rise); steep > 0.0) {
-    const Vec3 up = rise / steep;
-    for (int k = -kReach; k <= kReach; ++k) {
-      for (int j = -kReach; j <= kReach; ++j) {
-        for (int i = -kReach; i <= kReach; ++i) {
-          const Vec3 to(i, j, k);
-          const double along = glm::dot(to, up), off = std::abs(along);
-          const Vec3 aside = to - along * up;
-          if (off < kNear || off > kFarthest || glm::dot(aside, aside) > kAside * kAside) continue;
-          (off < kFar ? near : far)[along > 0.0].add(huAt(i, j, k));
-        }
-      }
-    }
-  }
-  const double below = near[0].mean(hu), above = near[1].mean(hu);
-  // Where the HU turn back farther on, something else begins there.
-  const double low = std::min(below, far[0].mean(below)),
-               high = std::max(above, far[1].mean(above));
-  const int own = classify(table_, hu);
-  // Over or under both of its sides it is a layer between them: thin bone, a gap.
-  const bool layer = hu > above + kEdge_HU / 2 || hu < below - kEdge_HU / 2;
-  if (layer) return own;
-  if (above - below >= std::max(kEdge_HU, kRise * (high - low))) {
-    if (hu - low > high - hu) return classify(table_, std::round(high));
-    return own == classify(table_, std::round(low)) ? own : -1;
-  }
-  // A wall that is thinner than its neighbourhood keeps its own.
-  return classify(table_, std::abs(mean - hu) < kEdge_HU ? std::round(mean) : hu);
-}
-
 int TrueTissues::ofHu(const Index3& voxel) const {
   const GridGeometry& g = before_.geometry;
   const double hu = before_.at(voxel[0], voxel[1], voxel[2]);
@@ -163,7 +166,7 @@ int TrueTissues::ofHu(const Index3& voxel) const {
   // All about it are of one range of HU: there is nothing to tell apart.
   if (own < 0 || least < table_.classes[std::size_t(own)].hu_min ||
       most > table_.classes[std::size_t(own)].hu_max) {
-    of = ofNeighbours(hu, mean, rise, huAt);
+    of = ofNeighbours(table_, hu, own, mean, rise, huAt);
   }
   if (of < 0) return kUnnamed;
   const int by = within_[std::size_t(of)];

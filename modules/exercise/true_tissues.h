@@ -22,7 +22,8 @@
 // nowhere in the case is nowhere either.
 #pragma once
 
-#include <cstdint>
+#include <array>
+#include <cstddef>
 #include <optional>
 #include <string>
 
@@ -53,8 +54,6 @@ class TrueTissues {
   int ofLabel(int hu, int label) const;
   int ofFormula(const Index3& voxel) const;
   int ofHu(const Index3& voxel) const;
-  template <class HuAt>
-  int ofNeighbours(double hu, double mean, const Vec3& rise, const HuAt& huAt) const;
   bool isEnclosed(const Index3& voxel, int by) const;
 
   TissueTable table_;

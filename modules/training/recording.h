@@ -11,7 +11,7 @@
 
 namespace trephine {
 
-// From version 9 on a recording replays by the touch of its version (HapticParameters).
+// A recording replays by the touch of its version (HapticParameters::touch_version).
 constexpr int kRecordingVersion = 11, kOldestRecording = 8;  // those between are read
 
 struct RecordingHeader {
