@@ -119,7 +119,7 @@ void HapticCore::touch(ArmTick& now) {
   if (tool.proxy) {
     in.pull = tool.proxy->pull();
     in.pull.drags = now.drags && in.pull.stiffness > 0.0;
-    tool.rubs_N = rubbing_N(tool);
+    tool.rubs_N = in.tissue_class < 0 ? 0.0 : rubbing_N(tool);
   }
   for (Law& law : tool.laws) law_tissues_.ask(law, tissue_, motion.pose_mm, in);
 

@@ -77,10 +77,16 @@ Vec3 MotorEncoderCheck::tick(const HandSample& sample, bool fresh, bool late, do
     return Vec3(0.0);
   }
   if (phase_ == Phase::still) takeStill(sample.position_m, fresh);
+  sampled_s_ += period_s;
+  was_late_ = was_late_ || late;
   if (fresh) {
-    const Vec3 now_m_s = (sample.position_m - last_m_) / period_s;
-    fast_m_s_ += period_s / (period_s + HandOnArm::kSpeedOver_s) * (now_m_s - fast_m_s_);
-    slow_m_s_ += period_s / (period_s + kSlowOver_s) * (now_m_s - slow_m_s_);
+    if (!was_late_) {
+      const Vec3 now_m_s = (sample.position_m - last_m_) / sampled_s_;
+      fast_m_s_ += sampled_s_ / (sampled_s_ + HandOnArm::kSpeedOver_s) * (now_m_s - fast_m_s_);
+      slow_m_s_ += sampled_s_ / (sampled_s_ + kSlowOver_s) * (now_m_s - slow_m_s_);
+    }
+    sampled_s_ = 0.0;
+    was_late_ = false;
     before_last_m_ = last_m_;
     last_m_ = sample.position_m;
   }
@@ -144,7 +150,7 @@ Vec3 MotorEncoderCheck::push(const Vec3& at_m, bool late, double period_s) {
   const int looked = kBefore + 2 * half_ + delay;
   const int rest = samples(kRest_s + kMoreRest_s[push_ % kTimes]);
   if (late && tick_ > 0 && tick_ < looked) {
-    if (++broken_ > kMostBroken) phase_ = Phase::lost;
+    if (++broken_ > kMostBroken) phase_ = Phase::late;
     tick_ = -rest;
     return Vec3(0.0);
   }

@@ -19,13 +19,15 @@ namespace trephine {
 //
 // No force where the samples scatter so that they say nothing, on an arm that states less than 2 g,
 // and none any more once it goes 8 mm beside its line in a push, or faster than a hand, or is let
-// go of. A push that a late tick has broken is done again.
+// go of. A push that a late tick has broken is done again, up to 30 times; then it ends as `late`.
+// How fast it goes is taken from the time between two samples; what moved in a late tick does not
+// count, since how long that was is not known.
 class MotorEncoderCheck {
  public:
   // A finer step of an encoder than a hand can tell counts as this.
   static constexpr double kLeastStep_m = 5e-5;
 
-  enum class Phase { off, waiting, still, pushing, done, lost, untouched };
+  enum class Phase { off, waiting, still, pushing, done, lost, late, untouched };
 
   // `mass_kg` and `delay_s` as the arm states them; `most_N` is what it can be sent for good. A
   // hand is waited for `patience_s`; then it is `untouched`.
@@ -72,6 +74,8 @@ class MotorEncoderCheck {
   HandOnArm hand_;
   Vec3 last_m_{0.0}, before_last_m_{0.0};
   int seen_ = 0, still_ = 0;
+  double sampled_s_ = 0.0;   // since the last sample that was not seen before
+  bool was_late_ = false;    // a tick since then
   int push_ = 0, tick_ = 0, half_ = 0, broken_ = 0;
   std::array<std::array<double, kStill>, 3> bends_m_{};
   std::array<Vec3, kLongest + kBefore> path_m_{};      // of this push

@@ -1,12 +1,13 @@
 // usage: [LEFT_ARM=reversed|scatters] umockdev-wrapper with_wooden_arms REPORT.json COMMAND
 // ARGUMENTS...
 // Plugs in two emulated WoodenHaptics boards in hands that swing them, runs the command, and writes
-// what the boards saw: reports that were sent and answered, and how long an answer took. Ends as
-// the command did.
+// what the boards saw: reports that were sent and answered, how long an answer took, and by how much
+// the hands were late at most, who then stand still for so long. Ends as the command did.
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -23,6 +24,9 @@ namespace {
 
 using test::WoodenFirmware;
 using woodenhaptics::Vector;
+
+// What the hands are late by is made up for at once up to here: more would be a blow.
+constexpr std::chrono::milliseconds kCatchUp(3);
 
 class Arm {
  public:
@@ -81,15 +85,21 @@ int run(int argc, char** argv) {
   }
   int status = 0;
   auto due = WoodenFirmware::Clock::now();
+  WoodenFirmware::Clock::duration most_late{0};
   for (double time_s = 0.0; ::waitpid(child, &status, WNOHANG) == 0; time_s += 1e-3) {
     due += std::chrono::milliseconds(1);
     std::this_thread::sleep_until(due);  // the hands' own clock
+    const auto now = WoodenFirmware::Clock::now();
+    most_late = std::max(most_late, now - due);
+    if (now - due > kCatchUp) due = now;
     left.step(time_s);
     right.step(time_s);
   }
   left.end();
   right.end();
-  const Json report{{"left", left.report()}, {"right", right.report()}};
+  const double late_ms = std::chrono::duration<double, std::milli>(most_late).count();
+  const Json report{
+      {"left", left.report()}, {"right", right.report()}, {"hands_late_ms", late_ms}};
   if (Status written = writeTextFile(argv[1], report.dump(1) + "\n"); !written) {
     std::fprintf(stderr, "%s\n", written.error().sentence().c_str());
     return 2;

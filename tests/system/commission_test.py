@@ -220,30 +220,41 @@ class CommissionArms(unittest.TestCase):
                 print(left, name, checks[name]["value"], checks[name]["verdict"],
                       checks[name]["remark"])
             self.assertEqual(checks["arms"]["verdict"], "pass")
+            late_ms = boards.pop("hands_late_ms")
             self.assertLess(max(board["most_N"] for board in boards.values()), 1.0)
-            return checks, boards
+            return checks, boards, late_ms
+
+    def commission_on_time(self, left):
+        """Again where the host let the hands, or the program's ticks, come too late to say
+        anything of the arms."""
+        for _ in range(3):
+            checks, boards, late_ms = self.commission(left)
+            if late_ms < 10 and "ticks came late" not in checks["arm_encoders"]["remark"]:
+                break
+            print("the hands were late by", late_ms, "ms")
+        return checks, boards
 
     def test_arms_that_are_well_pass(self):
-        checks, boards = self.commission("well")
+        checks, boards = self.commission_on_time("well")
         self.assertEqual(checks["arm_encoders"]["verdict"], "pass")
         self.assertEqual(checks["arm_forces"]["verdict"], "pass")
         self.assertGreater(boards["left"]["most_N"], 0.5)
 
     def test_a_reversed_encoder_fails_and_is_named(self):
-        forces = self.commission("reversed")[0]["arm_forces"]
+        forces = self.commission_on_time("reversed")[0]["arm_forces"]
         self.assertEqual(forces["verdict"], "fail")
         self.assertLess(forces["value"], -0.05)
         self.assertIn("do not practise", forces["next"])
 
     def test_an_encoder_that_scatters_fails_and_its_arm_is_not_pushed(self):
-        checks, boards = self.commission("scatters")
+        checks, boards = self.commission_on_time("scatters")
         self.assertEqual(checks["arm_encoders"]["verdict"], "fail")
         self.assertEqual(checks["arm_forces"]["verdict"], "warn")
         self.assertEqual(boards["left"]["most_N"], 0.0)
         self.assertGreater(boards["right"]["most_N"], 0.5)
 
     def test_arms_that_shall_not_be_tried_are_not_opened(self):
-        checks, boards = self.commission("well", "--wait", "0")
+        checks, boards, _ = self.commission("well", "--wait", "0")
         self.assertEqual(checks["arm_forces"]["verdict"], "warn")
         self.assertEqual([board["answered"] for board in boards.values()], [0, 0])
 

@@ -55,15 +55,19 @@ std::vector<CommissionCheck> judgedArms(const std::vector<ArmReadings>& arms) {
   constexpr double kTooUnlike = 0.03, kSurely = 3.0;
   std::string scatter, pushed;
   double most_steps = 0.0, least = 1.0;
-  bool all_heard = true, all_pushed = true, all_sure = true;
+  const std::string calmer = tr("Close other programs, then commission again");
+  bool all_heard = true, all_pushed = true, all_sure = true, any_late = false;
   for (std::size_t i = 0; i < arms.size(); ++i) {
     const ArmReadings& arm = arms[i];
     const std::string name = (i == 0 ? "" : "; ") + std::to_string(i + 1) + ", " + arm.model + ": ";
     const bool done = arm.phase == MotorEncoderCheck::Phase::done;
     const std::string why = arm.phase == MotorEncoderCheck::Phase::untouched ? tr("nobody held it")
+                            : arm.phase == MotorEncoderCheck::Phase::late
+                                ? tr("the workstation's ticks came late too often")
                             : done ? tr("not pushed, as its samples scatter, or it states no mass")
                                    : tr("it was let go of, moved too fast, or went away");
     all_heard = all_heard && done;
+    any_late = any_late || arm.phase == MotorEncoderCheck::Phase::late;
     all_pushed = all_pushed && done && arm.pushed;
     scatter += name + (done ? formatted("%.3f mm", 1e3 * arm.noise_m) : why);
     if (done)
@@ -90,11 +94,12 @@ std::vector<CommissionCheck> judgedArms(const std::vector<ArmReadings>& arms) {
   };
   // One that was not tried says nothing of the others, but is not passed either.
   if (!all_heard && checks[0].verdict == Fitness::pass) {
-    checks[0] = unknown("arm_encoders", scatter, hold);
+    checks[0] = unknown("arm_encoders", scatter, any_late ? calmer : hold);
   }
   if (forces.verdict == Fitness::pass && !(all_pushed && all_sure)) {
     forces = unknown("arm_forces", pushed,
-                     !all_heard    ? hold
+                     any_late      ? calmer
+                     : !all_heard  ? hold
                      : !all_pushed ? tr("See to its encoders first")
                                    : stiller);
   }

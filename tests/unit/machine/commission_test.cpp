@@ -205,6 +205,13 @@ TEST(ArmChecks, AnArmThatNobodyHeldIsNotPassed) {
     EXPECT_NE(check.next.find("hold each arm"), std::string::npos);
     EXPECT_NE(check.remark.find("nobody held it"), std::string::npos);
   }
+  ArmReadings late = untouched;
+  late.phase = MotorEncoderCheck::Phase::late;
+  for (const CommissionCheck& check : judgedArms({held(2e-5, 0.5), late})) {
+    EXPECT_EQ(check.verdict, Fitness::warn) << check.name;
+    EXPECT_NE(check.remark.find("ticks came late"), std::string::npos) << check.remark;
+    EXPECT_NE(check.next.find("other programs"), std::string::npos) << check.next;
+  }
   // One that is reversed is said all the same.
   EXPECT_EQ(judgedArms({held(2e-5, -0.5), untouched})[1].verdict, Fitness::fail);
   ArmReadings scatters = held(2e-3, 0.0);

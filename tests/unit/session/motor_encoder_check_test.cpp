@@ -37,7 +37,8 @@ struct Plant {
   int samples_of = 1;  // ticks a sample of the device lasts
   double stated_kg = 0.045, most_N = 0.88;
   bool by_button = true;
-  int late_every = 0;  // ticks that come 5 ms late
+  int late_every = 0;   // ticks that come late
+  int late_ticks = 4;   // by so many
 
   Vec3 x_m{0.0}, v_m_s{0.0}, moved_m{0.0};
   std::vector<Vec3> sent_N;
@@ -79,7 +80,7 @@ struct Plant {
     if (fresh) sample.position_m = reading();
     const bool late = late_every > 0 && sent_N.size() % std::size_t(late_every) == 3;
     if (late) {
-      for (int i = 0; i < 4; ++i) move(motor * acting());
+      for (int i = 0; i < late_ticks; ++i) move(motor * acting());
     }
     sent_N.push_back(answer.tick(sample, fresh, late, kTick_s));
     move(motor * acting());
@@ -202,9 +203,14 @@ TEST(MotorEncoderCheck, ItsPushesAreTheSameWhereTicksAreLateOrSamplesAreRare) {
   late.late_every = 403;
   EXPECT_EQ(late.verdict(), 1) << late.answer.response().least;
   EXPECT_LT(late.farthest_m, 0.006);
+  Plant far;  // the hand goes on meanwhile, by 8 mm from one sample to the next
+  far.late_every = 403;
+  far.late_ticks = 80;
+  far.drift_m_s = 0.1;
+  EXPECT_EQ(far.verdict(), 1) << far.answer.response().least;
   Plant always;
   always.late_every = 9;
-  EXPECT_EQ(always.run().phase(), Phase::lost) << "it does not try for ever";
+  EXPECT_EQ(always.run().phase(), Phase::late) << "it does not try for ever";
   Plant rare;  // a device of 500 Hz
   rare.samples_of = 2;
   EXPECT_EQ(rare.verdict(), 1) << rare.answer.response().least;
