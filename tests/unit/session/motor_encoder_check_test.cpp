@@ -76,12 +76,10 @@ struct Plant {
     farthest_m = std::max(farthest_m, glm::length(x_m - hand()));
   }
   Vec3 tick() {
+    const bool late = late_every > 0 && sent_N.size() % std::size_t(late_every) == 3;
+    for (int n = 0; late && n < late_ticks; ++n) move(motor * acting());
     const bool fresh = sent_N.size() % std::size_t(samples_of) == 0;
     if (fresh) sample.position_m = reading();
-    const bool late = late_every > 0 && sent_N.size() % std::size_t(late_every) == 3;
-    if (late) {
-      for (int i = 0; i < late_ticks; ++i) move(motor * acting());
-    }
     sent_N.push_back(answer.tick(sample, fresh, late, kTick_s));
     move(motor * acting());
     return sent_N.back();
