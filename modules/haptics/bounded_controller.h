@@ -10,11 +10,9 @@
 #include "haptics/contact_force.h"
 #include "haptics/count_pair.h"
 #include "haptics/rest_hold.h"
+#include "haptics/touch_version.h"
 
 namespace trephine {
-
-// The version of recordings from which on touch is as it is (HapticParameters::touch_version).
-constexpr int kTouchVersion = 11;
 
 // Which parts changed the force of a tick: of every difference between the demanded and the bounded
 // force, and between that and the sent one, the parts that made it.

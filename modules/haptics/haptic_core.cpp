@@ -20,7 +20,7 @@ HapticCore::ArmTool::ArmTool(const Tool& tool, const HapticParameters& all,
       removal(tool, geometry, all.removal, all.period_s),
       points(all.force_at == ForceAt::tip ? 1 : tool.points_m.size()) {
   for (LawKind kind : all.laws) laws.push_back(makeLaw(kind, points.size(), tool, geometry));
-  if (stopAtSolid(all.laws)) proxy.emplace(tool, geometry, all.touch_version <= 9);
+  if (stopAtSolid(all.laws)) proxy.emplace(tool, geometry, all.touch_version);
   const bool driven = tool.made_from.motor_W > 0.0;
   cutting = driven ? Cutting::driven : Cutting::by_hand;
   // A burr without a motor cuts nothing, but where there is no barrier: there it cuts as the seed
@@ -54,6 +54,7 @@ HapticCore::HapticCore(const HapticParameters& parameters, Grid::Writer writer)
   }
   useTissues();
   carves_.reserve(arms_.size() * Removal::kMostVoxels);
+  went_.reserve(carves_.capacity());
   events_.reserve(kMaxEventsPerTick);
   changed_.reserve(kVoxelsPerSlice);
 }

@@ -222,6 +222,7 @@ class HapticCore {
   void returnShares(const RemovedVoxel& removed, std::size_t owner, std::uint32_t sharers);
   bool erase(std::size_t index, const RemovedVoxel& removed, std::size_t voxel,
              std::uint32_t sharers, std::uint64_t tick);
+  void tellProxies();
   void endStrokes();
   CarveJournal::Credits credits() const;
   void latch(std::size_t index, std::uint32_t fault, std::uint64_t tick);
@@ -243,6 +244,7 @@ class HapticCore {
   LatenessRule lateness_;
   std::vector<Arm> arms_;
   std::vector<CarveRecord> carves_;
+  std::vector<std::uint32_t> went_;  // the solid ones among them
   std::vector<std::uint32_t> changed_;  // voxels of this tick's slice of an undo, redo or rewind
   std::vector<Event> events_;
   std::uint64_t stroke_gap_ticks_;

@@ -28,6 +28,7 @@ void HapticCore::removeVoxels(std::uint64_t tick, TickRecord& record) {
   indexShared();
   const std::array<std::size_t, kMaxArms> order = newestStrokeFirst(before, tick);
   for (std::size_t place = 0; place < arms_.size(); ++place) eraseOf(place, order, tick, record);
+  tellProxies();
   endStrokes();
 }
 
@@ -103,15 +104,30 @@ void HapticCore::returnShares(const RemovedVoxel& removed, std::size_t owner,
   }
 }
 
+// What went is told to all proxies once all of it went.
+void HapticCore::tellProxies() {
+  went_.clear();
+  VoxelBounds box;
+  for (const CarveRecord& carve : carves_) {
+    if (!tissue_.isSolid(carve.tissue_class)) continue;
+    went_.push_back(carve.voxel);
+  }
+  if (went_.empty()) return;
+  for (const Arm& arm : arms_) {
+    if (arm.removed.empty()) continue;
+    box.add(arm.removed_low);
+    box.add(arm.removed_high);
+  }
+  for (Arm& arm : arms_) {
+    for (ArmTool& tool : arm.tools) {
+      if (tool.proxy) tool.proxy->removed(tissue_, went_, box);
+    }
+  }
+}
+
 void HapticCore::endStrokes() {
-  const bool solid_went = std::any_of(carves_.begin(), carves_.end(), [&](const CarveRecord& carve) {
-    return tissue_.isSolid(carve.tissue_class);
-  });
   for (std::size_t i = 0; i < arms_.size(); ++i) {
     Arm& arm = arms_[i];
-    for (ArmTool& tool : arm.tools) {
-      if (solid_went && tool.proxy) tool.proxy->removed();
-    }
     if (!arm.cuts) continue;
     const int arm_number = int(i);
     arm.air_ticks = arm.tool().contact.contact().touching() ? 0 : arm.air_ticks + 1;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 namespace trephine {
 
@@ -46,9 +47,10 @@ Quat turned(const Vec3& by, const Quat& q) {
 
 }  // namespace
 
-Proxy::Proxy(const Tool& tool, const GridGeometry& geometry, bool wide_spheres)
-    : surface_(tool, geometry, wide_spheres),
-      turn_mm2_(std::pow(std::max(surface_.reach_mm(), kHandle_mm), 2) / 6.0) {}
+Proxy::Proxy(const Tool& tool, const GridGeometry& geometry, int touch_version)
+    : surface_(tool, geometry, touch_version),
+      turn_mm2_(std::pow(std::max(surface_.reach_mm(), kHandle_mm), 2) / 6.0),
+      before_12_(touch_version < 12) {}
 
 void Proxy::place(const Pose& pose_mm) {
   arm_ = pose_mm;
@@ -110,9 +112,25 @@ double Proxy::cost(const SmallMotion& motion) const {
          turn_mm2_ * glm::dot(motion.turn, motion.turn);
 }
 
+void Proxy::removed(const TissueField& tissue, std::span<const std::uint32_t> voxels,
+                    const VoxelBounds& box) {
+  if (before_12_) {
+    stale_ = next_stale_ = gone_ = true;
+    return;
+  }
+  const SolidSurface::Stale stale = surface_.removed(tissue, voxels, box);
+  stale_ = stale_ || stale.now;
+  next_stale_ = next_stale_ || stale.next;
+}
+
+// Of the travel for which the gathered surface holds.
+double Proxy::went_mm() const {
+  return before_12_ ? usedUp_mm(travelled_) : way_mm(towards(from_, pose_));
+}
+
 // Share of the travel for which the gathered surface holds that is used up after one more step.
 double Proxy::worn(double step_mm) const {
-  const double worn = (usedUp_mm(travelled_) + step_mm) / surface_.margin_mm();
+  const double worn = (went_mm() + step_mm) / surface_.margin_mm();
   if (!stale_) return worn;
   return std::max(worn, travelled_mm() / std::max(kWorn * surface_.voxel_mm(), kLeastWorn_mm));
 }
@@ -128,13 +146,16 @@ void Proxy::look(const TissueField& tissue, const PlacedBody& body, double step_
   const auto begin = [&] {
     surface_.begin(tissue, body, cutting_);
     next_travelled_ = {};
+    next_from_ = pose_;
     next_stale_ = false;
   };
   const auto goOn = [&](int work) {
     if (!surface_.goOn(tissue, work)) return;
     gathered_ = true;
     travelled_ = next_travelled_;
-    stale_ = gone_ = next_stale_;
+    from_ = next_from_;
+    stale_ = next_stale_ || (!before_12_ && surface_.cameStale());
+    gone_ = before_12_ && next_stale_;
     dropGone();
   };
   if (!gathered_) {
@@ -164,14 +185,13 @@ void Proxy::look(const TissueField& tissue, const PlacedBody& body, double step_
 std::size_t Proxy::nearPieces(const PlacedBody& body, double within_mm, double moved_mm) {
   std::size_t count = 0;
   const double travelled = travelled_mm();
-  for (SurfacePiece& piece : surface_.pieces()) {
-    if (piece.gap_mm - (travelled + moved_mm - piece.travelled_mm) > within_mm) continue;
-    const Touch touch = touchOf(piece, body);
-    if (moved_mm == 0.0) {
-      piece.gap_mm = touch.gap_mm;
-      piece.travelled_mm = travelled;
-    }
-    if (touch.gap_mm > within_mm) continue;
+  const std::size_t pieces = surface_.pieces().size();
+  for (std::size_t piece = 0; piece < pieces; ++piece) {
+    if (surface_.leastGap_mm(piece, travelled + moved_mm) > within_mm) continue;
+    double gap_mm = 0.0;
+    const std::optional<Touch> touch = surface_.touchWithin(piece, body, within_mm, gap_mm);
+    if (moved_mm == 0.0) surface_.note(piece, gap_mm, travelled);
+    if (!touch) continue;
     std::size_t at = count;
     if (count < kMostTouches) {
       ++count;
@@ -180,9 +200,9 @@ std::size_t Proxy::nearPieces(const PlacedBody& body, double within_mm, double m
       for (std::size_t i = 1; i < kMostTouches; ++i) {
         if (near_[i].touch.gap_mm > near_[at].touch.gap_mm) at = i;
       }
-      if (near_[at].touch.gap_mm <= touch.gap_mm) continue;
+      if (near_[at].touch.gap_mm <= gap_mm) continue;
     }
-    near_[at] = {touch, &piece, false};
+    near_[at] = {*touch, piece, surface_.pieces()[piece].flat, false};
   }
   return count;
 }
@@ -191,10 +211,11 @@ std::size_t Proxy::nearPieces(const PlacedBody& body, double within_mm, double m
 // nearest of them.
 std::size_t Proxy::merge(std::size_t first, std::size_t count) {
   const double same2 = std::pow(kSame * surface_.voxel_mm(), 2);
+  const auto partOf = [&](const Near& near) { return surface_.pieces()[near.piece].part; };
   const auto together = [&](std::size_t a, std::size_t b) {
     const Near &one = near_[a], &other = near_[b];
     const Vec3 apart = one.touch.lever_mm - other.touch.lever_mm;
-    return other.piece->flat && !other.merged && one.piece->part == other.piece->part &&
+    return other.flat && !other.merged && partOf(one) == partOf(other) &&
            glm::dot(apart, apart) <= same2;
   };
   std::size_t nearest = first;
@@ -216,10 +237,9 @@ double Proxy::touches(const PlacedBody& body, double within_mm, double moved_mm,
   touch_count_ = 0;
   for (std::size_t n = 0; n < count; ++n) {
     if (near_[n].merged) continue;
-    const bool flat = near_[n].piece->flat;
+    const bool flat = near_[n].flat;
     const Near& near = near_[flat ? merge(n, count) : n];
-    const Touch touch =
-        flat ? blended(near.touch, *near.piece, body, surface_.pieces()) : near.touch;
+    const Touch touch = flat ? surface_.blended(near.touch, near.piece, body) : near.touch;
     least_mm = std::min(least_mm, touch.gap_mm);
     // At the proxy's own pose a touch that is not deeper than kInside keeps the gap that it has, up
     // to `clear_mm`; every other touch must open to `clear_mm`.
@@ -251,7 +271,7 @@ bool Proxy::goFreely(Way& way) {
   const SmallMotion wanted = towards(pose_, arm_);
   const double length_mm = way_mm(wanted);
   const double most_mm =
-      surface_.pieces().empty() ? surface_.margin_mm() - usedUp_mm(travelled_) : way.step_mm;
+      surface_.pieces().empty() ? surface_.margin_mm() - went_mm() : way.step_mm;
   const bool whole = length_mm <= most_mm;
   const double share = most_mm / length_mm;
   const Pose to = whole ? arm_
@@ -305,7 +325,7 @@ bool Proxy::slide(const TissueField& tissue, Way& way) {
   blocker_count_ = 0;
   for (std::size_t i = 0; i < touch_count_; ++i) {
     const double load = touches_[i].load;
-    const SurfacePiece& piece = *touched_[i];
+    const SurfacePiece& piece = surface_.pieces()[touched_[i]];
     if (!(load > 0.0)) continue;
     way.load += load;
     if (load > way.most) {

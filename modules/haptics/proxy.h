@@ -22,8 +22,9 @@ struct Pull {
 
 class Proxy {
  public:
-  // `wide_spheres`: as SolidSurface has it.
-  Proxy(const Tool& tool, const GridGeometry& geometry, bool wide_spheres = false);
+  // `touch_version`: as SolidSurface has it; before 12 the way that a tool went counts, and not how
+  // far it came.
+  Proxy(const Tool& tool, const GridGeometry& geometry, int touch_version = kTouchVersion);
 
   // At the arm, whatever is there.
   void place(const Pose& pose_mm);
@@ -47,8 +48,9 @@ class Proxy {
     gathered_ = false;
     surface_.giveUp();
   }
-  // Voxels around it went.
-  void removed() { stale_ = next_stale_ = gone_ = true; }
+  // Voxels of solid tissue went, all of them in `box`.
+  void removed(const TissueField& tissue, std::span<const std::uint32_t> voxels,
+               const VoxelBounds& box);
 
   const Pose& pose_mm() const { return pose_; }
   const Pull& pull() const { return pull_; }
@@ -70,6 +72,7 @@ class Proxy {
   static void visitState(Self& self, Archive& archive) {
     archive(self.surface_, self.pose_, self.cutting_);
     archive(self.gathered_, self.stale_, self.next_stale_, self.gone_);
+    archive(self.from_, self.next_from_);
     archive(self.travelled_, self.next_travelled_, self.last_step_mm_);
     archive(self.stiffness_);
     archive.within(self.held_by_, -1, kMaxTissues);
@@ -105,8 +108,8 @@ class Proxy {
   // A piece that is near, before flat ones are merged.
   struct Near {
     Touch touch;
-    const SurfacePiece* piece = nullptr;
-    bool merged = false;
+    std::size_t piece = 0;  // its number
+    bool flat = false, merged = false;
   };
   void pullBack();
   // Upper bound of how far the points near tissue moved, or a quarter of how far the others did, if
@@ -117,6 +120,7 @@ class Proxy {
   double travelled_mm() const { return travelled_.of_mm(surface_.near_reach_mm()); }
   void look(const TissueField& tissue, const PlacedBody& body, double step_mm, double speed,
             bool ahead);
+  double went_mm() const;
   double worn(double step_mm) const;
   std::size_t nearPieces(const PlacedBody& body, double within_mm, double moved_mm);
   std::size_t merge(std::size_t first, std::size_t count);
@@ -132,9 +136,11 @@ class Proxy {
   Pose pose_, arm_;
   Pull pull_;
   double turn_mm2_;
+  bool before_12_;  // of touch
   bool gathered_ = false;                    // the surface's pieces are of around here
   bool stale_ = false, next_stale_ = false;  // voxels went since that search, since the next began
-  bool gone_ = false;                        // some of the pieces may be of voxels that went
+  bool gone_ = false;       // before version 12: some of the pieces may be of voxels that went
+  Pose from_, next_from_;   // where it was as that search began, as the next did
   Cutting cutting_ = Cutting::nothing;
   Travel travelled_, next_travelled_;  // since that search, since the next began
   double last_step_mm_ = 0.0;          // in the last tick
@@ -143,7 +149,7 @@ class Proxy {
   double stiffness_ = 0.0;  // N/m, the mean by load
   std::int8_t held_by_ = -1;
   std::array<NearTouch, kMostTouches> touches_;
-  std::array<const SurfacePiece*, kMostTouches> touched_;  // by each of them
+  std::array<std::size_t, kMostTouches> touched_;  // piece, by each of them
   std::array<Near, kMostTouches> near_;
   std::size_t touch_count_ = 0;
   std::array<Blocker, kMostTouches> blockers_;

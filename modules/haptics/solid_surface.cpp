@@ -1,6 +1,7 @@
 #include "haptics/solid_surface.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <numbers>
 
@@ -28,6 +29,9 @@ constexpr double kDisk = 0.5;      // radius of a disk, of the diagonal of the m
 constexpr double kFlatDisk = 1.0;  // the same where the columns around it are in a plane
 constexpr double kPlate = 0.45;    // voxels: half the thickness of a plate as thin as a voxel
 constexpr int kPieceWork = 8;      // work to make a piece, in rows
+constexpr int kFitReach = 3;       // meshes from a voxel that its surface follows from (surface_fit.h)
+// Rounding of a bound against the distance itself, mm.
+constexpr double kRounding_mm = 1e-9;
 
 // The cell of a cube's face that a direction meets, faces of n^2 cells.
 int cellOf(const Vec3& d, int n) {
@@ -50,7 +54,9 @@ double nearestOn(const Vec3& from, const Vec3& along, double per_length2, const 
 
 }  // namespace
 
-Touch touchOf(const SurfacePiece& piece, const PlacedBody& body) {
+std::optional<Touch> SolidSurface::touchWithin(std::size_t number, const PlacedBody& body,
+                                               double within_mm, double& gap_mm) const {
+  const SurfacePiece& piece = pieces_[number];
   const PlacedBody::Part& part = body.parts[std::size_t(piece.part)];
   const Vec3 centre =
       part.from_mm +
@@ -60,8 +66,10 @@ Touch touchOf(const SurfacePiece& piece, const PlacedBody& body) {
   double distance = 0.0, rounding = 0.0;
   if (piece.normal == Vec3(0.0)) {
     distance = glm::length(away);
-    touch.normal = distance > 0.0 ? away / distance : Vec3(0.0, 0.0, 1.0);
     rounding = piece.size_mm;
+    gap_mm = distance - part.radius_mm - rounding;
+    if (gap_mm > within_mm) return {};
+    touch.normal = distance > 0.0 ? away / distance : Vec3(0.0, 0.0, 1.0);
   } else {
     const double height = glm::dot(away, piece.normal);
     const Vec3 aside = away - height * piece.normal;
@@ -70,19 +78,38 @@ Touch touchOf(const SurfacePiece& piece, const PlacedBody& body) {
       distance = height;
       touch.normal = piece.normal;
     } else {  // the disk's rim
-      const Vec3 to_rim = away - aside * (piece.size_mm / std::sqrt(aside2));
+      const double beside = std::sqrt(aside2), beyond = beside - piece.size_mm;
+      const double about = std::sqrt(height * height + beyond * beyond);
+      gap_mm = about - part.radius_mm - kRounding_mm;
+      if (gap_mm > within_mm) return {};
+      const Vec3 to_rim = away - aside * (piece.size_mm / beside);
       distance = glm::length(to_rim);
       touch.normal = distance > 0.0 ? to_rim / distance : piece.normal;
     }
+    gap_mm = distance - part.radius_mm - rounding;
+    if (gap_mm > within_mm) return {};
   }
-  touch.gap_mm = distance - part.radius_mm - rounding;
+  touch.gap_mm = gap_mm;
   touch.lever_mm = centre - part.radius_mm * touch.normal - body.tip_mm;
   return touch;
 }
 
-Touch blended(const Touch& touch, const SurfacePiece& piece, const PlacedBody& body,
-              std::span<const SurfacePiece> pieces) {
+Touch SolidSurface::blended(const Touch& touch, std::size_t number, const PlacedBody& body) {
+  if (!near_known_) {
+    Vec3 low(1e300), high(-1e300);
+    for (const SurfacePiece& piece : pieces_) {
+      low = glm::min(low, piece.at_mm);
+      high = glm::max(high, piece.at_mm);
+    }
+    near_.clear(low, high, pieces_.size());
+    for (std::size_t n = 0; n < pieces_.size(); ++n) {
+      if (pieces_[n].normal != Vec3(0.0)) near_.add(n, pieces_[n].at_mm);
+    }
+    near_known_ = true;
+  }
+  const SurfacePiece& piece = pieces_[number];
   const double radius_mm = body.parts[std::size_t(piece.part)].radius_mm;
+  const double reach_mm = kBlended * piece.size_mm;
   const double reach2 = kBlended * kBlended * piece.size_mm * piece.size_mm;
   const Vec3 centre = body.tip_mm + touch.lever_mm + radius_mm * touch.normal;
   Touch out = touch;
@@ -92,15 +119,16 @@ Touch blended(const Touch& touch, const SurfacePiece& piece, const PlacedBody& b
     const Vec3 at = centre - (radius_mm + out.gap_mm) * out.normal;
     Vec3 normals(0.0);
     double heights = 0.0, weights = 0.0;
-    for (const SurfacePiece& other : pieces) {
+    near_.around(at, reach_mm + kRounding_mm, [&](std::size_t n) {
+      const SurfacePiece& other = pieces_[n];
       const Vec3 apart = other.at_mm - at;
       const double distance2 = glm::dot(apart, apart);
-      if (distance2 >= reach2 || glm::dot(other.normal, touch.normal) < kAlike) continue;
+      if (distance2 >= reach2 || glm::dot(other.normal, touch.normal) < kAlike) return;
       const double near = 1.0 - distance2 / reach2, weight = near * near;
       normals += weight * other.normal;
       heights -= weight * glm::dot(other.normal, apart);
       weights += weight;
-    }
+    });
     if (!(weights > 0.0)) break;
     out.normal = glm::normalize(normals);
     out.gap_mm = heights / weights + glm::dot(out.normal, centre - at) - radius_mm;
@@ -109,11 +137,12 @@ Touch blended(const Touch& touch, const SurfacePiece& piece, const PlacedBody& b
   return out;
 }
 
-SolidSurface::SolidSurface(const Tool& tool, const GridGeometry& geometry, bool wide_spheres)
+SolidSurface::SolidSurface(const Tool& tool, const GridGeometry& geometry, int touch_version)
     : geometry_(geometry),
       patient_to_voxel_(geometry.patientToVoxel()),
       spacing_mm_(geometry.spacing_mm),
-      wide_spheres_(wide_spheres) {
+      wide_spheres_(touch_version <= 9),
+      by_rows_(touch_version >= 12) {
   const Vec3& s = spacing_mm_;
   voxel_mm_ = std::min({s.x, s.y, s.z});
   half_diagonal_mm_ = 0.5 * glm::length(s);
@@ -146,20 +175,38 @@ SolidSurface::SolidSurface(const Tool& tool, const GridGeometry& geometry, bool 
     const double around_mm3 = std::numbers::pi * around_mm * around_mm *
                               (std::min(length, kStretch_mm) + 4.0 / 3.0 * around_mm);
     const double voxels = double(count) * std::ceil(around_mm3 / (s.x * s.y * s.z));
-    most += std::size_t(std::min(double(all), voxels));
+    const std::size_t by_cells = std::size_t(std::min(double(all), voxels));
+    most += std::max(by_cells, by_rows_ && mm.cuts ? count * rowsAround(of, length, around_mm) : 0);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      fit_reach_[axis] = std::max(fit_reach_[axis], kFitReach * of.apart[axis]);
+    }
   }
   near_reach_mm_ = reach_mm_;
   pieces_.reserve(most);
+  due_mm_.reserve(most);
   next_.reserve(most);
   stretches_.reserve(stretches);
   found_.reserve(most);
   cell_.assign(std::size_t(cells), 0);
   stamp_.assign(std::size_t(cells), 0);
+  near_ = NearPieces(most);
+  if (by_rows_) slots_.assign(std::bit_ceil(4 * most + 4), 0);
+}
+
+// Upper bound of the sides of rows within a distance of a stretch of a part, however it lies.
+std::size_t SolidSurface::rowsAround(const Cells& of, double length_mm, double around_mm) const {
+  const double y_mm = of.apart[1] * spacing_mm_.y, z_mm = of.apart[2] * spacing_mm_.z;
+  const double along_mm = std::min(length_mm, kStretch_mm) + 2.0 * around_mm;
+  // A box around it, wherever it points to in the rows' plane.
+  const double area = (along_mm / y_mm + 2.0) * (2.0 * around_mm / z_mm + 2.0) +
+                      (along_mm / z_mm + 2.0) * (2.0 * around_mm / y_mm + 2.0);
+  return std::size_t(2.0 * area);
 }
 
 bool SolidSurface::centreIn(const PlacedBody& body) const {
   return std::any_of(pieces_.begin(), pieces_.end(), [&](const SurfacePiece& piece) {
-    const Index3 v = geometry_.indicesOf(piece.voxel);
+    if (piece.voxel == SurfacePiece::kGone) return false;
+    const Index3& v = piece.at;
     const PlacedBody::Part& part = body.parts[std::size_t(piece.part)];
     const Vec3 from = geometry_.toPatient_mm(Vec3(v[0], v[1], v[2])) - part.from_mm;
     const double on = std::clamp(glm::dot(from, part.along_mm) * part.per_length2, 0.0, 1.0);
@@ -211,6 +258,8 @@ void SolidSurface::begin(const TissueField& tissue, const PlacedBody& body, Cutt
   under_way_ = true;
   cutting_ = cutting;
   next_reach_mm_ = 0.0;
+  next_disks_ = {};
+  some_went_ = lost_ = false;
   ++turn_;
   const auto place = [&](const Vec3& patient_mm) {
     return Vec3(patient_to_voxel_ * glm::dvec4(patient_mm, 1.0)) * spacing_mm_;
@@ -269,9 +318,15 @@ bool SolidSurface::takeOver() {
   std::fill(stamp_.begin(), stamp_.end(), 0);
   turn_ = 1;
   const auto known = [this](const SurfacePiece& piece) {
-    return std::size_t(piece.part) < cells_.size() && piece.voxel < geometry_.voxelCount();
+    const bool gone = piece.voxel == SurfacePiece::kGone;
+    const auto& [i, j, k] = piece.at;
+    return std::size_t(piece.part) < cells_.size() && geometry_.contains(i, j, k) &&
+           (gone || piece.voxel == geometry_.indexOf(i, j, k)) && piece.row_end >= 0 &&
+           piece.row_end < geometry_.size[0];
   };
   if (!std::all_of(pieces_.begin(), pieces_.end(), known)) return false;
+  if (due_mm_.size() != pieces_.size()) return false;
+  index();
   if (!under_way_) return true;
   if (!std::all_of(next_.begin(), next_.end(), known)) return false;
   for (Stretch& stretch : stretches_) {
@@ -283,8 +338,10 @@ bool SolidSurface::takeOver() {
     const Found& found = found_[n];
     const std::size_t cell = std::size_t(found.cell);
     const Index3& v = found.voxel;
-    if (cell >= stamp_.size() || found.part >= cells_.size()) return false;
-    if (!geometry_.contains(v[0], v[1], v[2])) return false;
+    if (found.part >= cells_.size() || !geometry_.contains(v[0], v[1], v[2])) return false;
+    if (found.row_end < 0 || found.row_end >= geometry_.size[0]) return false;
+    if (found.cell == kNoCell) continue;
+    if (cell >= stamp_.size()) return false;
     stamp_[cell] = turn_;
     cell_[cell] = std::int32_t(n);
   }
@@ -301,14 +358,29 @@ bool SolidSurface::goOn(const TissueField& tissue, int work) {
       addPiece(tissue, found_[made_++]);
       done_ += kPieceWork;
     } else {
-      std::swap(pieces_, next_);
-      near_reach_mm_ = next_reach_mm_;
-      under_way_ = false;
-      work_ = done_;
+      finish(tissue);
       return true;
     }
   }
   return false;
+}
+
+// The pieces that were found are those that hold from now on.
+void SolidSurface::finish(const TissueField& tissue) {
+  std::swap(pieces_, next_);
+  due_mm_.assign(pieces_.size(), 0.0);
+  disks_ = next_disks_;
+  near_reach_mm_ = next_reach_mm_;
+  under_way_ = near_known_ = false;
+  work_ = done_;
+  if (!by_rows_) return;
+  for (std::size_t n = 0; some_went_ && n < pieces_.size(); ++n) {
+    SurfacePiece& piece = pieces_[n];
+    if (tissue.isSolidAt(piece.at[0], piece.at[1], piece.at[2])) continue;
+    if (!goOnAlongRow(tissue, piece)) lost_ = true;
+    if (piece.voxel == SurfacePiece::kGone) due_mm_[n] = std::numeric_limits<double>::max();
+  }
+  index();
 }
 
 // The rows of voxels of a plane around a stretch. Returns how many rows it has.
@@ -338,15 +410,14 @@ int SolidSurface::searchPlane(const TissueField& tissue, Stretch& stretch) {
     if (row.from > row.to) continue;
     row.j = j;
     row.k = k;
-    row.voxel = geometry_.indexOf(0, j, k);
     row.left = row.right = 0;
     const Interval clear = stretch.hollow ? stretch.within.row(y, z) : Interval{};
     if (!clear.empty()) {
       row.left = std::min(row.to, clear.low > 0.0 ? int(clear.low * per_x) + 1 : 0);
       row.right = std::max({row.from, row.left + 1, int(std::max(0.0, clear.high) * per_x)});
     }
-    tissue.prefetch(row.voxel + std::size_t(row.from));
-    tissue.prefetch(row.voxel + std::size_t(row.to));
+    tissue.prefetchSolid(row.from, j, k);
+    tissue.prefetchSolid(row.to, j, k);
     ++all;
     if (++count < rows.size()) continue;
     searchRows(tissue, stretch, rows);
@@ -361,22 +432,41 @@ int SolidSurface::searchPlane(const TissueField& tissue, Stretch& stretch) {
 void SolidSurface::searchRows(const TissueField& tissue, const Stretch& stretch,
                               std::span<const Row> rows) {
   for (const Row& row : rows) {
-    const auto solidAt = [&](int i) {
-      return tissue.isSolid(tissue.classAt(row.voxel + std::size_t(i)));
-    };
+    if (cutsRows(stretch.part)) {
+      searchCutRow(tissue, stretch, row);
+      continue;
+    }
     if (row.right <= row.left) {
-      for (int i = row.from; i <= row.to; ++i) {
-        if (solidAt(i)) find({i, row.j, row.k}, stretch);
+      for (int i = row.from; (i = tissue.solidUp(i, row.to, row.j, row.k)) <= row.to; ++i) {
+        find(tissue, {i, row.j, row.k}, stretch);
       }
       continue;
     }
-    int i = row.left;
-    while (i >= row.from && !solidAt(i)) --i;
-    if (i >= row.from) find({i, row.j, row.k}, stretch);
-    i = row.right;
-    while (i <= row.to && !solidAt(i)) ++i;
-    if (i <= row.to) find({i, row.j, row.k}, stretch);
+    int i = tissue.solidDown(row.left, row.from, row.j, row.k);
+    if (i >= row.from) find(tissue, {i, row.j, row.k}, stretch);
+    i = tissue.solidUp(row.right, row.to, row.j, row.k);
+    if (i <= row.to) find(tissue, {i, row.j, row.k}, stretch);
   }
+}
+
+// The first solid voxel on either side of where the row is nearest to the axis: the distance from a
+// segment grows outwards.
+void SolidSurface::searchCutRow(const TissueField& tissue, const Stretch& stretch, const Row& row) {
+  const Vec3 at(0.0, row.j * spacing_mm_.y, row.k * spacing_mm_.z);
+  const Vec3& from = stretch.axis.from;
+  const double across2 = stretch.along.y * stretch.along.y + stretch.along.z * stretch.along.z;
+  const double share = (at.y - from.y) * stretch.along.y + (at.z - from.z) * stretch.along.z;
+  const double on = across2 > 0.0 ? std::clamp(share / across2, 0.0, 1.0) : 0.5;
+  const double nearest = (from.x + on * stretch.along.x) / spacing_mm_.x;
+  int left = int(std::clamp(nearest, double(row.from), double(row.to))), right = left + 1;
+  if (row.right > row.left) {
+    left = row.left;
+    right = std::max(row.right, row.left + 1);
+  }
+  const int down = tissue.solidDown(left, row.from, row.j, row.k);
+  if (down >= row.from) find(tissue, {down, row.j, row.k}, stretch, -1, row.from);
+  const int up = tissue.solidUp(right, row.to, row.j, row.k);
+  if (up <= row.to) find(tissue, {up, row.j, row.k}, stretch, 1, row.to);
 }
 
 // How many rows lie between two that are looked at, and one.
@@ -389,14 +479,21 @@ Index3 SolidSurface::rowsApart(double radius_mm) const {
   return apart;
 }
 
-// Keeps the voxel if it is the nearest of its cell, which is one at the surface.
-void SolidSurface::find(const Index3& voxel, const Stretch& stretch) {
+// Keeps the voxel if it is the nearest of its cell, which is one at the surface; that of a row
+// (`row_step`) whatever its cell has, if it may be cut.
+void SolidSurface::find(const TissueField& tissue, const Index3& voxel, const Stretch& stretch,
+                        int row_step, int row_end) {
+  if (found_.size() == found_.capacity()) return;
   const Vec3 centre = Vec3(voxel[0], voxel[1], voxel[2]) * spacing_mm_;
   const double on_axis = nearestOn(stretch.axis.from, stretch.along, stretch.per_length2, centre);
   const Vec3 away = centre - (stretch.axis.from + on_axis * stretch.along);
   const double distance2 = glm::dot(away, away);
   const double farthest = stretch.axis.radius + margin_mm_ + half_diagonal_mm_;
   if (distance2 > farthest * farthest) return;
+  if (row_step != 0 && mayCut(tissue, voxel)) {
+    found_.push_back({voxel, stretch.part, away, distance2, kNoCell, row_end, std::int8_t(row_step)});
+    return;
+  }
   const Cells& cells = cells_[stretch.part];
   const double on_part = stretch.from + on_axis * stretch.share;
   const int along = std::min(cells.along - 1, int(on_part * cells.along));
@@ -406,12 +503,109 @@ void SolidSurface::find(const Index3& voxel, const Stretch& stretch) {
   if (stamp_[cell] != turn_) {
     stamp_[cell] = turn_;
     cell_[cell] = std::int32_t(found_.size());
-    found_.push_back({voxel, stretch.part, away, distance2, std::int32_t(cell)});
+    found_.push_back({voxel, stretch.part, away, distance2, std::int32_t(cell), 0, 0});
     return;
   }
   Found& nearest = found_[std::size_t(cell_[cell])];
   if (distance2 < nearest.distance2_mm2)
-    nearest = {voxel, stretch.part, away, distance2, std::int32_t(cell)};
+    nearest = {voxel, stretch.part, away, distance2, std::int32_t(cell), 0, 0};
+}
+
+// Where all solid tissue may be cut, or none, no voxel is looked at.
+bool SolidSurface::mayCut(const TissueField& tissue, const Index3& voxel) const {
+  if (tissue.cutsOfSolid() != TissueField::Cuts::some) {
+    return tissue.cutsOfSolid() == TissueField::Cuts::all;
+  }
+  const int c = tissue.classAt(geometry_.indexOf(voxel[0], voxel[1], voxel[2]));
+  return c >= 0 && tissue.ofClass(c).cuttable != 0;
+}
+
+// The voxel of its row that stands where the piece's went. False where none does within reach, or
+// one that is not cut, which is then met as it stands.
+bool SolidSurface::goOnAlongRow(const TissueField& tissue, SurfacePiece& piece) const {
+  const auto [i, j, k] = piece.at;
+  const int step = piece.row_step, end = piece.row_end;
+  piece.voxel = SurfacePiece::kGone;
+  if (step == 0) {
+    piece.normal = Vec3(0.0);
+    return false;
+  }
+  const int next =
+      step > 0 ? tissue.solidUp(i + 1, end, j, k) : tissue.solidDown(i - 1, end, j, k);
+  if (step > 0 ? next > end : next < end) return true;
+  const std::size_t voxel = geometry_.indexOf(next, j, k);
+  const int c = tissue.classAt(voxel);
+  piece.voxel = std::uint32_t(voxel);
+  piece.at = {next, j, k};
+  piece.at_mm = geometry_.toPatient_mm(Vec3(next, j, k));
+  piece.tissue_class = std::int8_t(c);
+  if (tissue.ofClass(c).cuttable != 0) return true;
+  piece.cuttable = false;
+  piece.row_step = 0;
+  piece.size_mm = kPlate * voxel_mm_;
+  return false;
+}
+
+SolidSurface::Stale SolidSurface::removed(const TissueField& tissue,
+                                          std::span<const std::uint32_t> voxels,
+                                          const VoxelBounds& box) {
+  some_went_ = true;
+  Stale stale{disks_.meets(box, fit_reach_), under_way_ && next_disks_.meets(box, fit_reach_)};
+  if (!stale.now && !rows_.meets(box)) return stale;
+  for (const std::uint32_t voxel : voxels) {
+    for (std::size_t slot = slotOf(voxel); slots_[slot] != 0; slot = (slot + 1) & slot_mask_) {
+      const std::size_t number = slots_[slot] - 1;
+      SurfacePiece& piece = pieces_[number];
+      if (piece.voxel != voxel) continue;
+      if (piece.row_step == 0) near_known_ = false;
+      if (!goOnAlongRow(tissue, piece)) stale.now = true;
+      const bool gone = piece.voxel == SurfacePiece::kGone;
+      due_mm_[number] = gone ? std::numeric_limits<double>::max()
+                             : std::numeric_limits<double>::lowest();
+      if (!gone) index(number);
+    }
+  }
+  return stale;
+}
+
+void SolidSurface::drop(const TissueField& tissue) {
+  std::size_t kept = 0;
+  for (std::size_t n = 0; n < pieces_.size(); ++n) {
+    if (!tissue.isSolid(tissue.classAt(pieces_[n].voxel))) continue;
+    due_mm_[kept] = due_mm_[n];
+    pieces_[kept++] = pieces_[n];
+  }
+  pieces_.resize(kept);
+  due_mm_.resize(kept);
+  near_known_ = false;
+}
+
+// Fibonacci hashing.
+std::size_t SolidSurface::slotOf(std::uint32_t voxel) const {
+  return std::size_t(voxel * 2654435769u >> 8) & slot_mask_;
+}
+
+void SolidSurface::index() {
+  if (!by_rows_) return;
+  slot_mask_ = std::bit_ceil(4 * pieces_.size() + 4) - 1;
+  std::fill_n(slots_.begin(), slot_mask_ + 1, 0);
+  filled_ = 0;
+  rows_ = {};
+  for (std::size_t n = 0; n < pieces_.size(); ++n) {
+    const SurfacePiece& piece = pieces_[n];
+    if (piece.voxel == SurfacePiece::kGone) continue;
+    index(n);
+    rows_.add(piece.at);
+    if (piece.row_step != 0) rows_.add({piece.row_end, piece.at[1], piece.at[2]});
+  }
+}
+
+// A slot of a voxel that went stays: at most half of them are filled.
+void SolidSurface::index(std::size_t piece) {
+  if (2 * ++filled_ > slot_mask_ + 1) return index();  // which fills a quarter at most
+  std::size_t slot = slotOf(pieces_[piece].voxel);
+  while (slots_[slot] != 0) slot = (slot + 1) & slot_mask_;
+  slots_[slot] = std::uint32_t(piece + 1);
 }
 
 void SolidSurface::addPiece(const TissueField& tissue, const Found& found) {
@@ -419,14 +613,20 @@ void SolidSurface::addPiece(const TissueField& tissue, const Found& found) {
   const double radius = parts_mm_[found.part].radius_m;
   const std::size_t voxel = geometry_.indexOf(i, j, k);
   const int c = tissue.classAt(voxel);
-  if (!tissue.isSolid(c)) return;  // it went meanwhile
   const Cutting cutting = parts_mm_[found.part].cuts ? cutting_ : Cutting::nothing;
   SurfacePiece piece;
   piece.part = std::int32_t(found.part);
   piece.voxel = std::uint32_t(voxel);
-  piece.tissue_class = std::int8_t(c);
-  piece.cuttable =
-      cutting != Cutting::nothing && tissue.ofClass(c).cuttable != 0;
+  piece.at = found.voxel;
+  piece.row_step = found.row_step;
+  piece.row_end = found.row_end;
+  const bool went = !tissue.isSolid(c);  // meanwhile
+  if (went && found.cell != kNoCell) {
+    lost_ = true;
+    return;
+  }
+  piece.tissue_class = std::int8_t(std::max(0, c));
+  piece.cuttable = went || (cutting != Cutting::nothing && tissue.ofClass(c).cuttable != 0);
   Vec3 at = Vec3(i, j, k) * spacing_mm_;
   if (piece.cuttable && cutting == Cutting::driven) {
     // Held by what removal takes and by no row beside it, which would be erased too. Between the
@@ -435,6 +635,7 @@ void SolidSurface::addPiece(const TissueField& tissue, const Found& found) {
     const bool by_centres = radius >= kHalfVoxel * most_mm && !wide_spheres_;
     piece.size_mm = by_centres ? 0.0 : std::max(0.0, half_diagonal_mm_ - radius);
   } else {
+    next_disks_.add(found.voxel);
     const VoxelSurroundings around(tissue, found.voxel, cells_[found.part].apart, c);
     const SurfaceFit fit = fitSurface(around, found.away_mm);
     if (fit.kind == SurfaceFit::Kind::behind) return;

@@ -3,12 +3,16 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
+#include <optional>
 #include <span>
 #include <vector>
 
+#include "haptics/near_pieces.h"
 #include "haptics/surface_fit.h"
 #include "haptics/swept_solid.h"
 #include "haptics/tool.h"
+#include "haptics/touch_version.h"
 
 namespace trephine {
 
@@ -29,24 +33,56 @@ struct PlacedBody {
 // the voxel by partial volume, or a small sphere where the voxel has no clear side (a plate as thin
 // as a voxel). Disks of neighbours overlap, so that nothing slips between them.
 struct SurfacePiece {
+  static constexpr std::uint32_t kGone = std::numeric_limits<std::uint32_t>::max();
+
   Vec3 at_mm{0.0};         // patient
   Vec3 normal{0.0};        // out of the tissue; zero: a sphere
   double size_mm = 0.0;    // radius of the disk or sphere
   std::int32_t part = 0;   // of the tool's body, to which it is near
-  std::uint32_t voxel = 0;
+  std::uint32_t voxel = 0;  // kGone: it went, and no other took its place
+  Index3 at{0, 0, 0};       // the voxel
+  // Of a piece that is one voxel of a row along x: to where its place goes on once it is cut away,
+  // by steps of 1 or -1; 0: of no row.
+  std::int32_t row_end = 0;
+  std::int8_t row_step = 0;
   std::int8_t tissue_class = 0;
   bool cuttable = false;   // by this part
   bool flat = false;       // the surface around it is a plane
-  // The proxy's: the gap when it was last looked at, and how far the tool had travelled then.
-  double gap_mm = 0.0, travelled_mm = 0.0;
 
   template <class Self, class Archive>
   static void visitState(Self& self, Archive& archive) {
     archive(self.at_mm, self.normal, self.size_mm);
     archive.within(self.part, 0, std::int64_t(PlacedBody::kMost));
-    archive(self.voxel);
+    archive(self.voxel, self.at, self.row_end);
+    archive.within(self.row_step, -1, 2);
     archive.within(self.tissue_class, 0, kMaxTissues);
-    archive(self.cuttable, self.flat, self.gap_mm, self.travelled_mm);
+    archive(self.cuttable, self.flat);
+  }
+};
+
+// The least box of some voxels; of none it is empty.
+struct VoxelBounds {
+  Index3 low{kFar, kFar, kFar}, high{-1, -1, -1};
+
+  void add(const Index3& voxel) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      low[axis] = std::min(low[axis], voxel[axis]);
+      high[axis] = std::max(high[axis], voxel[axis]);
+    }
+  }
+  // Whether the two come so near each other.
+  bool meets(const VoxelBounds& other, const Index3& within = {0, 0, 0}) const {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      if (other.high[axis] + within[axis] < low[axis]) return false;
+      if (other.low[axis] - within[axis] > high[axis]) return false;
+    }
+    return true;
+  }
+  static constexpr int kFar = 1 << 30;
+
+  template <class Self, class Archive>
+  static void visitState(Self& self, Archive& archive) {
+    archive(self.low, self.high);
   }
 };
 
@@ -57,23 +93,23 @@ struct Touch {
   Vec3 lever_mm{0.0};       // from the tool's tip to where it touches
 };
 
-Touch touchOf(const SurfacePiece& piece, const PlacedBody& body);
-// The same touch on the common plane of the flat pieces around its place, by weights that fall with
-// distance: a single piece is off by a degree or two.
-Touch blended(const Touch& touch, const SurfacePiece& piece, const PlacedBody& body,
-              std::span<const SurfacePiece> pieces);
-
 // Whether a tool removes what it may, by hand or driven by its motor.
 enum class Cutting { nothing, by_hand, driven };
 
 // Gathers the pieces near a tool. Of those that a part of the tool meets from the same direction
 // only the nearest is kept: after the tool has moved by `margin_mm` another may be nearer, by a
 // fraction of that. No allocation after it is made.
+//
+// What a driven part cuts is kept row by row: of each row of voxels that is looked at, the first on
+// either side of the part. Once it is cut away the next of its row takes its place, so that the
+// surface holds while the tool eats its way into it. A disk whose voxel went, or one near it,
+// belongs to a surface that is another now: that is `stale`.
 class SolidSurface {
  public:
-  // `wide_spheres`: a driven tool thinner than a voxel's diagonal meets spheres between which
+  // `touch_version`: before 12 every tissue is kept by direction, and whatever goes makes all of it
+  // stale; before 10 a driven tool thinner than a voxel's diagonal meets spheres between which
   // nothing slips, whatever its thickness.
-  SolidSurface(const Tool& tool, const GridGeometry& geometry, bool wide_spheres = false);
+  SolidSurface(const Tool& tool, const GridGeometry& geometry, int touch_version = kTouchVersion);
 
   PlacedBody place(const Pose& pose_mm) const;
   // Whether there may be solid tissue near the body on its straight way between two poses.
@@ -87,16 +123,36 @@ class SolidSurface {
   bool goOn(const TissueField& tissue, int work);
   static constexpr int kAll = 1 << 30;
   bool underWay() const { return under_way_; }
+  // The pieces were stale already when they were done.
+  bool cameStale() const { return lost_; }
   void giveUp() { under_way_ = false; }
   int work() const { return work_; }  // of the last search, about in rows of voxels
 
-  // Forgets the pieces that are solid no more.
-  void drop(const TissueField& tissue) {
-    std::erase_if(pieces_, [&](const SurfacePiece& piece) {
-      return !tissue.isSolid(tissue.classAt(piece.voxel));
-    });
+  // Voxels of solid tissue went, all of them in `box`. From now on the pieces are stale, or those of
+  // the search under way will be.
+  struct Stale {
+    bool now = false, next = false;
+  };
+  Stale removed(const TissueField& tissue, std::span<const std::uint32_t> voxels,
+                const VoxelBounds& box);
+  // Before version 12: forgets the pieces that are solid no more.
+  void drop(const TissueField& tissue);
+
+  std::span<const SurfacePiece> pieces() const { return pieces_; }
+  // Until the tool has travelled so far a piece is not nearer to it than `gap_mm`, as note() had it.
+  double leastGap_mm(std::size_t piece, double travelled_mm) const {
+    return due_mm_[piece] - travelled_mm;
   }
-  std::span<SurfacePiece> pieces() { return pieces_; }
+  void note(std::size_t piece, double gap_mm, double travelled_mm) {
+    due_mm_[piece] = gap_mm + travelled_mm;
+  }
+  // Where the body touches a piece, if within a distance. `gap_mm`: at least so far it is.
+  std::optional<Touch> touchWithin(std::size_t piece, const PlacedBody& body, double within_mm,
+                                   double& gap_mm) const;
+  // A touch of a flat piece on the common plane of the pieces around its place, by weights that
+  // fall with distance: a single piece is off by a degree or two.
+  Touch blended(const Touch& touch, std::size_t piece, const PlacedBody& body);
+
   // Whether the centre of a piece's voxel is in the body.
   bool centreIn(const PlacedBody& body) const;
 
@@ -110,9 +166,11 @@ class SolidSurface {
   template <class Self, class Archive>
   static void visitState(Self& self, Archive& archive) {
     archive.grown(self.pieces_);
-    archive(self.near_reach_mm_, self.work_, self.under_way_);
+    archive.grown(self.due_mm_);
+    archive(self.disks_, self.near_reach_mm_, self.work_, self.under_way_);
     if (self.under_way_) {
       archive(self.cutting_, self.next_reach_mm_, self.done_, self.searched_, self.made_);
+      archive(self.next_disks_, self.some_went_, self.lost_);
       archive.grown(self.stretches_);
       archive.grown(self.found_);
       archive.grown(self.next_);
@@ -149,21 +207,23 @@ class SolidSurface {
   // A row of voxels; where right > left, what is between them is not looked at.
   struct Row {
     int from = 0, left = 0, right = 0, to = 0, j = 0, k = 0;
-    std::size_t voxel = 0;
   };
-  // The nearest solid voxel of a cell.
+  // The nearest solid voxel of a cell, or the first of a row.
   struct Found {
     Index3 voxel{0, 0, 0};
     std::size_t part = 0;
     Vec3 away_mm{0.0};  // from the part's axis, in the grid's own axes
     double distance2_mm2 = 0.0;
-    std::int32_t cell = 0;
+    std::int32_t cell = 0;  // kNoCell: of a row
+    std::int32_t row_end = 0;
+    std::int8_t row_step = 0;
 
     template <class Self, class Archive>
     static void visitState(Self& self, Archive& archive) {
       archive(self.voxel);
       archive.within(self.part, 0, std::int64_t(PlacedBody::kMost));
-      archive(self.away_mm, self.distance2_mm2, self.cell);
+      archive(self.away_mm, self.distance2_mm2, self.cell, self.row_end);
+      archive.within(self.row_step, -1, 2);
     }
   };
   void addStretch(const TissueField& tissue, Stretch stretch);
@@ -171,8 +231,20 @@ class SolidSurface {
   bool takeOver();
   int searchPlane(const TissueField& tissue, Stretch& stretch);
   void searchRows(const TissueField& tissue, const Stretch& stretch, std::span<const Row> rows);
-  void find(const Index3& voxel, const Stretch& stretch);
+  void searchCutRow(const TissueField& tissue, const Stretch& stretch, const Row& row);
+  void find(const TissueField& tissue, const Index3& voxel, const Stretch& stretch, int row_step = 0,
+            int row_end = 0);
   void addPiece(const TissueField& tissue, const Found& found);
+  void finish(const TissueField& tissue);
+  bool cutsRows(std::size_t part) const {
+    return by_rows_ && cutting_ == Cutting::driven && parts_mm_[part].cuts;
+  }
+  bool mayCut(const TissueField& tissue, const Index3& voxel) const;
+  bool goOnAlongRow(const TissueField& tissue, SurfacePiece& piece) const;
+  std::size_t rowsAround(const Cells& of, double length_mm, double around_mm) const;
+  void index();
+  void index(std::size_t piece);
+  std::size_t slotOf(std::uint32_t voxel) const;
   Index3 rowsApart(double radius_mm) const;
 
   GridGeometry geometry_;
@@ -181,8 +253,12 @@ class SolidSurface {
   std::vector<Cells> cells_;
   Vec3 spacing_mm_;
   double voxel_mm_, half_diagonal_mm_, margin_mm_, reach_mm_;
-  bool wide_spheres_;
+  bool wide_spheres_, by_rows_;
+  Index3 fit_reach_{0, 0, 0};  // voxels around a disk's that its place follows from
   std::vector<SurfacePiece> pieces_;
+  std::vector<double> due_mm_;  // by piece
+  VoxelBounds disks_;              // of pieces that are not of rows
+  VoxelBounds rows_;               // where those of rows are, or may come
   double near_reach_mm_ = 0.0;
   // The search that is under way.
   bool under_way_ = false;
@@ -192,10 +268,20 @@ class SolidSurface {
   std::vector<Stretch> stretches_;
   std::vector<Found> found_;
   std::vector<SurfacePiece> next_;
+  VoxelBounds next_disks_;
+  bool some_went_ = false;  // voxels since it began
+  bool lost_ = false;       // what stands behind one that went is not known
   std::size_t searched_ = 0, made_ = 0;  // of stretches, of found
   std::vector<std::int32_t> cell_;    // of each cell: which of the found it has
   std::vector<std::uint32_t> stamp_;   // of each cell, when it was last filled
   std::uint32_t turn_ = 0;
+  // What follows from the pieces: by voxel, open addressing, a piece's number and one; and disks by
+  // their places, made when they are asked for.
+  std::vector<std::uint32_t> slots_;
+  std::size_t slot_mask_ = 0, filled_ = 0;
+  NearPieces near_{0};
+  bool near_known_ = false;
+  static constexpr std::int32_t kNoCell = -1;
 };
 
 }  // namespace trephine

@@ -9,7 +9,7 @@ constexpr std::size_t kBricksSearched = 4096;  // for one to recount, a tick
 }
 
 TissueBricks::TissueBricks(const Grid& grid, const TissueLookup& lookup)
-    : size_(grid.geometry().size) {
+    : size_(grid.geometry().size), solid_(size_) {
   for (int axis = 0; axis < 3; ++axis) bricks_[axis] = (size_[axis] + kBrickEdge - 1) / kBrickEdge;
   count_.assign(std::size_t(bricks_[0]) * std::size_t(bricks_[1]) * std::size_t(bricks_[2]), {});
   std::size_t voxel = 0;
@@ -21,14 +21,16 @@ TissueBricks::TissueBricks(const Grid& grid, const TissueLookup& lookup)
         if (c < 0) continue;
         Brick& brick = count_[row + std::size_t(i >> kBrickShift)];
         ++brick.tissue;
-        if (lookup.isSolid(c)) ++brick.solid;
+        if (!lookup.isSolid(c)) continue;
+        ++brick.solid;
+        solid_.set({i, j, k}, true);
       }
     }
   }
 }
 
 TissueBricks::Brick TissueBricks::tissueIn(std::size_t brick, const Grid& grid,
-                                           const TissueLookup& lookup) const {
+                                           const TissueLookup& lookup) {
   const GridGeometry& g = grid.geometry();
   const std::size_t row = brick / std::size_t(bricks_[0]);
   const int from[3] = {int(brick % std::size_t(bricks_[0])) << kBrickShift,
@@ -40,12 +42,12 @@ TissueBricks::Brick TissueBricks::tissueIn(std::size_t brick, const Grid& grid,
   for (int k = from[2]; k < to[2]; ++k) {
     for (int j = from[1]; j < to[1]; ++j) {
       const std::size_t first = g.indexOf(from[0], j, k);
-      const std::size_t end = first + std::size_t(to[0] - from[0]);
-      for (std::size_t v = first; v < end; ++v) {
-        const int c = lookup.classAt(grid, v);
-        if (c < 0) continue;
-        ++count.tissue;
-        if (lookup.isSolid(c)) ++count.solid;
+      for (int i = from[0]; i < to[0]; ++i) {
+        const int c = lookup.classAt(grid, first + std::size_t(i - from[0]));
+        const bool solid = lookup.isSolid(c);
+        solid_.set({i, j, k}, solid);
+        count.tissue += c >= 0;
+        count.solid += solid;
       }
     }
   }
@@ -54,12 +56,12 @@ TissueBricks::Brick TissueBricks::tissueIn(std::size_t brick, const Grid& grid,
 
 void TissueBricks::recount(const Grid& grid, const TissueLookup& lookup) {
   const std::size_t searched = unknown_ == 0 ? 0 : std::min(kBricksSearched, count_.size());
-  for (std::size_t n = 0; n < searched; ++n) {
+  for (std::size_t n = 0; n < searched && unknown_ > 0; ++n) {
     const std::size_t brick = next_;
     next_ = next_ + 1 == count_.size() ? 0 : next_ + 1;
     if (count_[brick].tissue != kUnknown) continue;
     count_[brick] = tissueIn(brick, grid, lookup);
-    --unknown_;
+    if (--unknown_ == 0) solid_known_ = true;
     return;
   }
 }

@@ -1,5 +1,5 @@
 // How many voxels of tissue each 16^3 brick of the grid may hold, and how many of them are solid:
-// where none, a tool does not look at its voxels. Counted before the first tick, less one for every
+// where none, a tool does not look at its voxels. And which voxels are solid. Counted before the first tick, less one for every
 // voxel that is removed. A brick that became unknown is counted anew, one a tick.
 #pragma once
 
@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "haptics/solid_bits.h"
 #include "haptics/tissue_lookup.h"
 #include "volume/grid.h"
 
@@ -19,6 +20,7 @@ class TissueBricks {
   void markAll() {
     std::fill(count_.begin(), count_.end(), kUnknownBrick);
     unknown_ = count_.size();
+    solid_known_ = false;
   }
   // Tissue came back, or went again, in this brick of the grid.
   void mark(std::size_t brick) {
@@ -29,7 +31,13 @@ class TissueBricks {
   void recount(const Grid& grid, const TissueLookup& lookup);
   std::size_t unknown() const { return unknown_; }  // bricks
 
+  // The solid voxels; null after markAll() until every brick was counted anew.
+  const SolidBits* solid() const { return solid_known_ ? &solid_ : nullptr; }
+  // A voxel that came back or went again is solid now, or not.
+  void setSolid(const Index3& voxel, bool solid) { solid_.set(voxel, solid); }
+
   void remove(const Index3& voxel, bool solid) {
+    solid_.set(voxel, false);
     Brick& brick =
         count_[at(voxel[0] >> kBrickShift, voxel[1] >> kBrickShift, voxel[2] >> kBrickShift)];
     if (brick.tissue == kUnknown) return;
@@ -87,7 +95,7 @@ class TissueBricks {
     }
     return false;
   }
-  Brick tissueIn(std::size_t brick, const Grid& grid, const TissueLookup& lookup) const;
+  Brick tissueIn(std::size_t brick, const Grid& grid, const TissueLookup& lookup);
   std::size_t at(int i, int j, int k) const {
     return (std::size_t(k) * std::size_t(bricks_[1]) + std::size_t(j)) * std::size_t(bricks_[0]) +
            std::size_t(i);
@@ -98,6 +106,9 @@ class TissueBricks {
   std::vector<Brick> count_;
   std::size_t unknown_ = 0;
   std::size_t next_ = 0;  // to be recounted, if it is unknown
+  // They follow from the grid, and are no part of the state.
+  SolidBits solid_;
+  bool solid_known_ = true;
 };
 
 }  // namespace trephine

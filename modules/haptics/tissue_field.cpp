@@ -11,10 +11,20 @@ TissueField::Change TissueField::use(const TissueTable& tissues) {
     same_cuts = same_cuts && same_voxels && a.cuttable == b.cuttable;
   }
   tissues_ = tissues;
+  countCuts();
   if (same_voxels) return same_cuts ? Change::numbers : Change::cuts;
   lookup_.set(tissues);
   bricks_.markAll();
   return Change::voxels;
+}
+
+void TissueField::countCuts() {
+  int solid = 0, cuttable = 0;
+  for (int c = 0; c < tissues_.count; ++c) {
+    solid += ofClass(c).solid != 0;
+    cuttable += ofClass(c).solid != 0 && ofClass(c).cuttable != 0;
+  }
+  cuts_of_solid_ = cuttable == 0 ? Cuts::none : cuttable < solid ? Cuts::some : Cuts::all;
 }
 
 }  // namespace trephine

@@ -18,7 +18,9 @@ class TissueField {
  public:
   // The grid outlives it.
   TissueField(const Grid& grid, const TissueTable& tissues)
-      : grid_(grid), tissues_(tissues), lookup_(tissues), bricks_(grid, lookup_) {}
+      : grid_(grid), tissues_(tissues), lookup_(tissues), bricks_(grid, lookup_) {
+    countCuts();
+  }
 
   // What another table of tissues changes: the numbers of the classes alone, which of them may be
   // cut, or which voxels they are in; each with those before it.
@@ -53,6 +55,9 @@ class TissueField {
     return voxel < 0 ? -1 : classAt(std::size_t(voxel));
   }
   bool isSolid(int tissue_class) const { return lookup_.isSolid(tissue_class); }
+  // How much of all solid tissue tools may cut.
+  enum class Cuts { none, some, all };
+  Cuts cutsOfSolid() const { return cuts_of_solid_; }
   bool firmer(int a, int b) const { return trephine::firmer(tissues_, a, b); }
 
   // Whether there may be tissue, or solid tissue, between two places, those included. False for
@@ -62,12 +67,37 @@ class TissueField {
     return bricks_.mayHoldSolid(low, high);
   }
 
+  // The first solid voxel of row (j, k) along x: from `from` up to `to`, to + 1 where there is none;
+  // and down from `from` to `to`, to - 1 where there is none. All within the grid.
+  int solidUp(int from, int to, int j, int k) const {
+    if (const SolidBits* bits = bricks_.solid()) return bits->up(from, to, j, k);
+    while (from <= to && !isSolidAt(from, j, k)) ++from;
+    return from;
+  }
+  int solidDown(int from, int to, int j, int k) const {
+    if (const SolidBits* bits = bricks_.solid()) return bits->down(from, to, j, k);
+    while (from >= to && !isSolidAt(from, j, k)) --from;
+    return from;
+  }
+  bool isSolidAt(int i, int j, int k) const {
+    if (const SolidBits* bits = bricks_.solid()) return bits->at({i, j, k});
+    return isSolid(classAt(geometry().indexOf(i, j, k)));
+  }
+  // Hints that a row will be searched near a voxel.
+  void prefetchSolid(int i, int j, int k) const {
+    if (const SolidBits* bits = bricks_.solid()) return bits->prefetch(i, j, k);
+    prefetch(geometry().indexOf(i, j, k));
+  }
+
   // A voxel of this class went.
   void removed(const Index3& voxel, int tissue_class) {
     bricks_.remove(voxel, isSolid(tissue_class));
   }
   // A voxel came back, or went again.
-  void changed(std::size_t voxel) { bricks_.mark(grid_.brickOf(voxel)); }
+  void changed(std::size_t voxel) {
+    bricks_.mark(grid_.brickOf(voxel));
+    bricks_.setSolid(geometry().indicesOf(voxel), isSolid(classAt(voxel)));
+  }
   // Counts one of the bricks that changed, a tick.
   void recount() { bricks_.recount(grid_, lookup_); }
   std::size_t unknownBricks() const { return bricks_.unknown(); }  // of which air is not known
@@ -88,10 +118,13 @@ class TissueField {
   }
 
  private:
+  void countCuts();
+
   const Grid& grid_;
   TissueTable tissues_;
   TissueLookup lookup_;
   TissueBricks bricks_;
+  Cuts cuts_of_solid_ = Cuts::none;
 };
 
 }  // namespace trephine
