@@ -13,6 +13,7 @@
 #include "machine/commission/arm_checks.h"
 #include "machine/commission/commission.h"
 #include "machine/commission/start_check.h"
+#include "machine/trades/recommended.h"
 
 namespace trephine {
 
@@ -50,14 +51,28 @@ int commissionCommand(const CommissionArguments& arguments, const Policy& policy
   if (before) changes = changesSince(*before, *made);
   const std::string text = toJson(*made).dump(1) + "\n";
   const std::string recommended = toJson(made->recommended).dump(2) + "\n";
+  std::vector<RecommendedSetting> own_now = made->recommended;
+  const auto config = configFolder();
+  std::error_code ec;
+  if (config && std::filesystem::exists(*config / "recommended.json", ec)) {
+    const auto own = readRecommended(*config / "recommended.json");
+    if (own) {
+      own_now = renewed(*own, made->recommended);
+    } else {
+      spdlog::warn("A recommended.json is made anew. {}",
+                   own.error().sentence());
+    }
+  }
+  const std::string stands = toJson(own_now).dump(2) + "\n";
   // The next compares with it, and what is recommended here stands from now on.
   for (const auto& [folder, file, words] :
        {std::tuple(state, "commission.json", &text),
-        std::tuple(configFolder(), "recommended.json", &recommended)}) {
+        std::tuple(config, "recommended.json", &stands)}) {
     if (!folder) continue;
     Status kept = makeFolder(*folder);
     if (kept) kept = writeTextFile(*folder / file, *words);
-    if (!kept) spdlog::warn("{} is not kept for the next time: {}", file, kept.error().what);
+    if (!kept)
+      spdlog::warn("{} is not kept for the next time. {}", file, kept.error().sentence());
   }
   Status written = writeTextFile(out / "commission.json", text);
   if (written) written = writeTextFile(out / "commission.html", toHtml(*made, changes));

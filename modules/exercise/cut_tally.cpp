@@ -12,8 +12,9 @@ void count(CutVoxels& voxels, int tissue) {
 
 CutVoxels cutVoxels(const TrueTissues& tissues, const Volume& before, const Grid& after) {
   CutVoxels cut;
+  TrueTissues::Enclosed known;
   for (std::size_t voxel = 0; voxel < before.hu.size(); ++voxel) {
-    if (after.hu(voxel) != before.hu[voxel]) count(cut, tissues.at(voxel));
+    if (after.hu(voxel) != before.hu[voxel]) count(cut, tissues.at(voxel, &known));
   }
   return cut;
 }
@@ -29,7 +30,7 @@ int CutTally::nameOf(std::size_t voxel, int& left) {
   std::int8_t& name = block->second[voxel & ((std::size_t(1) << kBlockBits) - 1)];
   if (name == kNotYet && left > 0) {
     --left;
-    name = std::int8_t(tissues_.at(voxel));
+    name = std::int8_t(tissues_.at(voxel, &enclosed_));
   }
   return name;
 }

@@ -51,6 +51,7 @@ class CutTally {
   static constexpr int kBlockBits = 10;
   static constexpr std::int8_t kNotYet = -2;
   std::unordered_map<std::size_t, std::array<std::int8_t, 1 << kBlockBits>> names_;
+  TrueTissues::Enclosed enclosed_;
   CutVoxels counts_, so_far_;
   VoxelBox box_{};              // the one that it is going through
   std::optional<Index3> next_;  // where it goes on

@@ -17,6 +17,7 @@ constexpr int kReach = 2;
 constexpr int kOutside_HU = -300;
 // A wall is looked for so far, and in each direction every so many of the finest spacing.
 constexpr double kWall_mm = 160.0, kWallStep = 0.9;
+constexpr int kBlock = 4;  // voxels, along each axis
 
 // What lies within the skull of the built-in head.
 bool isInSkull(PhantomTissue tissue) {
@@ -66,6 +67,15 @@ int ofNeighbours(const TissueTable& table, double hu, int own, double mean, cons
       }
     }
   }
+  // What two tissues and a mean between them make may have the HU of a third, which is then nowhere
+  // about.
+  const auto ifMet = [&](int tissue) {
+    if (tissue < 0 || tissue == own) return tissue;
+    for (int n = 0; n < 125; ++n) {
+      if (classify(table, huAt(n % 5 - 2, n / 5 % 5 - 2, n / 25 - 2)) == tissue) return tissue;
+    }
+    return own;
+  };
   const double below = near[0].mean(hu), above = near[1].mean(hu);
   // Where the HU turn back farther on, something else begins there.
   const double low = std::min(below, far[0].mean(below)),
@@ -74,11 +84,11 @@ int ofNeighbours(const TissueTable& table, double hu, int own, double mean, cons
   const bool layer = hu > above + kEdge_HU / 2 || hu < below - kEdge_HU / 2;
   if (layer) return own;
   if (above - below >= std::max(kEdge_HU, kRise * (high - low))) {
-    if (hu - low > high - hu) return classify(table, std::round(high));
+    if (hu - low > high - hu) return ifMet(classify(table, std::round(high)));
     return own == classify(table, std::round(low)) ? own : -1;
   }
   // A wall that is thinner than its neighbourhood keeps its own.
-  return classify(table, std::abs(mean - hu) < kEdge_HU ? std::round(mean) : hu);
+  return std::abs(mean - hu) < kEdge_HU ? ifMet(classify(table, std::round(mean))) : own;
 }
 
 }  // namespace
@@ -102,13 +112,13 @@ TrueTissues::TrueTissues(const TissueSet& tissues, const Volume& before, const L
   }
 }
 
-int TrueTissues::at(std::size_t voxel) const {
+int TrueTissues::at(std::size_t voxel, Enclosed* known) const {
   const int hu = before_.hu[voxel];
   if (hu == kRemovedHu) return kUnnamed;
   const int label = labels_ ? labels_->labels[voxel] : 0;
   if (const int of = ofLabel(hu, label); of >= 0) return of;
   const Index3 at = before_.geometry.indicesOf(voxel);
-  return formula_ ? ofFormula(at) : ofHu(at);
+  return formula_ ? ofFormula(at, known) : ofHu(at, known);
 }
 
 // Of several with that label, the one whose range holds the HU or is nearest to it.
@@ -127,7 +137,7 @@ int TrueTissues::ofLabel(int hu, int label) const {
   return nearest;
 }
 
-int TrueTissues::ofFormula(const Index3& voxel) const {
+int TrueTissues::ofFormula(const Index3& voxel, Enclosed* known) const {
   const PhantomTissue truth =
       (*formula_)(Vec3(to_mm_ * glm::dvec4(voxel[0], voxel[1], voxel[2], 1.0)));
   if (truth == PhantomTissue::air) return kUnnamed;
@@ -139,10 +149,10 @@ int TrueTissues::ofFormula(const Index3& voxel) const {
   const TissueClass& wall = table_.classes[std::size_t(by)];
   const bool is_bone = truth >= PhantomTissue::outerTable && truth <= PhantomTissue::innerTable;
   const bool by_skull = is_head_ && !is_bone && bone >= wall.hu_min && bone <= wall.hu_max;
-  return (by_skull ? isInSkull(truth) : isEnclosed(voxel, by)) ? of : kUnnamed;
+  return (by_skull ? isInSkull(truth) : isEnclosed(voxel, by, known)) ? of : kUnnamed;
 }
 
-int TrueTissues::ofHu(const Index3& voxel) const {
+int TrueTissues::ofHu(const Index3& voxel, Enclosed* known) const {
   const GridGeometry& g = before_.geometry;
   const double hu = before_.at(voxel[0], voxel[1], voxel[2]);
   // The scan's end goes on beyond it.
@@ -170,12 +180,44 @@ int TrueTissues::ofHu(const Index3& voxel) const {
   }
   if (of < 0) return kUnnamed;
   const int by = within_[std::size_t(of)];
-  return by >= 0 && !isEnclosed(voxel, by) ? kUnnamed : of;
+  return by >= 0 && !isEnclosed(voxel, by, known) ? kUnnamed : of;
 }
 
-bool TrueTissues::isEnclosed(const Index3& voxel, int by) const {
-  const GridGeometry& g = before_.geometry;
+TrueTissues::Meets TrueTissues::meets(std::size_t voxel, int by) const {
   const TissueClass& wall = table_.classes[std::size_t(by)];
+  const int hu = before_.hu[voxel];
+  if (hu >= wall.hu_min && hu <= wall.hu_max &&
+      (wall.label == 0 || (labels_ && labels_->labels[voxel] == wall.label))) {
+    return Meets::wall;
+  }
+  return hu < kOutside_HU ? Meets::air : Meets::neither;
+}
+
+// Of voxels in one block from which nothing stands between, one is asked for all.
+bool TrueTissues::isEnclosed(const Index3& voxel, int by, Enclosed* known) const {
+  const GridGeometry& g = before_.geometry;
+  Index3 middle;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    middle[axis] = std::min(g.size[axis] - 1, voxel[axis] / kBlock * kBlock + kBlock / 2);
+  }
+  const Vec3 from(voxel[0], voxel[1], voxel[2]), to(middle[0], middle[1], middle[2]);
+  constexpr int kLooks = 2 * kBlock;
+  for (int n = 1; n <= kLooks; ++n) {
+    const Vec3 at = glm::round(from + double(n) / kLooks * (to - from));
+    if (meets(g.indexOf(int(at.x), int(at.y), int(at.z)), by) != Meets::neither) {
+      return isEnclosedAt(voxel, by);
+    }
+  }
+  if (!known) return isEnclosedAt(middle, by);
+  const std::size_t key =
+      g.indexOf(middle[0], middle[1], middle[2]) * std::size_t(kMaxTissues) + std::size_t(by);
+  const auto [at, fresh] = known->try_emplace(key, false);
+  if (fresh) at->second = isEnclosedAt(middle, by);
+  return at->second;
+}
+
+bool TrueTissues::isEnclosedAt(const Index3& voxel, int by) const {
+  const GridGeometry& g = before_.geometry;
   const double step_mm = kWallStep * std::min({g.spacing_mm.x, g.spacing_mm.y, g.spacing_mm.z});
   const int steps = int(kWall_mm / step_mm);
   int met = 0, missed = 0;
@@ -186,14 +228,12 @@ bool TrueTissues::isEnclosed(const Index3& voxel, int by) const {
       at += step;
       const int i = int(std::floor(at.x)), j = int(std::floor(at.y)), k = int(std::floor(at.z));
       if (!g.contains(i, j, k)) break;  // nobody knows what is there
-      const std::size_t index = g.indexOf(i, j, k);
-      const int hu = before_.hu[index];
-      if (hu >= wall.hu_min && hu <= wall.hu_max &&
-          (wall.label == 0 || (labels_ && labels_->labels[index] == wall.label))) {
+      const Meets here = meets(g.indexOf(i, j, k), by);
+      if (here == Meets::wall) {
         ++met;
         break;
       }
-      if (hu < kOutside_HU || n + 1 == steps) {
+      if (here == Meets::air || n + 1 == steps) {
         ++missed;
         break;
       }

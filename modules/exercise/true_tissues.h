@@ -4,11 +4,12 @@
 // Touch goes by each voxel's own HU and label (classify), so that the border between fat and bone
 // is felt as whatever tissue has the HU half-way. Here such a voxel is named after the side that it
 // is mostly of, or not at all. In this order:
-// 1. A label that a tissue is restricted to says it.
+// 1. A label that a tissue is restricted to says it, whatever the HU: its map is taken at its word.
 // 2. Of a built-in case, the formula that painted it says what lies at the voxel's centre.
 // 3. Else HU. Where they rise by kEdge_HU across the voxel, along their gradient, it lies at an
 //    edge, unless it is a layer between two: mostly of the upper side, it is of that side's
 //    tissue; mostly of the lower, of its own where that is the lower side's too, else of none.
+//    No mean makes it a tissue that no voxel within two of it has.
 //    (The rule by which the picture tells tissue from partial volume.) A layer that is over or
 //    under both of its sides, as thin bone, keeps its own. Elsewhere its neighbours' mean takes
 //    the noise away.
@@ -26,6 +27,7 @@
 #include <cstddef>
 #include <optional>
 #include <string>
+#include <unordered_map>
 
 #include "tissue/tissue_set.h"
 #include "volume/label_map.h"
@@ -47,14 +49,22 @@ class TrueTissues {
   TrueTissues(const TissueSet& tissues, const Volume& before, const LabelMap* labels,
               const std::string& case_source);
 
-  // The tissue's place in the set, or kUnnamed. Pure; microseconds. Any thread.
-  int at(std::size_t voxel) const;
+  // What was found of places, for voxels near them that are asked for later. Of one TrueTissues.
+  using Enclosed = std::unordered_map<std::size_t, bool>;
+
+  // The tissue's place in the set, or kUnnamed; the same with what is `known` as without. Some
+  // microseconds, of a tissue that may be enclosed 10 to 20, a hundredth of that with `known`. Any
+  // thread.
+  int at(std::size_t voxel, Enclosed* known = nullptr) const;
 
  private:
   int ofLabel(int hu, int label) const;
-  int ofFormula(const Index3& voxel) const;
-  int ofHu(const Index3& voxel) const;
-  bool isEnclosed(const Index3& voxel, int by) const;
+  int ofFormula(const Index3& voxel, Enclosed* known) const;
+  int ofHu(const Index3& voxel, Enclosed* known) const;
+  enum class Meets { neither, wall, air };
+  Meets meets(std::size_t voxel, int by) const;
+  bool isEnclosed(const Index3& voxel, int by, Enclosed* known) const;
+  bool isEnclosedAt(const Index3& voxel, int by) const;
 
   TissueTable table_;
   std::array<int, kMaxTissues> within_{};  // by tissue: its encloser's place, or -1

@@ -126,6 +126,15 @@ Status validate(const TissueSet& set, const std::string& file) {
       return bad(file, field + ".within", tr("'{}' cannot be enclosed by '{}'", t.id, t.within),
                  tr("Name another tissue of the set, or none"));
     }
+    const Tissue* around = &t;
+    for (std::size_t n = 0; around && n < set.tissues.size(); ++n) {
+      around = around->within.empty() ? nullptr : set.find(around->within);
+      if (around != &t) continue;
+      return bad(file, field + ".within",
+                 tr("'{}' is enclosed by '{}', which lies inside of '{}' itself", t.id, t.within,
+                    t.id),
+                 tr("Name a tissue that lies farther out, or none"));
+    }
     if (!kShareRange.holds(t.opacity)) {
       return bad(file, field + ".opacity",
                  tr("The opacity {} is not between 0 and 1", shown(t.opacity)));

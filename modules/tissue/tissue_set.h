@@ -89,7 +89,7 @@ inline constexpr FieldOf<Tissue> kTissueFields[] = {
       {},
       Given::may_be,
       trLater("the `id` of the tissue that encloses this one in a body, as a skull its brain: what "
-              "was cut is named after this one only there"),
+              "was cut is named after this one only there, elsewhere 'Not told apart'"),
       trLater("Inside")},
      ReferenceIn<Tissue>{&Tissue::within}},
 };

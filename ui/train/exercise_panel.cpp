@@ -71,6 +71,9 @@ ExercisePanel::ExercisePanel(QWidget* parent) : QWidget(parent) {
   hands_ = wrappedLabel("exerciseHands");
   time_ = namedLabel("exerciseTime", {"largest"});
   removed_ = richLabel("exerciseRemoved");
+  removed_->setToolTip(
+      tr("What is cut now, by tissue. Not told apart: at the edge of two tissues, of HU that no "
+         "tissue has, or of an enclosed tissue's HU outside of what encloses it"));
   keys_ = wrappedLabel("exerciseKeys", {"quiet"});
   keys_->setText(
       tr("Mouse or arrows: where the tool goes. Wheel up or down, Page Down or Up: presses more or "

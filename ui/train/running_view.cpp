@@ -80,6 +80,11 @@ void RunningView::begin(Session& session) {
 
 void RunningView::end(Session& session) {
   showState(session, session.state(), false);
+  // As the result has it: what came after the last look counts too.
+  if (!session.isPoke()) {
+    exercise_.showTime(double(session.state().seconds));
+    showRemoved(session, true);
+  }
   if (worked_at_mm_ && !session.isPoke()) views_.setPoint(*worked_at_mm_);
   arms_.showIdle();
   arms_.showController(workstation_.exercise()->controller);

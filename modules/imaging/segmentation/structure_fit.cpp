@@ -360,7 +360,9 @@ Result<StructureFit> fitted(Segmentation& of, const Volume& ct, const Answers& a
     const double percent = 100.0 * double(shares[s].far_outside) / double(shares[s].voxels);
     if (percent < kMostOutside_percent) continue;
     return Error{code::kHalfOutside,
-                 tr("Of the structure '{}' {} % lie outside of the CT", of.segments[s].name,
+                 tr("Of the structure '{}' {} % lie outside of the CT",
+                    of.segments[s].name.empty() ? tr("label {}", int(of.segments[s].value))
+                                                : of.segments[s].name,
                     number(percent)),
                  tr("the segmentation"), tr("Choose the one that was made from this CT")};
   }

@@ -194,26 +194,29 @@ Result<bool> stepFace(const CoarseGrid& grid, const ImportRequest& request, Seri
 }
 
 // Whether slices were put between the slices. Errors: OUT_OF_MEMORY, BAD_SIZE.
-Result<bool> stepThickSlices(const Answers& answers, SeriesReport& series, Volume& volume) {
+Result<bool> stepThickSlices(const ImportRequest& request, SeriesReport& series, Volume& volume) {
+  const Answers& answers = request.answers;
+  const std::string reduced = request.reduction > 1 ? tr(" at the reduced resolution") : "";
   const int steps = stepsBetweenSlices(volume.geometry);
   if (steps == 1) return false;
   const double apart_mm = volume.geometry.spacing_mm.z;
   const std::string thin = fixedText(apart_mm / steps, 2);
   const std::string answer = ask(
       {code::kThickSlices,
-       tr("The slices lie {} mm apart. Interpolate slices {} mm apart between them?",
-          fixedText(apart_mm, 2), thin),
+       tr("The slices lie {} mm apart{}. Interpolate slices {} mm apart between them?",
+          fixedText(apart_mm, 2), reduced, thin),
        {"keep", "interpolate"},
-       {tr("Keep the slices: a thin tool cuts too much across them, a driven one sinks in up to "
-           "{} mm before it is held",
+       {tr("Keep the slices: needles and blades cut too much across them, a turning burr or saw "
+           "sinks in up to {} mm before it is stopped",
            fixedText(0.5 * apart_mm, 1)),
-        tr("Interpolate: tools are felt and cut as wide as they are; detail between the slices "
-           "is only apparent")}},
+        tr("Interpolate (better for touch): each tool cuts as wide as it is; detail between the "
+           "slices is only apparent, and the case is {} times as large",
+           steps)}},
       answers, series.choices);
   const std::string text =
-      tr("The slices lie {} mm apart, which is coarse for touch: a tool meets "
+      tr("The slices lie {} mm apart{}, which is coarse for touch: a tool meets "
          "and cuts voxels whole",
-         fixedText(apart_mm, 2));
+         fixedText(apart_mm, 2), reduced);
   if (answer != "interpolate") {
     series.findings.push_back({code::kThickSlices,
                                Severity::notice,
@@ -231,7 +234,7 @@ Result<bool> stepThickSlices(const Answers& answers, SeriesReport& series, Volum
        text,
        {},
        tr("Slices {} mm apart were interpolated between them, as was chosen: {} became {}. Detail "
-          "between the scanned slices is only apparent",
+          "between these slices is only apparent",
           thin, volume.geometry.size[2], between->geometry.size[2])});
   volume = *std::move(between);
   return true;
@@ -279,7 +282,7 @@ Status takeVolumeSteps(const ImportRequest& request, const Progress& progress, S
     changed = true;
   }
   if (progress.cancelled()) return cancelled();
-  const Result<bool> thinner = stepThickSlices(request.answers, series, volume);
+  const Result<bool> thinner = stepThickSlices(request, series, volume);
   if (!thinner) return thinner.error();
   changed |= *thinner;
   if (progress.cancelled()) return cancelled();

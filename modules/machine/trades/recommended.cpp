@@ -50,6 +50,19 @@ Result<std::vector<RecommendedSetting>> readRecommended(const std::filesystem::p
   return settings;
 }
 
+std::vector<RecommendedSetting> renewed(std::vector<RecommendedSetting> before,
+                                        const std::vector<RecommendedSetting>& now) {
+  for (const RecommendedSetting& setting : now) {
+    const auto same = std::ranges::find(before, setting.knob, &RecommendedSetting::knob);
+    if (same == before.end()) {
+      before.push_back(setting);
+    } else {
+      *same = setting;
+    }
+  }
+  return before;
+}
+
 Result<std::vector<RecommendedSetting>> recommendedHere(const Policy& policy,
                                                         const std::filesystem::path& own_folder) {
   constexpr const char* kFile = "recommended.json";
@@ -63,7 +76,7 @@ Result<std::vector<RecommendedSetting>> recommendedHere(const Policy& policy,
     Result<std::vector<RecommendedSetting>> over = readRecommended(folder / kFile);
     if (!over && folder == resourceFolder()) return over.error();
     if (!over) {
-      spdlog::warn("A recommended.json is left out: {}", over.error().what);
+      spdlog::warn("A recommended.json is left out. {}", over.error().sentence());
       continue;
     }
     for (RecommendedSetting& setting : *over) {

@@ -28,6 +28,11 @@ Json toJson(const std::vector<RecommendedSetting>& settings);
 // figure below 0, a knob given twice).
 Result<std::vector<RecommendedSetting>> readRecommended(const std::filesystem::path& file);
 
+// Those of `before`, each replaced by that of its knob in `now` where there is one, and then the
+// others of `now`: a measurement that leaves a knob out says nothing of it.
+std::vector<RecommendedSetting> renewed(std::vector<RecommendedSetting> before,
+                                        const std::vector<RecommendedSetting>& now);
+
 // What holds on this machine, knob by knob: the person's recommended.json (`own_folder`, empty:
 // none) over the hospital's in the policy's folder over the product's in resourceFolder(). Each of
 // the three may be missing; without any it is empty. Where the policy locks the rate, rate_hz is

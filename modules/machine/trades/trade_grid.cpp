@@ -104,7 +104,7 @@ TradeRows tradeGrid(const TradesOptions& options, const Progress& progress) {
   struct OfGrid {
     const char* name;
     int factor;
-    std::vector<double> volume_percent, off_mm, removed_mm3, tick_ns;
+    std::vector<double> volume_percent{}, off_mm{}, removed_mm3{}, tick_ns{};
     double megabytes = 0.0;
   };
   std::vector<OfGrid> grids{{"full", 1}, {"half", 2}, {"quarter", 4}};

@@ -9,9 +9,11 @@
 #include <QListWidget>
 #include <QMessageBox>
 #include <QPushButton>
+#include <QRegularExpression>
 #include <QSignalSpy>
 #include <QStandardItemModel>
 #include <QStatusBar>
+#include <QTextDocument>
 #include <QToolBar>
 #include <QToolButton>
 #include <QtTest>
@@ -115,7 +117,17 @@ class TrainGuiTest : public test::TrainTest {
     key(Qt::Key_Period, Qt::ControlModifier);
     QTRY_VERIFY_WITH_TIMEOUT(find<QWidget>("resultPage")->isVisible(), kLong_ms);
     QVERIFY(find<QLabel>("resultRows")->text().contains("Bone"));
+    QCOMPARE(boneIn("exerciseRemoved"), boneIn("resultRows"));
     QVERIFY(window_->grab().save(TREPHINE_ARTEFACTS "/train-result.png"));
+  }
+
+  // How much bone a label says was removed, with its unit.
+  QString boneIn(const char* label) {
+    QTextDocument text;
+    text.setHtml(find<QLabel>(label)->text());
+    const QRegularExpression bone("Bone\\s+([0-9.]+\\s*\\S+)");
+    const QString words = bone.match(text.toPlainText()).captured(1);
+    return words.isEmpty() ? QString("%1 has no bone").arg(label) : words;
   }
 
   void whileItRunsForceAndEnergyAreTraced() {

@@ -186,6 +186,22 @@ TEST(WithTissues, ALandmarkWhoseTissueIsGoneTakesASolidOneAndThatIsSaid) {
   EXPECT_TRUE(withTissues(exercise, exercise.tissues).notes.empty());
 }
 
+TEST(WithTissues, WhatLayInsideOfATissueThatIsGoneIsSaid) {
+  const Exercise exercise = cranium();
+  const TissueSet& set = exercise.tissues;
+  const auto wall = std::ranges::find(set.tissues, set.find("brain")->within, &Tissue::id);
+  ASSERT_NE(wall, set.tissues.end());
+  const auto less = withoutTissue(set, std::size_t(wall - set.tissues.begin()));
+  ASSERT_TRUE(less);
+  const std::vector<std::string> notes = withTissues(exercise, *less).notes;
+  const auto said = std::ranges::count_if(notes, [&](const std::string& note) {
+    return note.find("inside of " + wall->name) != std::string::npos;
+  });
+  const auto inside = std::ranges::count(set.tissues, wall->id, &Tissue::within);
+  EXPECT_GT(inside, 0);
+  EXPECT_EQ(said, inside);
+}
+
 TEST(TissueShares, EachVoxelIsOfOneTissueAndALabelGoesBeforeAnyVoxel) {
   HuHistogram histogram;
   histogram.low_hu = 0;

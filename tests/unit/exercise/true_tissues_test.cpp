@@ -246,6 +246,35 @@ TEST(TrueTissues, AFormulaIsNotAskedOnAnotherGridThanItsCases) {
   EXPECT_EQ(tissues.at(ct.geometry.indexOf(54, 54, 44)), kBrain) << "by HU";
 }
 
+// Bone in specks among brain, and a sharp wall of it: no mean of two makes it the dura between.
+TEST(TrueTissues, AMeanOfTwoTissuesIsNoThird) {
+  Volume ct;
+  ct.geometry.size = {48, 48, 48};
+  ct.geometry.spacing_mm = Vec3(0.5);
+  ct.hu.assign(ct.geometry.voxelCount(), -1000);
+  for (std::size_t v = 0; v < ct.hu.size(); ++v) {
+    const double r = glm::length(place(ct, v) - Vec3(11.75));
+    const bool speck = (v * 2654435761u >> 9) % 50 == 0;
+    if (r < 11.0) ct.hu[v] = r > 9.0 || speck ? 900 : 30;
+  }
+  const TrueTissues tissues(cranium(), ct, nullptr, "");
+  std::map<int, int> named;
+  for (std::size_t v = 0; v < ct.hu.size(); ++v) ++named[tissues.at(v)];
+  EXPECT_GT(named[kBrain], 15000);
+  EXPECT_GT(named[kBone], 5000);
+  EXPECT_EQ(named[kDura], 0);
+}
+
+TEST(TrueTissues, WhatIsKnownOfPlacesChangesNoName) {
+  const Volume ct = head();
+  const TrueTissues tissues(cranium(), ct, nullptr, "");
+  TrueTissues::Enclosed known;
+  for (std::size_t v = 0; v < ct.hu.size(); v += 17) {
+    ASSERT_EQ(tissues.at(v, &known), tissues.at(v)) << v;
+  }
+  EXPECT_GT(known.size(), 100u);
+}
+
 // ---- What was cut.
 
 void cutBall(Volume& of, double radius_mm, const Vec3& at_mm) {

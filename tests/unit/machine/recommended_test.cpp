@@ -45,6 +45,17 @@ TEST(Recommended, ThatIsBrokenIsRefusedByItsField) {
   refused("colour", [](Json& j) { j["knobs"][1]["colour"] = "red"; });
 }
 
+TEST(Recommended, AMeasurementKeepsTheKnobsThatItLeavesOut) {
+  const auto of = [](const char* knob, const char* setting) {
+    return RecommendedSetting{knob, setting, 1.0, "%", 2.0, "ns"};
+  };
+  const std::vector<RecommendedSetting> before{of("grid", "full"), of("ray_casting", "0.25 voxels")};
+  const std::vector<RecommendedSetting> now{of("rate_hz", "1000"), of("grid", "half")};
+  const std::vector<RecommendedSetting> expected{of("grid", "half"), of("ray_casting", "0.25 voxels"),
+                                                 of("rate_hz", "1000")};
+  EXPECT_EQ(renewed(before, now), expected);
+}
+
 TEST(Recommended, ThatIsMissingSaysSo) {
   const test::TemporaryFolder folder;
   const auto back = readRecommended(folder / "none.json");

@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <limits>
+#include <utility>
 
 #include "base/file.h"
 #include "base/system.h"
@@ -73,6 +75,27 @@ TEST(TissueSet, HasIdsThatAreThereAndUnique) {
   const Error twice = errorAfter([](TissueSet& s) { s.tissues[2].id = "skin"; });
   EXPECT_EQ(twice.where, "t.json: tissues[2].id");
   EXPECT_PART(twice.what, "'skin'");
+}
+
+TEST(TissueSet, LiesInsideOfOtherTissuesInNoCircle) {
+  TissueSet set = *readTissueSet(resourceFolder() / "tissues" / "cranium.json");
+  const auto inside = [&](const char* id) -> std::string& {
+    return std::ranges::find(set.tissues, id, &Tissue::id)->within;
+  };
+  inside("dura") = "bone";
+  inside("brain") = "dura";
+  EXPECT_TRUE(validate(set, "x.json")) << "one inside of another inside of a third";
+  const auto refused = [&](const char* id, const char* by) {
+    const std::string before = std::exchange(inside(id), by);
+    const Status status = validate(set, "x.json");
+    inside(id) = before;
+    EXPECT_FALSE(status) << id << " in " << by;
+    return status ? std::string() : status.error().sentence();
+  };
+  EXPECT_NE(refused("bone", "bone").find("within"), std::string::npos);
+  EXPECT_NE(refused("bone", "nowhere").find("nowhere"), std::string::npos);
+  EXPECT_NE(refused("bone", "dura").find("itself"), std::string::npos);
+  EXPECT_NE(refused("bone", "brain").find("itself"), std::string::npos);
 }
 
 TEST(TissueSet, HasItsLowerHuFirst) {
