@@ -52,8 +52,10 @@ int ToolContact::classNear(const TissueField& tissue, const Vec3& place) const {
   const GridGeometry& g = tissue.geometry();
   const Vec3 v = place + 0.5;
   int firmest = -1;
+  // True: nothing is firmer than what was found.
   const auto look = [&](int found) {
     if (found != firmest && tissue.firmer(found, firmest)) firmest = found;
+    return firmest >= 0 && firmest == tissue.firmest();
   };
   const std::int64_t index = TissueField::voxelAt(g, place);
   if (index < 0) {
@@ -61,7 +63,7 @@ int ToolContact::classNear(const TissueField& tissue, const Vec3& place) const {
       for (double reach : {reach_[axis], -reach_[axis]}) {
         Vec3 at = place;
         at[axis] += reach;
-        look(tissue.classAt(at));
+        if (look(tissue.classAt(at))) return firmest;
       }
     }
     return firmest;
@@ -72,7 +74,7 @@ int ToolContact::classNear(const TissueField& tissue, const Vec3& place) const {
     for (double reach : {reach_[axis], -reach_[axis]}) {
       const double there = v[axis] + reach;
       if (!(there >= 0.0 && there < size)) continue;
-      look(tissue.classAt(std::size_t(index + (int(there) - here) * step)));
+      if (look(tissue.classAt(std::size_t(index + (int(there) - here) * step)))) return firmest;
     }
     step *= size;
   }

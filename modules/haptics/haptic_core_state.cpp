@@ -93,6 +93,7 @@ Status HapticCore::read(std::span<const std::byte> state) {
   if (!reader.ok()) return badState(tr("The state is of another place in the journal"));
   visitState(*this, reader);
   if (!reader.ok() || !reader.atEnd()) return badState(tr("The state holds what no core has"));
+  tissue_.findSolid();
   carves_.clear();
   events_.clear();
   return {};

@@ -50,7 +50,7 @@ Quat turned(const Vec3& by, const Quat& q) {
 Proxy::Proxy(const Tool& tool, const GridGeometry& geometry, int touch_version)
     : surface_(tool, geometry, touch_version),
       turn_mm2_(std::pow(std::max(surface_.reach_mm(), kHandle_mm), 2) / 6.0),
-      before_12_(touch_version < 12) {}
+      before_11_(touch_version < 11) {}
 
 void Proxy::place(const Pose& pose_mm) {
   arm_ = pose_mm;
@@ -114,7 +114,7 @@ double Proxy::cost(const SmallMotion& motion) const {
 
 void Proxy::removed(const TissueField& tissue, std::span<const std::uint32_t> voxels,
                     const VoxelBounds& box) {
-  if (before_12_) {
+  if (before_11_) {
     stale_ = next_stale_ = gone_ = true;
     return;
   }
@@ -125,7 +125,7 @@ void Proxy::removed(const TissueField& tissue, std::span<const std::uint32_t> vo
 
 // Of the travel for which the gathered surface holds.
 double Proxy::went_mm() const {
-  return before_12_ ? usedUp_mm(travelled_) : way_mm(towards(from_, pose_));
+  return before_11_ ? usedUp_mm(travelled_) : way_mm(towards(from_, pose_));
 }
 
 // Share of the travel for which the gathered surface holds that is used up after one more step.
@@ -154,8 +154,8 @@ void Proxy::look(const TissueField& tissue, const PlacedBody& body, double step_
     gathered_ = true;
     travelled_ = next_travelled_;
     from_ = next_from_;
-    stale_ = next_stale_ || (!before_12_ && surface_.cameStale());
-    gone_ = before_12_ && next_stale_;
+    stale_ = next_stale_ || (!before_11_ && surface_.cameStale());
+    gone_ = before_11_ && next_stale_;
     dropGone();
   };
   if (!gathered_) {
@@ -185,8 +185,7 @@ void Proxy::look(const TissueField& tissue, const PlacedBody& body, double step_
 std::size_t Proxy::nearPieces(const PlacedBody& body, double within_mm, double moved_mm) {
   std::size_t count = 0;
   const double travelled = travelled_mm();
-  const std::size_t pieces = surface_.pieces().size();
-  for (std::size_t piece = 0; piece < pieces; ++piece) {
+  for (const std::size_t piece : surface_.awake(within_mm, travelled + moved_mm)) {
     if (surface_.leastGap_mm(piece, travelled + moved_mm) > within_mm) continue;
     double gap_mm = 0.0;
     const std::optional<Touch> touch = surface_.touchWithin(piece, body, within_mm, gap_mm);

@@ -22,7 +22,7 @@ struct Pull {
 
 class Proxy {
  public:
-  // `touch_version`: as SolidSurface has it; before 12 the way that a tool went counts, and not how
+  // `touch_version`: as SolidSurface has it; before 11 the way that a tool went counts, and not how
   // far it came.
   Proxy(const Tool& tool, const GridGeometry& geometry, int touch_version = kTouchVersion);
 
@@ -136,10 +136,10 @@ class Proxy {
   Pose pose_, arm_;
   Pull pull_;
   double turn_mm2_;
-  bool before_12_;  // of touch
+  bool before_11_;  // of touch
   bool gathered_ = false;                    // the surface's pieces are of around here
   bool stale_ = false, next_stale_ = false;  // voxels went since that search, since the next began
-  bool gone_ = false;       // before version 12: some of the pieces may be of voxels that went
+  bool gone_ = false;       // before version 11: some of the pieces may be of voxels that went
   Pose from_, next_from_;   // where it was as that search began, as the next did
   Cutting cutting_ = Cutting::nothing;
   Travel travelled_, next_travelled_;  // since that search, since the next began

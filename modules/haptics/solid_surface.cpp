@@ -142,7 +142,7 @@ SolidSurface::SolidSurface(const Tool& tool, const GridGeometry& geometry, int t
       patient_to_voxel_(geometry.patientToVoxel()),
       spacing_mm_(geometry.spacing_mm),
       wide_spheres_(touch_version <= 9),
-      by_rows_(touch_version >= 12) {
+      by_rows_(touch_version >= 11) {
   const Vec3& s = spacing_mm_;
   voxel_mm_ = std::min({s.x, s.y, s.z});
   half_diagonal_mm_ = 0.5 * glm::length(s);
@@ -184,6 +184,7 @@ SolidSurface::SolidSurface(const Tool& tool, const GridGeometry& geometry, int t
   near_reach_mm_ = reach_mm_;
   pieces_.reserve(most);
   due_mm_.reserve(most);
+  awake_.reserve(most);
   next_.reserve(most);
   stretches_.reserve(stretches);
   found_.reserve(most);
@@ -326,6 +327,8 @@ bool SolidSurface::takeOver() {
   };
   if (!std::all_of(pieces_.begin(), pieces_.end(), known)) return false;
   if (due_mm_.size() != pieces_.size()) return false;
+  near_known_ = false;
+  forgetAwake();
   index();
   if (!under_way_) return true;
   if (!std::all_of(next_.begin(), next_.end(), known)) return false;
@@ -369,6 +372,7 @@ bool SolidSurface::goOn(const TissueField& tissue, int work) {
 void SolidSurface::finish(const TissueField& tissue) {
   std::swap(pieces_, next_);
   due_mm_.assign(pieces_.size(), 0.0);
+  forgetAwake();
   disks_ = next_disks_;
   near_reach_mm_ = next_reach_mm_;
   under_way_ = near_known_ = false;
@@ -562,7 +566,9 @@ SolidSurface::Stale SolidSurface::removed(const TissueField& tissue,
       const bool gone = piece.voxel == SurfacePiece::kGone;
       due_mm_[number] = gone ? std::numeric_limits<double>::max()
                              : std::numeric_limits<double>::lowest();
-      if (!gone) index(number);
+      if (gone) continue;
+      index(number);
+      wake(number);
     }
   }
   return stale;
@@ -577,7 +583,32 @@ void SolidSurface::drop(const TissueField& tissue) {
   }
   pieces_.resize(kept);
   due_mm_.resize(kept);
+  forgetAwake();
   near_known_ = false;
+}
+
+// Looks at all pieces only every so often: the tool comes a tenth of a millimetre nearer till then.
+std::span<const std::uint32_t> SolidSurface::awake(double within_mm, double travelled_mm) {
+  constexpr double kAwake_mm = 0.1;
+  const double until_mm = within_mm + travelled_mm;
+  if (!(until_mm <= awake_until_mm_)) {
+    awake_until_mm_ = until_mm + kAwake_mm;
+    awake_.clear();
+    for (std::size_t n = 0; n < due_mm_.size(); ++n) {
+      if (due_mm_[n] <= awake_until_mm_) awake_.push_back(std::uint32_t(n));
+    }
+  }
+  return awake_;
+}
+
+void SolidSurface::wake(std::size_t piece) {
+  const auto at = std::lower_bound(awake_.begin(), awake_.end(), std::uint32_t(piece));
+  if (at == awake_.end() || *at != piece) awake_.insert(at, std::uint32_t(piece));
+}
+
+void SolidSurface::forgetAwake() {
+  awake_.clear();
+  awake_until_mm_ = std::numeric_limits<double>::lowest();
 }
 
 // Fibonacci hashing.

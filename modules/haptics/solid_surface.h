@@ -106,7 +106,7 @@ enum class Cutting { nothing, by_hand, driven };
 // belongs to a surface that is another now: that is `stale`.
 class SolidSurface {
  public:
-  // `touch_version`: before 12 every tissue is kept by direction, and whatever goes makes all of it
+  // `touch_version`: before 11 every tissue is kept by direction, and whatever goes makes all of it
   // stale; before 10 a driven tool thinner than a voxel's diagonal meets spheres between which
   // nothing slips, whatever its thickness.
   SolidSurface(const Tool& tool, const GridGeometry& geometry, int touch_version = kTouchVersion);
@@ -135,11 +135,14 @@ class SolidSurface {
   };
   Stale removed(const TissueField& tissue, std::span<const std::uint32_t> voxels,
                 const VoxelBounds& box);
-  // Before version 12: forgets the pieces that are solid no more.
+  // Before version 11: forgets the pieces that are solid no more.
   void drop(const TissueField& tissue);
 
   std::span<const SurfacePiece> pieces() const { return pieces_; }
-  // Until the tool has travelled so far a piece is not nearer to it than `gap_mm`, as note() had it.
+  // The numbers of all pieces that may be within a distance once the tool has travelled so far, by
+  // what note() had of them, and of some others, in order. Until the pieces change.
+  std::span<const std::uint32_t> awake(double within_mm, double travelled_mm);
+  // A piece is no nearer than this.
   double leastGap_mm(std::size_t piece, double travelled_mm) const {
     return due_mm_[piece] - travelled_mm;
   }
@@ -242,6 +245,8 @@ class SolidSurface {
   bool mayCut(const TissueField& tissue, const Index3& voxel) const;
   bool goOnAlongRow(const TissueField& tissue, SurfacePiece& piece) const;
   std::size_t rowsAround(const Cells& of, double length_mm, double around_mm) const;
+  void wake(std::size_t piece);
+  void forgetAwake();
   void index();
   void index(std::size_t piece);
   std::size_t slotOf(std::uint32_t voxel) const;
@@ -256,7 +261,11 @@ class SolidSurface {
   bool wide_spheres_, by_rows_;
   Index3 fit_reach_{0, 0, 0};  // voxels around a disk's that its place follows from
   std::vector<SurfacePiece> pieces_;
-  std::vector<double> due_mm_;  // by piece
+  // By piece: the tool is not at it before it has travelled so far. It never falls but where a piece
+  // changes.
+  std::vector<double> due_mm_;
+  std::vector<std::uint32_t> awake_;  // those that are due until awake_until_mm_, in order
+  double awake_until_mm_ = 0.0;
   VoxelBounds disks_;              // of pieces that are not of rows
   VoxelBounds rows_;               // where those of rows are, or may come
   double near_reach_mm_ = 0.0;

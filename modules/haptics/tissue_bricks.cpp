@@ -29,6 +29,18 @@ TissueBricks::TissueBricks(const Grid& grid, const TissueLookup& lookup)
   }
 }
 
+void TissueBricks::findSolid(const Grid& grid, const TissueLookup& lookup) {
+  std::size_t voxel = 0;
+  for (int k = 0; k < size_[2]; ++k) {
+    for (int j = 0; j < size_[1]; ++j) {
+      for (int i = 0; i < size_[0]; ++i, ++voxel) {
+        solid_.set({i, j, k}, lookup.isSolid(lookup.classAt(grid, voxel)));
+      }
+    }
+  }
+  solid_known_ = true;
+}
+
 TissueBricks::Brick TissueBricks::tissueIn(std::size_t brick, const Grid& grid,
                                            const TissueLookup& lookup) {
   const GridGeometry& g = grid.geometry();

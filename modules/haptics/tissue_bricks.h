@@ -33,6 +33,8 @@ class TissueBricks {
 
   // The solid voxels; null after markAll() until every brick was counted anew.
   const SolidBits* solid() const { return solid_known_ ? &solid_ : nullptr; }
+  // Looks at every voxel: not for the tick.
+  void findSolid(const Grid& grid, const TissueLookup& lookup);
   // A voxel that came back or went again is solid now, or not.
   void setSolid(const Index3& voxel, bool solid) { solid_.set(voxel, solid); }
 

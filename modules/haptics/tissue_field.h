@@ -19,7 +19,7 @@ class TissueField {
   // The grid outlives it.
   TissueField(const Grid& grid, const TissueTable& tissues)
       : grid_(grid), tissues_(tissues), lookup_(tissues), bricks_(grid, lookup_) {
-    countCuts();
+    rank();
   }
 
   // What another table of tissues changes: the numbers of the classes alone, which of them may be
@@ -59,6 +59,8 @@ class TissueField {
   enum class Cuts { none, some, all };
   Cuts cutsOfSolid() const { return cuts_of_solid_; }
   bool firmer(int a, int b) const { return trephine::firmer(tissues_, a, b); }
+  // Than which none is firmer: the one such, or -1 where there are several or no tissues.
+  int firmest() const { return firmest_; }
 
   // Whether there may be tissue, or solid tissue, between two places, those included. False for
   // places that are not numbers.
@@ -100,6 +102,8 @@ class TissueField {
   }
   // Counts one of the bricks that changed, a tick.
   void recount() { bricks_.recount(grid_, lookup_); }
+  // After a state was read, whose tissues may be others: not for the tick.
+  void findSolid() { bricks_.findSolid(grid_, lookup_); }
   std::size_t unknownBricks() const { return bricks_.unknown(); }  // of which air is not known
 
   // The nearest voxel to a place, or -1 outside the grid. Any value is answered, infinities and NaN
@@ -118,13 +122,14 @@ class TissueField {
   }
 
  private:
-  void countCuts();
+  void rank();
 
   const Grid& grid_;
   TissueTable tissues_;
   TissueLookup lookup_;
   TissueBricks bricks_;
   Cuts cuts_of_solid_ = Cuts::none;
+  int firmest_ = -1;
 };
 
 }  // namespace trephine

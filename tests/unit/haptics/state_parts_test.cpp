@@ -430,11 +430,13 @@ TEST(StatePart, AProxyGoesOnPullingBetweenTheTissueThatHeldItAndItsArm) {
        {std::pair{BurrShape::sphere, 0.5}, {BurrShape::cylinder, 0.25}}) {
     PartField field(voxel_mm, boneAlone(0.01));
     const Tool burr = test::tool(ToolKind::burr, 30.0, 2.5, 0.0, shape);
+    const VoxelBounds everywhere{{0, 0, 0}, {999, 999, 999}};
     int lags = 0;
     expectGoesOn([&] { return Proxy(burr, field.grid.geometry()); }, way,
                  [&](Proxy& proxy, const Pose& arm) {
                    proxy.follow(field.tissue, arm, Cutting::nothing);
-                   if (arm.position.x > 2.0) proxy.removed();  // of what it has, all is still there
+                   // Of what it has, all is still there.
+                   if (arm.position.x > 2.0) proxy.removed(field.tissue, {}, everywhere);
                    const Pose pose = proxy.pose_mm();
                    const Pull pull = proxy.pull();
                    lags += proxy.held() && arm.position.z > 12.0;
