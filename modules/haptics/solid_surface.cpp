@@ -17,6 +17,7 @@ constexpr double kLeastMargin_mm = 0.5;
 // that is more; every row, where voxels are larger.
 constexpr double kRowsPerRadius = 1.0 / 7.0;
 constexpr double kLeastRows_mm = 0.4;
+constexpr double kRowPart_mm = 0.4;
 constexpr double kStretch_mm = 8.0;  // a longer part is searched in stretches of this length
 constexpr int kMostAlong = 256, kMostDirections = 16;
 constexpr double kLeastCell_mm = 0.25;
@@ -201,7 +202,9 @@ std::size_t SolidSurface::rowsAround(const Cells& of, double length_mm, double a
   // A box around it, wherever it points to in the rows' plane.
   const double area = (along_mm / y_mm + 2.0) * (2.0 * around_mm / z_mm + 2.0) +
                       (along_mm / z_mm + 2.0) * (2.0 * around_mm / y_mm + 2.0);
-  return std::size_t(2.0 * area);
+  // Along each row one either side, and those of a margin.
+  const double parts = std::ceil(margin_mm_ / std::max(kRowPart_mm, spacing_mm_.x)) + 1.0;
+  return std::size_t(2.0 * (parts + 1.0) * area);
 }
 
 bool SolidSurface::centreIn(const PlacedBody& body) const {
@@ -454,7 +457,8 @@ void SolidSurface::searchRows(const TissueField& tissue, const Stretch& stretch,
 }
 
 // The first solid voxel on either side of where the row is nearest to the axis: the distance from a
-// segment grows outwards.
+// segment grows outwards. That place goes along with the tool, by a margin at most: so far there is
+// one more in each part of kRowPart_mm.
 void SolidSurface::searchCutRow(const TissueField& tissue, const Stretch& stretch, const Row& row) {
   const Vec3 at(0.0, row.j * spacing_mm_.y, row.k * spacing_mm_.z);
   const Vec3& from = stretch.axis.from;
@@ -467,10 +471,20 @@ void SolidSurface::searchCutRow(const TissueField& tissue, const Stretch& stretc
     left = row.left;
     right = std::max(row.right, row.left + 1);
   }
-  const int down = tissue.solidDown(left, row.from, row.j, row.k);
-  if (down >= row.from) find(tissue, {down, row.j, row.k}, stretch, -1, row.from);
-  const int up = tissue.solidUp(right, row.to, row.j, row.k);
-  if (up <= row.to) find(tissue, {up, row.j, row.k}, stretch, 1, row.to);
+  const int part = std::max(1, int(kRowPart_mm / spacing_mm_.x));
+  const double margin = margin_mm_ / spacing_mm_.x;
+  for (int end = left; end >= row.from; left = end - 1) {
+    end = left > nearest - margin ? std::max(row.from, left - part + 1) : row.from;
+    const int found = tissue.solidDown(left, end, row.j, row.k);
+    if (found >= end) find(tissue, {found, row.j, row.k}, stretch, -1, end);
+    if (end == row.from) break;
+  }
+  for (int end = right; end <= row.to; right = end + 1) {
+    end = right < nearest + margin ? std::min(row.to, right + part - 1) : row.to;
+    const int found = tissue.solidUp(right, end, row.j, row.k);
+    if (found <= end) find(tissue, {found, row.j, row.k}, stretch, 1, end);
+    if (end == row.to) break;
+  }
 }
 
 // How many rows lie between two that are looked at, and one.
