@@ -170,11 +170,11 @@ Status measureBox(const HapticsOptions& options, double box_mm,
 std::string toCsv(const HapticsMeasurement& measurement) {
   std::ostringstream text;
   text.imbue(std::locale::classic());
-  text << "tool,arms,grid,box_mm,phase,median_ns,p99_ns,p999_ns,max_ns,removed_mm3_per_s,ticks\n";
+  text << "tool,arms,grid,box_mm,phase,mean_ns,median_ns,p99_ns,p999_ns,max_ns,removed_mm3_per_s,ticks\n";
   for (const HapticsRow& row : measurement.rows) {
     text << row.tool << ',' << row.arms << ',' << row.grid << ',' << row.box_mm << ','
          << touchPhaseName(row.phase) << std::fixed << std::setprecision(0);
-    for (double ns : {row.median_ns, row.p99_ns, row.p999_ns, row.max_ns}) text << ',' << ns;
+    for (double ns : {row.mean_ns, row.median_ns, row.p99_ns, row.p999_ns, row.max_ns}) text << ',' << ns;
     text << std::setprecision(3) << ',' << row.removed_mm3_per_s << std::defaultfloat << ','
          << row.ticks << '\n';
   }
@@ -271,6 +271,7 @@ Result<HapticsRow> measureHapticsRow(HapticsRow row, Grid& grid, int ticks,
 HapticsRow summarizeTicks(std::vector<double> ns, HapticsRow row) {
   std::sort(ns.begin(), ns.end());
   row.ticks = ns.size();
+  row.mean_ns = meanOf(ns);
   row.median_ns = quantile(ns, 500);
   row.p99_ns = quantile(ns, 990);
   row.p999_ns = quantile(ns, 999);
@@ -285,16 +286,16 @@ std::vector<HapticsBar> hapticsBars(const HapticsMeasurement& m) {
   const HapticsRow* blade = find(m.rows, "blade64", 512, 200.0, TouchPhase::contact);
   if (fine) {
     bars.push_back(
-        {"burr6, 2 arms, 512^3 at 49.2 mm, removal: median [us]", fine->median_ns / 1e3, 20.0});
+        {"burr6, 2 arms, 512^3 at 49.2 mm, removal: mean [us]", fine->mean_ns / 1e3, 20.0});
     bars.push_back(
         {"burr6, 2 arms, 512^3 at 49.2 mm, removal: p99.9 [us]", fine->p999_ns / 1e3, 150.0});
   }
-  if (fine && coarse && coarse->median_ns > 0.0) {
-    bars.push_back({"the same median against 256^3", fine->median_ns / coarse->median_ns, 1.5});
+  if (fine && coarse && coarse->mean_ns > 0.0) {
+    bars.push_back({"the same mean against 256^3", fine->mean_ns / coarse->mean_ns, 1.5});
   }
   if (blade) {
     bars.push_back(
-        {"blade64, 2 arms, 512^3 at 200 mm, contact: median [us]", blade->median_ns / 1e3, 5.0});
+        {"blade64, 2 arms, 512^3 at 200 mm, contact: mean [us]", blade->mean_ns / 1e3, 5.0});
   }
   bars.push_back(
       {"direction of the push: median error [deg]", m.sliding.direction_median_deg, 3.0});
@@ -342,7 +343,8 @@ Json toJson(const HapticsMeasurement& measurement) {
                     {"box_mm", row.box_mm},
                     {"phase", touchPhaseName(row.phase)},
                     {"ns",
-                     {{"median", row.median_ns},
+                     {{"mean", row.mean_ns},
+                      {"median", row.median_ns},
                       {"p99", row.p99_ns},
                       {"p999", row.p999_ns},
                       {"max", row.max_ns}}},
@@ -364,14 +366,14 @@ Json toJson(const HapticsMeasurement& measurement) {
 
 std::string toText(const HapticsMeasurement& measurement) {
   std::string text =
-      "a tick of all arms [us]                 median      99 %    99.9 %       max     mm3/s\n";
+      "a tick of all arms [us]                   mean    median      99 %    99.9 %       max     mm3/s\n";
   char line[200];
   for (const HapticsRow& row : measurement.rows) {
     std::snprintf(line, sizeof line,
-                  "%-8s %d arm%s %4d^3 %5.1f mm %-7s %9.2f %9.2f %9.2f %9.1f %9.2f\n",
+                  "%-8s %d arm%s %4d^3 %5.1f mm %-7s %9.2f %9.2f %9.2f %9.2f %9.1f %9.2f\n",
                   row.tool.c_str(), row.arms, row.arms == 1 ? " " : "s", row.grid, row.box_mm,
-                  touchPhaseName(row.phase), row.median_ns / 1e3, row.p99_ns / 1e3,
-                  row.p999_ns / 1e3, row.max_ns / 1e3, row.removed_mm3_per_s);
+                  touchPhaseName(row.phase), row.mean_ns / 1e3, row.median_ns / 1e3,
+                  row.p99_ns / 1e3, row.p999_ns / 1e3, row.max_ns / 1e3, row.removed_mm3_per_s);
     text += line;
     if (isOfItsPhase(row)) continue;
     std::snprintf(line, sizeof line,

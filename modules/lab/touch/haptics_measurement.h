@@ -24,7 +24,7 @@ struct HapticsRow {
   int grid = 256;  // voxels along each edge
   double box_mm = 200.0;
   TouchPhase phase = TouchPhase::free;
-  double median_ns = 0.0, p99_ns = 0.0, p999_ns = 0.0, max_ns = 0.0;
+  double mean_ns = 0.0, median_ns = 0.0, p99_ns = 0.0, p999_ns = 0.0, max_ns = 0.0;
   double removed_mm3_per_s = 0.0;  // by all arms, over the ticks that count
   std::size_t ticks = 0;           // that count
   std::size_t touched = 0;         // with a tool in tissue
@@ -72,7 +72,7 @@ Result<HapticsMeasurement> measureHaptics(const HapticsOptions& options,
                                           const std::filesystem::path& out = {},
                                           const Progress& progress = Progress());
 
-// {rows:[{tool, arms, grid, box_mm, phase, ns:{median, p99, p999, max}, removed_mm3_per_s, ticks}],
+// {rows:[{tool, arms, grid, box_mm, phase, ns:{mean, median, p99, p999, max}, removed_mm3_per_s, ticks}],
 //  direction_error_deg:{median, p99}, sliding_force_step_percent_p99, depth_error_percent,
 //  bars:[{name, value, limit, pass}]}
 Json toJson(const HapticsMeasurement& measurement);

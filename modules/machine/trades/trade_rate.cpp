@@ -105,7 +105,7 @@ std::optional<RateRun> runAt(double rate_hz, const ArmInHand& arm, const TradesO
     }
   }
   std::sort(ns.begin(), ns.end());
-  run.tick_ns = quantile(ns, 500);
+  run.tick_ns = meanOf(ns);
   return run;
 }
 

@@ -76,7 +76,7 @@ std::optional<StrokeRun> runStroke(const HapticParameters& parameters, Grid& gri
     }
   }
   std::sort(ns.begin(), ns.end());
-  run.tick_ns = quantile(ns, 500);
+  run.tick_ns = meanOf(ns);
   return run;
 }
 

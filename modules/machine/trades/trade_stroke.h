@@ -28,7 +28,7 @@ struct StrokeRun {
   std::vector<Vec3> demanded_N;
   std::vector<std::size_t> removed;      // voxels
   std::vector<std::int16_t> removed_hu;  // of each of them, before
-  double tick_ns = 0.0;                  // median
+  double tick_ns = 0.0;                  // mean
 };
 
 // `ticks` ticks; nothing where it was cancelled. The grid is left as the stroke left it. Without

@@ -13,7 +13,7 @@
 namespace trephine {
 namespace {
 
-HapticsRow row(const char* tool, int grid, double box_mm, TouchPhase phase, double median_ns,
+HapticsRow row(const char* tool, int grid, double box_mm, TouchPhase phase, double mean_ns,
                double p999_ns = 0.0) {
   HapticsRow r;
   r.tool = tool;
@@ -21,7 +21,7 @@ HapticsRow row(const char* tool, int grid, double box_mm, TouchPhase phase, doub
   r.grid = grid;
   r.box_mm = box_mm;
   r.phase = phase;
-  r.median_ns = median_ns;
+  r.mean_ns = r.median_ns = mean_ns;
   r.p999_ns = p999_ns;
   r.ran = r.ticks = 100;
   if (phase != TouchPhase::free) r.touched = 100;
@@ -49,6 +49,7 @@ TEST(HapticsRow, HasTheQuantilesOfKnownTimes) {
   std::vector<double> ns(2000);
   std::iota(ns.rbegin(), ns.rend(), 1.0);
   const HapticsRow r = summarizeTicks(ns, row("needle", 64, 200.0, TouchPhase::contact, 0.0));
+  EXPECT_EQ(r.mean_ns, 1000.5);
   EXPECT_EQ(r.median_ns, 1000.0);
   EXPECT_EQ(r.p99_ns, 1980.0);
   EXPECT_EQ(r.p999_ns, 1998.0);
@@ -83,10 +84,10 @@ TEST(HapticsBars, AreHeldAgainstTheirRows) {
   ASSERT_EQ(bars.size(), 8u);
   for (const HapticsBar& bar : bars) EXPECT_TRUE(bar.pass()) << bar.name << ' ' << bar.value;
 
-  m.rows[0].median_ns = 20100.0;
+  m.rows[0].mean_ns = 20100.0;
   m.rows[0].p999_ns = 150001.0;
   m.rows[0].removed_mm3_per_s = 0.0;
-  m.rows[2].median_ns = 5001.0;
+  m.rows[2].mean_ns = 5001.0;
   m.sliding = {3.01, 8.01, 3.01, 0.0, 1};
   bars = hapticsBars(m);
   for (const HapticsBar& bar : bars) EXPECT_FALSE(bar.pass()) << bar.name << ' ' << bar.value;
@@ -201,7 +202,7 @@ TEST(HapticsMeasurement, IsAnsweredWithExactlyItsKeys) {
   answer.erase("bars");
   EXPECT_EQ(answer, Json::parse(R"({
     "rows": [{"tool": "blade64", "arms": 2, "grid": 256, "box_mm": 49.2, "phase": "removal",
-              "ns": {"median": 1500.0, "p99": 2500.0, "p999": 3500.0, "max": 4500.0},
+              "ns": {"mean": 1500.0, "median": 1500.0, "p99": 2500.0, "p999": 3500.0, "max": 4500.0},
               "removed_mm3_per_s": 1.0, "ticks": 100}],
     "direction_error_deg": {"median": 1.5, "p99": 6.5},
     "sliding_force_step_percent_p99": 0.5,
