@@ -104,7 +104,6 @@ std::optional<RateRun> runAt(double rate_hz, const ArmInHand& arm, const TradesO
       return {};
     }
   }
-  std::sort(ns.begin(), ns.end());
   run.tick_ns = meanOf(ns);
   return run;
 }

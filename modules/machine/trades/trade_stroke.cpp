@@ -75,7 +75,6 @@ std::optional<StrokeRun> runStroke(const HapticParameters& parameters, Grid& gri
       run.removed_hu.push_back(carve.old_hu);
     }
   }
-  std::sort(ns.begin(), ns.end());
   run.tick_ns = meanOf(ns);
   return run;
 }
