@@ -12,6 +12,7 @@
 #include "ui/common/making.h"
 #include "ui/common/placing.h"
 #include "ui/common/setting_words.h"
+#include "ui/common/tab_order.h"
 #include "ui/common/words.h"
 #include "ui/tissue/look_box.h"
 #include "ui/tissue/tissue_list.h"
@@ -26,6 +27,16 @@ constexpr FieldOf<Tissue> kSourceFields[] = {
     {{"hu_source", {1, 300}, Given::always, "where the range comes from", "Source"},
      &Tissue::hu_source},
 };
+
+// Whether a tissue's encloser, or that one's and so on, has this id.
+bool liesInside(const TissueSet& set, const Tissue& tissue, const std::string& id) {
+  const Tissue* at = &tissue;
+  for (std::size_t n = 0; at && n < set.tissues.size(); ++n) {
+    if (at->within == id) return true;
+    at = at->within.empty() ? nullptr : set.find(at->within);
+  }
+  return false;
+}
 
 }  // namespace
 
@@ -56,6 +67,7 @@ TissueForm::TissueForm(QWidget* parent) : QWidget(parent) {
   auto* layout = tight(new QVBoxLayout(this));
   layout->addLayout(form);
   layout->addWidget(mechanics_);
+  tabInOrder(*layout);
 }
 
 void TissueForm::buildParts() {
@@ -195,11 +207,14 @@ void TissueForm::showPlaces() {
   (*shell_)["of"].offer(shells);
   FieldEditor::Offers enclosing{{tr("nothing"), ""}};
   for (const Tissue& other : tissues_.tissues) {
-    if (tissue && other.id != tissue->id) enclosing.emplace_back(shownName(other.name), other.id);
+    // One that lies inside of this tissue cannot be around it.
+    if (!tissue || other.id == tissue->id || liesInside(tissues_, other, tissue->id)) continue;
+    enclosing.emplace_back(shownName(other.name), other.id);
   }
   (*within_)["within"].offer(enclosing);
   (*within_)["within"].setToolTip(tr(
-      "What was cut is named after this tissue only inside of that one, as brain inside a skull"));
+      "What was cut is named after this tissue only inside of that one, as brain inside a skull. "
+      "Elsewhere results call it \"Not told apart\""));
   if (!tissue) return;
   within_->show(*tissue);
   where_->show(*tissue);

@@ -7,6 +7,8 @@
 #include <QSlider>
 #include <QSpinBox>
 #include <QToolButton>
+#include <algorithm>
+#include <vector>
 
 #include "haptics/bounded_controller.h"
 #include "qt_support.h"
@@ -130,6 +132,35 @@ TEST_F(TissuePanelTest, ATissueIsRestrictedToALabelOnceThereIsALabelMapAndFreedA
   EXPECT_FALSE(changed_.tissues[1].label);
   panel_.select("soft");
   EXPECT_FALSE(label.isEnabled());
+}
+
+TEST_F(TissuePanelTest, IsInsideOfNoTissueThatLiesInsideOfIt) {
+  TissueSet set = twoTissues();
+  set.tissues[0].within = "bone";  // soft
+  panel_.setTissues(set);
+  panel_.select("bone");
+  EXPECT_EQ(find<QComboBox>(panel_, "tissue:within").findData("soft"), -1);
+  panel_.select("soft");
+  EXPECT_GE(find<QComboBox>(panel_, "tissue:within").findData("bone"), 0);
+  EXPECT_EQ(find<QComboBox>(panel_, "tissue:within").findData("soft"), -1);
+}
+
+TEST_F(TissuePanelTest, TabGoesThroughItsFormAsItIsLaidOut) {
+  std::vector<QString> order;
+  const QWidget* first = &find<QWidget>(panel_, "tissue:name");
+  for (const QWidget* at = first; order.size() < 200;) {
+    order.push_back(at->objectName());
+    at = at->nextInFocusChain();
+    if (at == first) break;
+  }
+  std::ptrdiff_t last = -1;
+  for (const char* name : {"tissue:name", "opacity", "colour", "huLow", "huHigh", "tissue:hu_source",
+                           "tissue:structure", "label", "tissue:within", "damping", "stiffness"}) {
+    const std::ptrdiff_t at = std::ranges::find(order, name) - order.begin();
+    EXPECT_GT(at, last) << name;
+    EXPECT_LT(at, std::ptrdiff_t(order.size())) << name;
+    last = at;
+  }
 }
 
 TEST_F(TissuePanelTest, WhereACaseLacksItsStructureItIsTheOutsideOfAnother) {
