@@ -11,8 +11,8 @@ namespace {
 // Lengths, all in units of a voxel's smallest edge.
 constexpr double kStep = 0.45;  // the longest step between two looks at the gaps
 constexpr double kNear = 0.05;  // the shortest distance within which touches are looked for
-// After voxels went the pieces hold for so much travel only (0.05 mm at least). Until the next
-// search the tool may enter what stood behind them by that much: it cuts it or is put back from it.
+// Pieces that voxels which went have made stale hold for so much travel only (0.05 mm at least).
+// Until the next search the tool may enter what stood behind them by that much: it cuts it or is put back from it.
 constexpr double kWorn = 0.25, kLeastWorn_mm = 0.05;
 constexpr double kKeptOff = 0.02;     // gap that is kept where the tool comes from farther away
 constexpr double kTolerated = 0.002;  // depth to which a sliding tool may be inside

@@ -82,7 +82,7 @@ std::optional<Touch> SolidSurface::touchWithin(std::size_t number, const PlacedB
       const double beside = std::sqrt(aside2), beyond = beside - piece.size_mm;
       const double about = std::sqrt(height * height + beyond * beyond);
       gap_mm = about - part.radius_mm - kRounding_mm;
-      if (gap_mm > within_mm) return {};
+      if (by_rows_ && gap_mm > within_mm) return {};
       const Vec3 to_rim = away - aside * (piece.size_mm / beside);
       distance = glm::length(to_rim);
       touch.normal = distance > 0.0 ? to_rim / distance : piece.normal;
@@ -195,16 +195,25 @@ SolidSurface::SolidSurface(const Tool& tool, const GridGeometry& geometry, int t
   if (by_rows_) slots_.assign(std::bit_ceil(4 * most + 4), 0);
 }
 
-// Upper bound of the sides of rows within a distance of a stretch of a part, however it lies.
+// Upper bound of the parts of rows within a distance of a stretch of a part, however it lies.
 std::size_t SolidSurface::rowsAround(const Cells& of, double length_mm, double around_mm) const {
+  constexpr int kAngles = 16;  // of the axis against the rows; one more for what lies between
   const double y_mm = of.apart[1] * spacing_mm_.y, z_mm = of.apart[2] * spacing_mm_.z;
-  const double along_mm = std::min(length_mm, kStretch_mm) + 2.0 * around_mm;
-  // A box around it, wherever it points to in the rows' plane.
-  const double area = (along_mm / y_mm + 2.0) * (2.0 * around_mm / z_mm + 2.0) +
-                      (along_mm / z_mm + 2.0) * (2.0 * around_mm / y_mm + 2.0);
-  // Along each row one either side, and those of a margin.
-  const double parts = std::ceil(margin_mm_ / std::max(kRowPart_mm, spacing_mm_.x)) + 1.0;
-  return std::size_t(2.0 * (parts + 1.0) * area);
+  const double part_mm = std::max(kRowPart_mm, 2.0 * spacing_mm_.x) - spacing_mm_.x;
+  const double stretch_mm = std::min(length_mm, kStretch_mm), wide_mm = 2.0 * around_mm;
+  double most = 0.0;
+  for (int n = 0; n < kAngles; ++n) {
+    const double low = 0.5 * std::numbers::pi * n / kAngles,
+                 high = 0.5 * std::numbers::pi * (n + 1) / kAngles;
+    const double across_mm = stretch_mm * std::sin(high) + wide_mm;
+    // A box around it, wherever it points to in the rows' plane.
+    const double rows = (across_mm / y_mm + 2.0) * (wide_mm / z_mm + 2.0) +
+                        (across_mm / z_mm + 2.0) * (wide_mm / y_mm + 2.0);
+    // What may become the nearest place is no longer than the stretch.
+    const double range_mm = stretch_mm * std::cos(low) + 2.0 * margin_mm_;
+    most = std::max(most, rows * (range_mm / part_mm + 4.0));
+  }
+  return std::size_t(most);
 }
 
 bool SolidSurface::centreIn(const PlacedBody& body) const {
@@ -322,14 +331,21 @@ bool SolidSurface::takeOver() {
   std::fill(stamp_.begin(), stamp_.end(), 0);
   turn_ = 1;
   const auto known = [this](const SurfacePiece& piece) {
-    const bool gone = piece.voxel == SurfacePiece::kGone;
     const auto& [i, j, k] = piece.at;
     return std::size_t(piece.part) < cells_.size() && geometry_.contains(i, j, k) &&
-           (gone || piece.voxel == geometry_.indexOf(i, j, k)) && piece.row_end >= 0 &&
-           piece.row_end < geometry_.size[0];
+           piece.voxel == geometry_.indexOf(i, j, k) && piece.row_end >= 0 &&
+           piece.row_end < geometry_.size[0] && isFinite(piece.at_mm) && isFinite(piece.normal) &&
+           std::isfinite(piece.size_mm);
   };
-  if (!std::all_of(pieces_.begin(), pieces_.end(), known)) return false;
   if (due_mm_.size() != pieces_.size()) return false;
+  for (std::size_t n = 0; n < pieces_.size(); ++n) {
+    SurfacePiece piece = pieces_[n];
+    if (piece.voxel == SurfacePiece::kGone) {
+      if (due_mm_[n] != std::numeric_limits<double>::max()) return false;
+      piece.voxel = std::uint32_t(geometry_.indexOf(piece.at[0], piece.at[1], piece.at[2]));
+    }
+    if (!known(piece) || std::isnan(due_mm_[n])) return false;
+  }
   near_known_ = false;
   forgetAwake();
   index();
@@ -337,6 +353,12 @@ bool SolidSurface::takeOver() {
   if (!std::all_of(next_.begin(), next_.end(), known)) return false;
   for (Stretch& stretch : stretches_) {
     if (stretch.part >= cells_.size() || stretch.plane < 0) return false;
+    const Capsule& axis = stretch.axis;
+    if (!isFinite(axis.from) || !isFinite(axis.to) || !isFinite(stretch.along) ||
+        !std::isfinite(axis.radius) || !std::isfinite(stretch.per_length2) ||
+        !(stretch.from >= 0.0 && stretch.share >= 0.0 && stretch.from + stretch.share < 1.001)) {
+      return false;
+    }
     if (stretch.last_plane >= geometry_.size[2]) return false;
     bound(stretch);
   }
@@ -457,30 +479,43 @@ void SolidSurface::searchRows(const TissueField& tissue, const Stretch& stretch,
 }
 
 // The first solid voxel on either side of where the row is nearest to the axis: the distance from a
-// segment grows outwards. That place goes along with the tool, by a margin at most: so far there is
-// one more in each part of kRowPart_mm.
+// segment grows outwards. That place moves as the tool does, and the more the longer the axis lies
+// along the row: wherever it may come to, there is one more in each part of kRowPart_mm.
 void SolidSurface::searchCutRow(const TissueField& tissue, const Stretch& stretch, const Row& row) {
-  const Vec3 at(0.0, row.j * spacing_mm_.y, row.k * spacing_mm_.z);
   const Vec3& from = stretch.axis.from;
-  const double across2 = stretch.along.y * stretch.along.y + stretch.along.z * stretch.along.z;
-  const double share = (at.y - from.y) * stretch.along.y + (at.z - from.z) * stretch.along.z;
-  const double on = across2 > 0.0 ? std::clamp(share / across2, 0.0, 1.0) : 0.5;
-  const double nearest = (from.x + on * stretch.along.x) / spacing_mm_.x;
-  int left = int(std::clamp(nearest, double(row.from), double(row.to))), right = left + 1;
+  const Vec3& along = stretch.along;
+  const double y = row.j * spacing_mm_.y - from.y, z = row.k * spacing_mm_.z - from.z;
+  const double across2 = along.y * along.y + along.z * along.z, share = y * along.y + z * along.z;
+  double on = 0.5, on_low = 0.0, on_high = 1.0;
+  if (across2 > 0.0) {
+    // The place of the axis that is nearest to the row, and all that may be once each has come a
+    // margin nearer and that one gone a margin away.
+    on = std::clamp(share / across2, 0.0, 1.0);
+    const double dy = y - on * along.y, dz = z - on * along.z;
+    const double far = std::sqrt(dy * dy + dz * dz) + 2.0 * margin_mm_;
+    const double root =
+        std::sqrt(std::max(0.0, share * share - across2 * (y * y + z * z - far * far)));
+    on_low = std::clamp((share - root) / across2, 0.0, 1.0);
+    on_high = std::clamp((share + root) / across2, 0.0, 1.0);
+  }
+  const auto at = [&](double place) { return (from.x + place * along.x) / spacing_mm_.x; };
+  const double margin = margin_mm_ / spacing_mm_.x;
+  const double lowest = std::min(at(on_low), at(on_high)) - margin,
+               highest = std::max(at(on_low), at(on_high)) + margin;
+  int left = int(std::clamp(at(on), double(row.from), double(row.to))), right = left + 1;
   if (row.right > row.left) {
     left = row.left;
     right = std::max(row.right, row.left + 1);
   }
   const int part = std::max(1, int(kRowPart_mm / spacing_mm_.x));
-  const double margin = margin_mm_ / spacing_mm_.x;
   for (int end = left; end >= row.from; left = end - 1) {
-    end = left > nearest - margin ? std::max(row.from, left - part + 1) : row.from;
+    end = left > lowest ? std::max(row.from, left - part + 1) : row.from;
     const int found = tissue.solidDown(left, end, row.j, row.k);
     if (found >= end) find(tissue, {found, row.j, row.k}, stretch, -1, end);
     if (end == row.from) break;
   }
   for (int end = right; end <= row.to; right = end + 1) {
-    end = right < nearest + margin ? std::min(row.to, right + part - 1) : row.to;
+    end = right < highest ? std::min(row.to, right + part - 1) : row.to;
     const int found = tissue.solidUp(right, end, row.j, row.k);
     if (found <= end) find(tissue, {found, row.j, row.k}, stretch, 1, end);
     if (end == row.to) break;
@@ -581,8 +616,11 @@ SolidSurface::Stale SolidSurface::removed(const TissueField& tissue,
       due_mm_[number] = gone ? std::numeric_limits<double>::max()
                              : std::numeric_limits<double>::lowest();
       if (gone) continue;
-      index(number);
       wake(number);
+      const std::size_t before = filled_;
+      index(number);
+      // Where the slots were made anew: from the first that this voxel may have, once more.
+      if (filled_ <= before) slot = (slotOf(voxel) + slot_mask_) & slot_mask_;
     }
   }
   return stale;
@@ -609,7 +647,7 @@ std::span<const std::uint32_t> SolidSurface::awake(double within_mm, double trav
     awake_until_mm_ = until_mm + kAwake_mm;
     awake_.clear();
     for (std::size_t n = 0; n < due_mm_.size(); ++n) {
-      if (due_mm_[n] <= awake_until_mm_) awake_.push_back(std::uint32_t(n));
+      if (!(due_mm_[n] > awake_until_mm_)) awake_.push_back(std::uint32_t(n));
     }
   }
   return awake_;

@@ -261,8 +261,7 @@ class SolidSurface {
   bool wide_spheres_, by_rows_;
   Index3 fit_reach_{0, 0, 0};  // voxels around a disk's that its place follows from
   std::vector<SurfacePiece> pieces_;
-  // By piece: the tool is not at it before it has travelled so far. It never falls but where a piece
-  // changes.
+  // By piece: the tool is not at it before it has travelled so far.
   std::vector<double> due_mm_;
   std::vector<std::uint32_t> awake_;  // those that are due until awake_until_mm_, in order
   double awake_until_mm_ = 0.0;

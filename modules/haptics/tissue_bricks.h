@@ -1,6 +1,7 @@
 // How many voxels of tissue each 16^3 brick of the grid may hold, and how many of them are solid:
-// where none, a tool does not look at its voxels. And which voxels are solid. Counted before the first tick, less one for every
-// voxel that is removed. A brick that became unknown is counted anew, one a tick.
+// where none, a tool does not look at its voxels. Counted before the first tick, less one for every
+// voxel that is removed. A brick that became unknown is counted anew, one a tick. And which voxels
+// are solid.
 #pragma once
 
 #include <algorithm>
