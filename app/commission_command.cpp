@@ -59,20 +59,17 @@ int commissionCommand(const CommissionArguments& arguments, const Policy& policy
     if (own) {
       own_now = renewed(*own, made->recommended);
     } else {
-      spdlog::warn("A recommended.json is made anew. {}",
-                   own.error().sentence());
+      spdlog::warn("A recommended.json is made anew. {}", own.error().sentence());
     }
   }
   const std::string stands = toJson(own_now).dump(2) + "\n";
   // The next compares with it, and what is recommended here stands from now on.
-  for (const auto& [folder, file, words] :
-       {std::tuple(state, "commission.json", &text),
-        std::tuple(config, "recommended.json", &stands)}) {
+  for (const auto& [folder, file, words] : {std::tuple(state, "commission.json", &text),
+                                            std::tuple(config, "recommended.json", &stands)}) {
     if (!folder) continue;
     Status kept = makeFolder(*folder);
     if (kept) kept = writeTextFile(*folder / file, *words);
-    if (!kept)
-      spdlog::warn("{} is not kept for the next time. {}", file, kept.error().sentence());
+    if (!kept) spdlog::warn("{} is not kept for the next time. {}", file, kept.error().sentence());
   }
   Status written = writeTextFile(out / "commission.json", text);
   if (written) written = writeTextFile(out / "commission.html", toHtml(*made, changes));

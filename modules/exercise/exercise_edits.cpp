@@ -77,8 +77,8 @@ NewTissues withTissues(Exercise exercise, const TissueSet& set) {
     const Tissue* was = before.find(tissue.id);
     const Tissue* inside = was ? before.find(was->within) : nullptr;
     if (!inside || !tissue.within.empty() || set.find(inside->id)) continue;
-    out.notes.push_back(tr("{} lay inside of {} and lies inside of nothing now", tissue.name,
-                           inside->name));
+    out.notes.push_back(
+        tr("{} lay inside of {} and lies inside of nothing now", tissue.name, inside->name));
   }
   std::erase_if(to.view.looks, [&](const auto& look) { return !set.find(look.first); });
   if (to.tissues_elsewhere) {

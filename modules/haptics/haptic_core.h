@@ -244,7 +244,7 @@ class HapticCore {
   LatenessRule lateness_;
   std::vector<Arm> arms_;
   std::vector<CarveRecord> carves_;
-  std::vector<std::uint32_t> went_;  // the solid ones among them
+  std::vector<std::uint32_t> went_;     // the solid ones among them
   std::vector<std::uint32_t> changed_;  // voxels of this tick's slice of an undo, redo or rewind
   std::vector<Event> events_;
   std::uint64_t stroke_gap_ticks_;

@@ -48,7 +48,8 @@ struct HapticParameters {
   // Touch as recordings of an older version have it, for replays of them.
   //  9: springs of dry friction beside the proxy's pull (laws/coulomb.h), and spheres for a driven
   //     tool thinner than a voxel's diagonal that its neighbours' rows hold (solid_surface.h);
-  // 10: `bounded` without what version 11 added to it (bounded_controller.h), and the surface around
+  // 10: `bounded` without what version 11 added to it (bounded_controller.h), and the surface
+  // around
   //     a tool searched anew once any voxel goes (solid_surface.h).
   int touch_version = kTouchVersion;
 };

@@ -12,7 +12,8 @@ namespace {
 constexpr double kStep = 0.45;  // the longest step between two looks at the gaps
 constexpr double kNear = 0.05;  // the shortest distance within which touches are looked for
 // Pieces that voxels which went have made stale hold for so much travel only (0.05 mm at least).
-// Until the next search the tool may enter what stood behind them by that much: it cuts it or is put back from it.
+// Until the next search the tool may enter what stood behind them by that much: it cuts it or is
+// put back from it.
 constexpr double kWorn = 0.25, kLeastWorn_mm = 0.05;
 constexpr double kKeptOff = 0.02;     // gap that is kept where the tool comes from farther away
 constexpr double kTolerated = 0.002;  // depth to which a sliding tool may be inside
@@ -269,8 +270,7 @@ bool Proxy::goFreely(Way& way) {
   blocker_count_ = 0;
   const SmallMotion wanted = towards(pose_, arm_);
   const double length_mm = way_mm(wanted);
-  const double most_mm =
-      surface_.pieces().empty() ? surface_.margin_mm() - went_mm() : way.step_mm;
+  const double most_mm = surface_.pieces().empty() ? surface_.margin_mm() - went_mm() : way.step_mm;
   const bool whole = length_mm <= most_mm;
   const double share = most_mm / length_mm;
   const Pose to = whole ? arm_

@@ -136,11 +136,11 @@ class Proxy {
   Pose pose_, arm_;
   Pull pull_;
   double turn_mm2_;
-  bool before_11_;  // of touch
+  bool before_11_;                           // of touch
   bool gathered_ = false;                    // the surface's pieces are of around here
   bool stale_ = false, next_stale_ = false;  // voxels went since that search, since the next began
-  bool gone_ = false;       // before version 11: some of the pieces may be of voxels that went
-  Pose from_, next_from_;   // where it was as that search began, as the next did
+  bool gone_ = false;      // before version 11: some of the pieces may be of voxels that went
+  Pose from_, next_from_;  // where it was as that search began, as the next did
   Cutting cutting_ = Cutting::nothing;
   Travel travelled_, next_travelled_;  // since that search, since the next began
   double last_step_mm_ = 0.0;          // in the last tick

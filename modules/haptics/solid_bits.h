@@ -54,9 +54,7 @@ class SolidBits {
 
  private:
   static constexpr int kBits = 64;
-  std::size_t row(int j, int k) const {
-    return (std::size_t(k) * rows_ + std::size_t(j)) * words_;
-  }
+  std::size_t row(int j, int k) const { return (std::size_t(k) * rows_ + std::size_t(j)) * words_; }
   const std::uint64_t& word(const Index3& v) const {
     return bits_[row(v[1], v[2]) + std::size_t(v[0] / kBits)];
   }

@@ -30,7 +30,7 @@ constexpr double kDisk = 0.5;      // radius of a disk, of the diagonal of the m
 constexpr double kFlatDisk = 1.0;  // the same where the columns around it are in a plane
 constexpr double kPlate = 0.45;    // voxels: half the thickness of a plate as thin as a voxel
 constexpr int kPieceWork = 8;      // work to make a piece, in rows
-constexpr int kFitReach = 3;       // meshes from a voxel that its surface follows from (surface_fit.h)
+constexpr int kFitReach = 3;  // meshes from a voxel that its surface follows from (surface_fit.h)
 // Rounding of a bound against the distance itself, mm.
 constexpr double kRounding_mm = 1e-9;
 
@@ -544,7 +544,8 @@ void SolidSurface::find(const TissueField& tissue, const Index3& voxel, const St
   const double farthest = stretch.axis.radius + margin_mm_ + half_diagonal_mm_;
   if (distance2 > farthest * farthest) return;
   if (row_step != 0 && mayCut(tissue, voxel)) {
-    found_.push_back({voxel, stretch.part, away, distance2, kNoCell, row_end, std::int8_t(row_step)});
+    found_.push_back(
+        {voxel, stretch.part, away, distance2, kNoCell, row_end, std::int8_t(row_step)});
     return;
   }
   const Cells& cells = cells_[stretch.part];
@@ -583,8 +584,7 @@ bool SolidSurface::goOnAlongRow(const TissueField& tissue, SurfacePiece& piece) 
     piece.normal = Vec3(0.0);
     return false;
   }
-  const int next =
-      step > 0 ? tissue.solidUp(i + 1, end, j, k) : tissue.solidDown(i - 1, end, j, k);
+  const int next = step > 0 ? tissue.solidUp(i + 1, end, j, k) : tissue.solidDown(i - 1, end, j, k);
   if (step > 0 ? next > end : next < end) return true;
   const std::size_t voxel = geometry_.indexOf(next, j, k);
   const int c = tissue.classAt(voxel);
@@ -613,8 +613,8 @@ SolidSurface::Stale SolidSurface::removed(const TissueField& tissue,
       if (piece.row_step == 0) near_known_ = false;
       if (!goOnAlongRow(tissue, piece)) stale.now = true;
       const bool gone = piece.voxel == SurfacePiece::kGone;
-      due_mm_[number] = gone ? std::numeric_limits<double>::max()
-                             : std::numeric_limits<double>::lowest();
+      due_mm_[number] =
+          gone ? std::numeric_limits<double>::max() : std::numeric_limits<double>::lowest();
       if (gone) continue;
       wake(number);
       const std::size_t before = filled_;

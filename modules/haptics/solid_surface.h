@@ -128,8 +128,8 @@ class SolidSurface {
   void giveUp() { under_way_ = false; }
   int work() const { return work_; }  // of the last search, about in rows of voxels
 
-  // Voxels of solid tissue went, all of them in `box`. From now on the pieces are stale, or those of
-  // the search under way will be.
+  // Voxels of solid tissue went, all of them in `box`. From now on the pieces are stale, or those
+  // of the search under way will be.
   struct Stale {
     bool now = false, next = false;
   };
@@ -235,8 +235,8 @@ class SolidSurface {
   int searchPlane(const TissueField& tissue, Stretch& stretch);
   void searchRows(const TissueField& tissue, const Stretch& stretch, std::span<const Row> rows);
   void searchCutRow(const TissueField& tissue, const Stretch& stretch, const Row& row);
-  void find(const TissueField& tissue, const Index3& voxel, const Stretch& stretch, int row_step = 0,
-            int row_end = 0);
+  void find(const TissueField& tissue, const Index3& voxel, const Stretch& stretch,
+            int row_step = 0, int row_end = 0);
   void addPiece(const TissueField& tissue, const Found& found);
   void finish(const TissueField& tissue);
   bool cutsRows(std::size_t part) const {
@@ -265,8 +265,8 @@ class SolidSurface {
   std::vector<double> due_mm_;
   std::vector<std::uint32_t> awake_;  // those that are due until awake_until_mm_, in order
   double awake_until_mm_ = 0.0;
-  VoxelBounds disks_;              // of pieces that are not of rows
-  VoxelBounds rows_;               // where those of rows are, or may come
+  VoxelBounds disks_;  // of pieces that are not of rows
+  VoxelBounds rows_;   // where those of rows are, or may come
   double near_reach_mm_ = 0.0;
   // The search that is under way.
   bool under_way_ = false;
@@ -277,8 +277,8 @@ class SolidSurface {
   std::vector<Found> found_;
   std::vector<SurfacePiece> next_;
   VoxelBounds next_disks_;
-  bool some_went_ = false;  // voxels since it began
-  bool lost_ = false;       // what stands behind one that went is not known
+  bool some_went_ = false;               // voxels since it began
+  bool lost_ = false;                    // what stands behind one that went is not known
   std::size_t searched_ = 0, made_ = 0;  // of stretches, of found
   std::vector<std::int32_t> cell_;    // of each cell: which of the found it has
   std::vector<std::uint32_t> stamp_;   // of each cell, when it was last filled

@@ -69,8 +69,8 @@ class TissueField {
     return bricks_.mayHoldSolid(low, high);
   }
 
-  // The first solid voxel of row (j, k) along x: from `from` up to `to`, to + 1 where there is none;
-  // and down from `from` to `to`, to - 1 where there is none. All within the grid.
+  // The first solid voxel of row (j, k) along x: from `from` up to `to`, to + 1 where there is
+  // none; and down from `from` to `to`, to - 1 where there is none. All within the grid.
   int solidUp(int from, int to, int j, int k) const {
     if (const SolidBits* bits = bricks_.solid()) return bits->up(from, to, j, k);
     while (from <= to && !isSolidAt(from, j, k)) ++from;

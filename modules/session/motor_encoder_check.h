@@ -74,8 +74,8 @@ class MotorEncoderCheck {
   HandOnArm hand_;
   Vec3 last_m_{0.0}, before_last_m_{0.0};
   int seen_ = 0, still_ = 0;
-  double sampled_s_ = 0.0;   // since the last sample that was not seen before
-  bool was_late_ = false;    // a tick since then
+  double sampled_s_ = 0.0;  // since the last sample that was not seen before
+  bool was_late_ = false;   // a tick since then
   int push_ = 0, tick_ = 0, half_ = 0, broken_ = 0;
   std::array<std::array<double, kStill>, 3> bends_m_{};
   std::array<Vec3, kLongest + kBefore> path_m_{};      // of this push

@@ -130,10 +130,10 @@ Status validate(const TissueSet& set, const std::string& file) {
     for (std::size_t n = 0; around && n < set.tissues.size(); ++n) {
       around = around->within.empty() ? nullptr : set.find(around->within);
       if (around != &t) continue;
-      return bad(file, field + ".within",
-                 tr("'{}' is enclosed by '{}', which lies inside of '{}' itself", t.id, t.within,
-                    t.id),
-                 tr("Name a tissue that lies farther out, or none"));
+      return bad(
+          file, field + ".within",
+          tr("'{}' is enclosed by '{}', which lies inside of '{}' itself", t.id, t.within, t.id),
+          tr("Name a tissue that lies farther out, or none"));
     }
     if (!kShareRange.holds(t.opacity)) {
       return bad(file, field + ".opacity",

@@ -1,8 +1,8 @@
 // usage: [LEFT_ARM=reversed|scatters] umockdev-wrapper with_wooden_arms REPORT.json COMMAND
 // ARGUMENTS...
 // Plugs in two emulated WoodenHaptics boards in hands that swing them, runs the command, and writes
-// what the boards saw: reports that were sent and answered, how long an answer took, and by how much
-// the hands were late at most, who then stand still for so long. Ends as the command did.
+// what the boards saw: reports that were sent and answered, how long an answer took, and by how
+// much the hands were late at most, who then stand still for so long. Ends as the command did.
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -98,8 +98,7 @@ int run(int argc, char** argv) {
   left.end();
   right.end();
   const double late_ms = std::chrono::duration<double, std::milli>(most_late).count();
-  const Json report{
-      {"left", left.report()}, {"right", right.report()}, {"hands_late_ms", late_ms}};
+  const Json report{{"left", left.report()}, {"right", right.report()}, {"hands_late_ms", late_ms}};
   if (Status written = writeTextFile(argv[1], report.dump(1) + "\n"); !written) {
     std::fprintf(stderr, "%s\n", written.error().sentence().c_str());
     return 2;

@@ -94,7 +94,8 @@ void ResultPage::setResult(const ExerciseResult& result) {
     const RemovedOf rest = unnamedRemoved(result.unnamed_mm3);
     html += row(rest.name, volumeWords(rest.mm3));
     html += QStringLiteral("<tr><td colspan='2'><i>%1</i></td></tr>")
-                .arg(tr("It lay at the edge of two tissues, had HU that no tissue has, or had those of an enclosed tissue outside of what encloses it.")
+                .arg(tr("It lay at the edge of two tissues, had HU that no tissue has, or had "
+                        "those of an enclosed tissue outside of what encloses it.")
                          .toHtmlEscaped());
   }
   bool any = false;

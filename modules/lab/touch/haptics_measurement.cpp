@@ -170,11 +170,13 @@ Status measureBox(const HapticsOptions& options, double box_mm,
 std::string toCsv(const HapticsMeasurement& measurement) {
   std::ostringstream text;
   text.imbue(std::locale::classic());
-  text << "tool,arms,grid,box_mm,phase,mean_ns,median_ns,p99_ns,p999_ns,max_ns,removed_mm3_per_s,ticks\n";
+  text << "tool,arms,grid,box_mm,phase,mean_ns,median_ns,p99_ns,p999_ns,max_ns,removed_mm3_per_s,"
+          "ticks\n";
   for (const HapticsRow& row : measurement.rows) {
     text << row.tool << ',' << row.arms << ',' << row.grid << ',' << row.box_mm << ','
          << touchPhaseName(row.phase) << std::fixed << std::setprecision(0);
-    for (double ns : {row.mean_ns, row.median_ns, row.p99_ns, row.p999_ns, row.max_ns}) text << ',' << ns;
+    for (double ns : {row.mean_ns, row.median_ns, row.p99_ns, row.p999_ns, row.max_ns})
+      text << ',' << ns;
     text << std::setprecision(3) << ',' << row.removed_mm3_per_s << std::defaultfloat << ','
          << row.ticks << '\n';
   }
@@ -366,7 +368,8 @@ Json toJson(const HapticsMeasurement& measurement) {
 
 std::string toText(const HapticsMeasurement& measurement) {
   std::string text =
-      "a tick of all arms [us]                   mean    median      99 %    99.9 %       max     mm3/s\n";
+      "a tick of all arms [us]                   mean    median      99 %    99.9 %       max     "
+      "mm3/s\n";
   char line[200];
   for (const HapticsRow& row : measurement.rows) {
     std::snprintf(line, sizeof line,

@@ -72,7 +72,8 @@ Result<HapticsMeasurement> measureHaptics(const HapticsOptions& options,
                                           const std::filesystem::path& out = {},
                                           const Progress& progress = Progress());
 
-// {rows:[{tool, arms, grid, box_mm, phase, ns:{mean, median, p99, p999, max}, removed_mm3_per_s, ticks}],
+// {rows:[{tool, arms, grid, box_mm, phase, ns:{mean, median, p99, p999, max}, removed_mm3_per_s,
+// ticks}],
 //  direction_error_deg:{median, p99}, sliding_force_step_percent_p99, depth_error_percent,
 //  bars:[{name, value, limit, pass}]}
 Json toJson(const HapticsMeasurement& measurement);

@@ -48,7 +48,8 @@ TissueTable boneOverDura() {
 }
 
 struct Bone {
-  explicit Bone(Volume volume = block()) : grid(std::move(volume)), writer(grid.takeWriter()), tissue(grid, boneOverDura()) {}
+  explicit Bone(Volume volume = block())
+      : grid(std::move(volume)), writer(grid.takeWriter()), tissue(grid, boneOverDura()) {}
   const GridGeometry& geometry() const { return grid.geometry(); }
   // All that may be cut within so far of a place goes.
   SolidSurface::Stale cut(SolidSurface& surface, const Vec3& at_mm, double radius_mm) {
@@ -159,8 +160,8 @@ TEST(SurfaceRows, HoldNoVoxelThatWentHoweverOftenTheirTableIsMadeAnew) {
       for (std::size_t v = 0; v < bone.geometry().voxelCount(); ++v) {
         if (bone.grid.hu(v) < 226) continue;
         const Index3 at = bone.geometry().indicesOf(v);
-        Vec3 off = bone.geometry().toPatient_mm(Vec3(at[0], at[1], at[2])) -
-                   (pose_mm.position + shift);
+        Vec3 off =
+            bone.geometry().toPatient_mm(Vec3(at[0], at[1], at[2])) - (pose_mm.position + shift);
         off.z -= std::clamp(off.z, 0.0, kLength_mm);
         if (glm::length(off) > radius_mm) continue;
         bone.writer->store(v, kAirHu);
@@ -265,8 +266,8 @@ TEST(SurfaceRows, ALongDrivenPartAlongTheRowsEntersNoDeeperThanBefore) {
     }
     deepest_mm.push_back(deepest);
   }
-  std::printf("a long part along the rows: touch version 10 %.4f mm deep, now %.4f\n", deepest_mm[0],
-              deepest_mm[1]);
+  std::printf("a long part along the rows: touch version 10 %.4f mm deep, now %.4f\n",
+              deepest_mm[0], deepest_mm[1]);
   EXPECT_LT(deepest_mm[1], deepest_mm[0] + 0.01);
 }
 
@@ -287,7 +288,8 @@ TEST(SurfaceRows, ADrivenToolStaysOutOfWhatItHasNotCut) {
     std::uint64_t removed = 0;
     for (int n = 0; n < 1500; ++n) {
       const double t = 0.001 * n;
-      const Vec3 arm_mm(3.0 * std::sin(4.0 * t), 2.0 * std::sin(5.0 * t), 9.0 - 8.0 * std::min(1.0, 2.0 * t));
+      const Vec3 arm_mm(3.0 * std::sin(4.0 * t), 2.0 * std::sin(5.0 * t),
+                        9.0 - 8.0 * std::min(1.0, 2.0 * t));
       const ArmRecord& arm = bench.at(arm_mm);
       removed += std::uint64_t(arm.removed_voxels);
       if (n % 30 != 0) continue;

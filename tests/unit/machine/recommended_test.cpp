@@ -49,10 +49,11 @@ TEST(Recommended, AMeasurementKeepsTheKnobsThatItLeavesOut) {
   const auto of = [](const char* knob, const char* setting) {
     return RecommendedSetting{knob, setting, 1.0, "%", 2.0, "ns"};
   };
-  const std::vector<RecommendedSetting> before{of("grid", "full"), of("ray_casting", "0.25 voxels")};
+  const std::vector<RecommendedSetting> before{of("grid", "full"),
+                                               of("ray_casting", "0.25 voxels")};
   const std::vector<RecommendedSetting> now{of("rate_hz", "1000"), of("grid", "half")};
-  const std::vector<RecommendedSetting> expected{of("grid", "half"), of("ray_casting", "0.25 voxels"),
-                                                 of("rate_hz", "1000")};
+  const std::vector<RecommendedSetting> expected{
+      of("grid", "half"), of("ray_casting", "0.25 voxels"), of("rate_hz", "1000")};
   EXPECT_EQ(renewed(before, now), expected);
 }
 

@@ -183,11 +183,12 @@ void expectStated(std::string_view knob_id, const TradeRows& stated, const Trade
                   const std::vector<RecommendedSetting>& recommended) {
   ASSERT_TRUE(stated);
   ASSERT_TRUE(other);
-  const auto knob = std::find_if(kKnobs.begin(), kKnobs.end(),
-                                 [&](const Knob& of) { return of.id == knob_id; });
+  const auto knob =
+      std::find_if(kKnobs.begin(), kKnobs.end(), [&](const Knob& of) { return of.id == knob_id; });
   ASSERT_NE(knob, kKnobs.end()) << knob_id;
-  const auto chosen = std::find_if(recommended.begin(), recommended.end(),
-                                   [&](const RecommendedSetting& of) { return of.knob == knob_id; });
+  const auto chosen =
+      std::find_if(recommended.begin(), recommended.end(),
+                   [&](const RecommendedSetting& of) { return of.knob == knob_id; });
   ASSERT_NE(chosen, recommended.end()) << knob_id;
   bool met = false;
   for (std::size_t n = 0; n < stated->size(); ++n) {

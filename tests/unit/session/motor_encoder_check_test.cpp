@@ -37,8 +37,8 @@ struct Plant {
   int samples_of = 1;  // ticks a sample of the device lasts
   double stated_kg = 0.045, most_N = 0.88;
   bool by_button = true;
-  int late_every = 0;   // ticks that come late
-  int late_ticks = 4;   // by so many
+  int late_every = 0;  // ticks that come late
+  int late_ticks = 4;  // by so many
 
   Vec3 x_m{0.0}, v_m_s{0.0}, moved_m{0.0};
   std::vector<Vec3> sent_N;

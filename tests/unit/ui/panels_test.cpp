@@ -154,8 +154,9 @@ TEST_F(TissuePanelTest, TabGoesThroughItsFormAsItIsLaidOut) {
     if (at == first) break;
   }
   std::ptrdiff_t last = -1;
-  for (const char* name : {"tissue:name", "opacity", "colour", "huLow", "huHigh", "tissue:hu_source",
-                           "tissue:structure", "label", "tissue:within", "damping", "stiffness"}) {
+  for (const char* name :
+       {"tissue:name", "opacity", "colour", "huLow", "huHigh", "tissue:hu_source",
+        "tissue:structure", "label", "tissue:within", "damping", "stiffness"}) {
     const std::ptrdiff_t at = std::ranges::find(order, name) - order.begin();
     EXPECT_GT(at, last) << name;
     EXPECT_LT(at, std::ptrdiff_t(order.size())) << name;
