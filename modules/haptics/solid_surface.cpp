@@ -460,8 +460,10 @@ int SolidSurface::searchPlane(const TissueField& tissue, Stretch& stretch) {
 // voxel.
 void SolidSurface::searchRows(const TissueField& tissue, const Stretch& stretch,
                               std::span<const Row> rows) {
+  const bool cuts =
+      cutsRows(stretch.part) && tissue.cutsOfSolid() != TissueField::Cuts::none;
   for (const Row& row : rows) {
-    if (cutsRows(stretch.part)) {
+    if (cuts) {
       searchCutRow(tissue, stretch, row);
       continue;
     }
