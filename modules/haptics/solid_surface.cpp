@@ -460,10 +460,8 @@ int SolidSurface::searchPlane(const TissueField& tissue, Stretch& stretch) {
 // voxel.
 void SolidSurface::searchRows(const TissueField& tissue, const Stretch& stretch,
                               std::span<const Row> rows) {
-  const bool cuts =
-      cutsRows(stretch.part) && tissue.cutsOfSolid() != TissueField::Cuts::none;
   for (const Row& row : rows) {
-    if (cuts) {
+    if (by_rows_) {
       searchCutRow(tissue, stretch, row);
       continue;
     }
@@ -482,7 +480,8 @@ void SolidSurface::searchRows(const TissueField& tissue, const Stretch& stretch,
 
 // The first solid voxel on either side of where the row is nearest to the axis: the distance from a
 // segment grows outwards. That place moves as the tool does, and the more the longer the axis lies
-// along the row: wherever it may come to, there is one more in each part of kRowPart_mm.
+// along the row: wherever it may come to, there is one more in each part of kRowPart_mm. (Before
+// version 11 all voxels of a row that comes near nowhere were found, most of them in vain.)
 void SolidSurface::searchCutRow(const TissueField& tissue, const Stretch& stretch, const Row& row) {
   const Vec3& from = stretch.axis.from;
   const Vec3& along = stretch.along;
@@ -510,16 +509,17 @@ void SolidSurface::searchCutRow(const TissueField& tissue, const Stretch& stretc
     right = std::max(row.right, row.left + 1);
   }
   const int part = std::max(1, int(kRowPart_mm / spacing_mm_.x));
+  const int kept = cutsRows(stretch.part) ? 1 : 0;
   for (int end = left; end >= row.from; left = end - 1) {
     end = left > lowest ? std::max(row.from, left - part + 1) : row.from;
     const int found = tissue.solidDown(left, end, row.j, row.k);
-    if (found >= end) find(tissue, {found, row.j, row.k}, stretch, -1, end);
+    if (found >= end) find(tissue, {found, row.j, row.k}, stretch, -kept, end);
     if (end == row.from) break;
   }
   for (int end = right; end <= row.to; right = end + 1) {
     end = right < highest ? std::min(row.to, right + part - 1) : row.to;
     const int found = tissue.solidUp(right, end, row.j, row.k);
-    if (found <= end) find(tissue, {found, row.j, row.k}, stretch, 1, end);
+    if (found <= end) find(tissue, {found, row.j, row.k}, stretch, kept, end);
     if (end == row.to) break;
   }
 }
