@@ -234,7 +234,7 @@ class SolidSurface {
   bool takeOver();
   int searchPlane(const TissueField& tissue, Stretch& stretch);
   void searchRows(const TissueField& tissue, const Stretch& stretch, std::span<const Row> rows);
-  void searchCutRow(const TissueField& tissue, const Stretch& stretch, const Row& row);
+  void searchRowParts(const TissueField& tissue, const Stretch& stretch, const Row& row);
   void find(const TissueField& tissue, const Index3& voxel, const Stretch& stretch,
             int row_step = 0, int row_end = 0);
   void addPiece(const TissueField& tissue, const Found& found);
