@@ -482,7 +482,8 @@ void SolidSurface::searchRows(const TissueField& tissue, const Stretch& stretch,
 // segment grows outwards. That place moves as the tool does, and the more the longer the axis lies
 // along the row: wherever it may come to, there is one more in each part of kRowPart_mm. (Before
 // version 11 all voxels of a row that comes near nowhere were found, most of them in vain.)
-void SolidSurface::searchRowParts(const TissueField& tissue, const Stretch& stretch, const Row& row) {
+void SolidSurface::searchRowParts(const TissueField& tissue, const Stretch& stretch,
+                                  const Row& row) {
   const Vec3& from = stretch.axis.from;
   const Vec3& along = stretch.along;
   const double y = row.j * spacing_mm_.y - from.y, z = row.k * spacing_mm_.z - from.z;

@@ -12,7 +12,6 @@
 #include "ui/common/making.h"
 #include "ui/common/placing.h"
 #include "ui/common/setting_words.h"
-#include "ui/common/tab_order.h"
 #include "ui/common/words.h"
 #include "ui/tissue/look_box.h"
 #include "ui/tissue/tissue_list.h"
@@ -40,42 +39,34 @@ bool liesInside(const TissueSet& set, const Tissue& tissue, const std::string& i
 
 }  // namespace
 
+// Made from top to bottom: Tab goes through widgets in the order in which they were made.
 TissueForm::TissueForm(QWidget* parent) : QWidget(parent) {
-  buildParts();
   auto* form = new QFormLayout;
   form->setFieldGrowthPolicy(QFormLayout::AllNonFixedFieldsGrow);
   form->setVerticalSpacing(6);
-  auto* high_row = high_->withReason();
-  high_row->addWidget(problem_);
-  high_row->addWidget(gaps_);
   constexpr FieldsOf<Tissue> kFields = kTissueFields;
   name_ = fieldsOf(kFields.subspan(1, 1), *form, "name");
-  auto* looks = new QHBoxLayout;
-  looks->addWidget(opacity_, 1);
-  looks->addWidget(opacity_text_);
-  looks->addWidget(colour_);
-  form->addRow(tr("Opacity"), looks);
-  form->addRow(tr("From"), low_->withReason());
-  form->addRow(tr("To"), high_row);
+  addLooks(*form);
+  addRange(*form);
   source_ = fieldsOf(kSourceFields, *form, "hu");
   where_ = fieldsOf(kFields.subspan(2, 1), *form, "where");
-  form->addRow(tr("Label"), label_->withReason());
+  addLabel(*form);
   within_ = fieldsOf(kFields.subspan(5, 1), *form, "within");
   shell_ = std::make_unique<FieldRows<Tissue::Shell>>(FieldsOf<Tissue::Shell>(kShellFields), *form,
                                                       this, "shell:");
   shell_->entered = [this](const Tissue::Shell& shell, const char*) { shellEntered(shell); };
+  mechanics_ = new TissueMechanics(this);
+  mechanics_->wanted = [this](const Tissue& wanted, const char* what) {
+    const Status applied = apply(wanted, QString(what) + ':' + toQt(wanted.id));
+    if (applied) emit editEnded();
+    return applied;
+  };
   auto* layout = tight(new QVBoxLayout(this));
   layout->addLayout(form);
   layout->addWidget(mechanics_);
-  tabInOrder(*layout);
 }
 
-void TissueForm::buildParts() {
-  colour_ =
-      settingButton("colour", tr("Colour\u2026"), tr("Colour of the tissue, in all views"), this);
-  colour_->setIconSize({20, 20});
-  colour_->setAccessibleName(colour_->text());
-  connect(colour_, &QToolButton::clicked, this, &TissueForm::chooseColour);
+void TissueForm::addLooks(QFormLayout& form) {
   opacity_ = new QSlider(Qt::Horizontal, this);
   opacity_->setObjectName("opacity");
   opacity_->setRange(0, kOpacitySteps);
@@ -89,26 +80,43 @@ void TissueForm::buildParts() {
   connect(opacity_, &QSlider::sliderReleased, this, &TissueForm::editEnded);
   opacity_text_ = new QLabel(this);
   opacity_text_->setMinimumWidth(fontMetrics().horizontalAdvance("0.000 /mm "));
+  colour_ =
+      settingButton("colour", tr("Colour\u2026"), tr("Colour of the tissue, in all views"), this);
+  colour_->setIconSize({20, 20});
+  colour_->setAccessibleName(colour_->text());
+  connect(colour_, &QToolButton::clicked, this, &TissueForm::chooseColour);
+  auto* looks = new QHBoxLayout;
+  looks->addWidget(opacity_, 1);
+  looks->addWidget(opacity_text_);
+  looks->addWidget(colour_);
+  form.addRow(tr("Opacity"), looks);
+}
+
+void TissueForm::addRange(QFormLayout& form) {
   low_ = new WholeNumberField("huLow", this);
   high_ = new WholeNumberField("huHigh", this);
   for (WholeNumberField* box : {low_, high_}) {
     box->setLimits(int(kHuRange.low), int(kHuRange.high));
     box->setSingleStep(5);
     box->setSuffix(tr(" HU"));
+    box->entered = [this] { rangeEntered(); };
   }
+  problem_ = problemLabel("tissueProblem", this);
+  gaps_ = problemLabel("tissueGaps", this);
+  auto* high_row = high_->withReason();
+  high_row->addWidget(problem_);
+  high_row->addWidget(gaps_);
+  form.addRow(tr("From"), low_->withReason());
+  form.addRow(tr("To"), high_row);
+}
+
+void TissueForm::addLabel(QFormLayout& form) {
   label_ = new WholeNumberField("label", this);
   label_->setLimits(0, int(kLabelRange.high));
   label_->setWord(0, tr("any"));
   label_->setPrefix(tr("label "));
-  for (WholeNumberField* box : {low_, high_, label_}) box->entered = [this] { rangeEntered(); };
-  problem_ = problemLabel("tissueProblem", this);
-  gaps_ = problemLabel("tissueGaps", this);
-  mechanics_ = new TissueMechanics(this);
-  mechanics_->wanted = [this](const Tissue& wanted, const char* what) {
-    const Status applied = apply(wanted, QString(what) + ':' + toQt(wanted.id));
-    if (applied) emit editEnded();
-    return applied;
-  };
+  label_->entered = [this] { rangeEntered(); };
+  form.addRow(tr("Label"), label_->withReason());
 }
 
 std::unique_ptr<FieldRows<Tissue>> TissueForm::fieldsOf(FieldsOf<Tissue> fields, QFormLayout& form,

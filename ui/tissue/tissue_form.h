@@ -49,7 +49,9 @@ class TissueForm : public QWidget {
   void overlapsShown(const std::vector<trephine::HuOverlap>& overlaps);
 
  private:
-  void buildParts();
+  void addLooks(QFormLayout& form);
+  void addRange(QFormLayout& form);
+  void addLabel(QFormLayout& form);
   std::unique_ptr<FieldRows<Tissue>> fieldsOf(FieldsOf<Tissue> fields, QFormLayout& form,
                                               const char* what);
   void showAll();

@@ -29,6 +29,11 @@ TissueMechanics::TissueMechanics(QWidget* parent) : QWidget(parent) {
   form->setFieldGrowthPolicy(QFormLayout::AllNonFixedFieldsGrow);
   form->setVerticalSpacing(6);
   for (const TissueNumber& row : kTissueNumbers) addNumber(row);
+  cutting_ =
+      std::make_unique<FieldRows<Tissue>>(FieldsOf<Tissue>(kCuttingFields), *form, this, "tissue:");
+  cutting_->entered = [this](const Tissue& other, const char* key) {
+    if (wanted) (void)wanted(other, key);
+  };
   solid_ = new QComboBox(this);
   solid_->setObjectName("solid");
   solid_->setAccessibleName(tr("Whether it stops a tool"));
@@ -38,11 +43,6 @@ TissueMechanics::TissueMechanics(QWidget* parent) : QWidget(parent) {
   solid_->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon);
   solid_->setMinimumContentsLength(3);
   for (int i = 0; i < 3; ++i) solid_->addItem({});
-  cutting_ = std::make_unique<FieldRows<Tissue>>(FieldsOf<Tissue>(kCuttingFields), *form, this,
-                                                 "tissue:");
-  cutting_->entered = [this](const Tissue& other, const char* key) {
-    if (wanted) (void)wanted(other, key);
-  };
   form->addRow(tr("A tool"), solid_);
   connect(solid_, &QComboBox::activated, this, [this](int chosen) {
     Tissue other = tissue_;
