@@ -511,17 +511,22 @@ void SolidSurface::searchRowParts(const TissueField& tissue, const Stretch& stre
   }
   const int part = std::max(1, int(kRowPart_mm / spacing_mm_.x));
   const int kept = cutsRows(stretch.part) ? 1 : 0;
-  for (int end = left; end >= row.from; left = end - 1) {
-    end = left > lowest ? std::max(row.from, left - part + 1) : row.from;
-    const int found = tissue.solidDown(left, end, row.j, row.k);
-    if (found >= end) find(tissue, {found, row.j, row.k}, stretch, -kept, end);
-    if (end == row.from) break;
+  // Parts without any solid voxel are passed over together.
+  while (left >= row.from) {
+    const int found = tissue.solidDown(left, row.from, row.j, row.k);
+    if (found < row.from) break;
+    const int first = left - (left - found) / part * part;
+    const int end = first > lowest ? std::max(row.from, first - part + 1) : row.from;
+    find(tissue, {found, row.j, row.k}, stretch, -kept, end);
+    left = end - 1;
   }
-  for (int end = right; end <= row.to; right = end + 1) {
-    end = right < highest ? std::min(row.to, right + part - 1) : row.to;
-    const int found = tissue.solidUp(right, end, row.j, row.k);
-    if (found <= end) find(tissue, {found, row.j, row.k}, stretch, kept, end);
-    if (end == row.to) break;
+  while (right <= row.to) {
+    const int found = tissue.solidUp(right, row.to, row.j, row.k);
+    if (found > row.to) break;
+    const int first = right + (found - right) / part * part;
+    const int end = first < highest ? std::min(row.to, first + part - 1) : row.to;
+    find(tissue, {found, row.j, row.k}, stretch, kept, end);
+    right = end + 1;
   }
 }
 
