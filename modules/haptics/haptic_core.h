@@ -117,7 +117,7 @@ class HapticCore {
     ErrorRule errors;
     WarmthRule warmth;
     std::vector<RemovedVoxel> removed;                   // of this tick
-    Index3 removed_low{0, 0, 0}, removed_high{0, 0, 0};  // their bounds
+    VoxelBounds removed_box;                             // that holds them
     // Their linear indices, sorted; filled only where another arm may have removed one of them too.
     std::vector<std::uint32_t> removed_indices;
     std::optional<Pose> last_pose;  // device
@@ -211,9 +211,7 @@ class HapticCore {
   void removeVoxels(std::uint64_t tick, TickRecord& record);
   void sweepTools(const TickRecord& record);
   void sweepTool(Arm& arm, const ArmRecord& moved);
-  void boundRemoved(Arm& arm) const;
   void indexShared();
-  bool mayShare(const Arm& one, const Arm& other) const;
   bool alsoRemoves(const Arm& arm, const Index3& voxel) const;
   std::array<std::size_t, kMaxArms> newestStrokeFirst(const CarveJournal::Credits& before,
                                                       std::uint64_t tick);

@@ -2,7 +2,6 @@
 #include <algorithm>
 #include <bit>
 #include <bitset>
-#include <limits>
 #include <utility>
 
 #include "haptics/haptic_core.h"
@@ -36,9 +35,10 @@ void HapticCore::sweepTools(const TickRecord& record) {
   for (std::size_t i = 0; i < arms_.size(); ++i) {
     Arm& arm = arms_[i];
     arm.removed.clear();
+    arm.removed_box = {};
     if (!arm.cuts || !may_remove_ || !any_cuttable_) continue;
     sweepTool(arm, record.arms[i]);
-    boundRemoved(arm);
+    for (const RemovedVoxel& removed : arm.removed) arm.removed_box.add(removed.voxel);
   }
 }
 
@@ -58,17 +58,6 @@ void HapticCore::sweepTool(Arm& arm, const ArmRecord& moved) {
   for (const Proxy::Blocker& blocker : tool.proxy->blockers()) {
     tool.removal.take(tissue_, geometry.indicesOf(blocker.voxel), blocker.tissue_class,
                       arm.removed);
-  }
-}
-
-void HapticCore::boundRemoved(Arm& arm) const {
-  arm.removed_low.fill(std::numeric_limits<std::int32_t>::max());
-  arm.removed_high.fill(-1);
-  for (const RemovedVoxel& removed : arm.removed) {
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      arm.removed_low[axis] = std::min(arm.removed_low[axis], removed.voxel[axis]);
-      arm.removed_high[axis] = std::max(arm.removed_high[axis], removed.voxel[axis]);
-    }
   }
 }
 
@@ -113,11 +102,7 @@ void HapticCore::tellProxies() {
     went_.push_back(carve.voxel);
   }
   if (went_.empty()) return;
-  for (const Arm& arm : arms_) {
-    if (arm.removed.empty()) continue;
-    box.add(arm.removed_low);
-    box.add(arm.removed_high);
-  }
+  for (const Arm& arm : arms_) box.join(arm.removed_box);
   for (Arm& arm : arms_) {
     for (ArmTool& tool : arm.tools) {
       if (tool.proxy) tool.proxy->removed(tissue_, went_, box);
@@ -139,23 +124,9 @@ void HapticCore::endStrokes() {
 
 // Of an arm that may share voxels with another; of others false.
 bool HapticCore::alsoRemoves(const Arm& arm, const Index3& voxel) const {
-  if (arm.removed.empty()) return false;
-  for (std::size_t axis = 0; axis < 3; ++axis) {  // tools are mostly apart
-    if (voxel[axis] < arm.removed_low[axis] || voxel[axis] > arm.removed_high[axis]) return false;
-  }
+  if (!arm.removed_box.meets({voxel, voxel})) return false;  // tools are mostly apart
   return std::binary_search(arm.removed_indices.begin(), arm.removed_indices.end(),
                             indexOf(writer_.grid().geometry(), voxel));
-}
-
-bool HapticCore::mayShare(const Arm& one, const Arm& other) const {
-  if (one.removed.empty() || other.removed.empty()) return false;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    if (other.removed_low[axis] > one.removed_high[axis] ||
-        other.removed_high[axis] < one.removed_low[axis]) {
-      return false;
-    }
-  }
-  return true;
 }
 
 // Sorts the voxels of the arms that may share some. Most tools that are near each other still
@@ -173,7 +144,7 @@ void HapticCore::indexShared() {
     bool filled = false;
     for (std::size_t b = a + 1; b < arms_.size(); ++b) {
       const Arm &one = arms_[a], &other = arms_[b];
-      if (!mayShare(one, other)) continue;
+      if (!one.removed_box.meets(other.removed_box)) continue;
       if (!filled) {
         for (const RemovedVoxel& removed : one.removed) filter.set(bitOf(removed));
         filled = true;

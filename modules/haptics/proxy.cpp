@@ -50,8 +50,7 @@ Quat turned(const Vec3& by, const Quat& q) {
 
 Proxy::Proxy(const Tool& tool, const GridGeometry& geometry, int touch_version)
     : surface_(tool, geometry, touch_version),
-      turn_mm2_(std::pow(std::max(surface_.reach_mm(), kHandle_mm), 2) / 6.0),
-      before_11_(touch_version < 11) {}
+      turn_mm2_(std::pow(std::max(surface_.reach_mm(), kHandle_mm), 2) / 6.0) {}
 
 void Proxy::place(const Pose& pose_mm) {
   arm_ = pose_mm;
@@ -115,7 +114,7 @@ double Proxy::cost(const SmallMotion& motion) const {
 
 void Proxy::removed(const TissueField& tissue, std::span<const std::uint32_t> voxels,
                     const VoxelBounds& box) {
-  if (before_11_) {
+  if (!surface_.byRows()) {
     stale_ = next_stale_ = gone_ = true;
     return;
   }
@@ -126,7 +125,7 @@ void Proxy::removed(const TissueField& tissue, std::span<const std::uint32_t> vo
 
 // Of the travel for which the gathered surface holds.
 double Proxy::went_mm() const {
-  return before_11_ ? usedUp_mm(travelled_) : way_mm(towards(from_, pose_));
+  return surface_.byRows() ? way_mm(towards(from_, pose_)) : usedUp_mm(travelled_);
 }
 
 // Share of the travel for which the gathered surface holds that is used up after one more step.
@@ -155,8 +154,8 @@ void Proxy::look(const TissueField& tissue, const PlacedBody& body, double step_
     gathered_ = true;
     travelled_ = next_travelled_;
     from_ = next_from_;
-    stale_ = next_stale_ || (!before_11_ && surface_.cameStale());
-    gone_ = before_11_ && next_stale_;
+    stale_ = next_stale_ || (surface_.byRows() && surface_.cameStale());
+    gone_ = !surface_.byRows() && next_stale_;
     dropGone();
   };
   if (!gathered_) {

@@ -136,7 +136,6 @@ class Proxy {
   Pose pose_, arm_;
   Pull pull_;
   double turn_mm2_;
-  bool before_11_;                           // of touch
   bool gathered_ = false;                    // the surface's pieces are of around here
   bool stale_ = false, next_stale_ = false;  // voxels went since that search, since the next began
   bool gone_ = false;      // before version 11: some of the pieces may be of voxels that went

@@ -17,6 +17,7 @@ constexpr double kLeastMargin_mm = 0.5;
 // that is more; every row, where voxels are larger.
 constexpr double kRowsPerRadius = 1.0 / 7.0;
 constexpr double kLeastRows_mm = 0.4;
+// One voxel at most is found in each part of a row, of this length or a voxel.
 constexpr double kRowPart_mm = 0.4;
 constexpr double kStretch_mm = 8.0;  // a longer part is searched in stretches of this length
 constexpr int kMostAlong = 256, kMostDirections = 16;
@@ -64,11 +65,10 @@ std::optional<Touch> SolidSurface::touchWithin(std::size_t number, const PlacedB
       nearestOn(part.from_mm, part.along_mm, part.per_length2, piece.at_mm) * part.along_mm;
   const Vec3 away = centre - piece.at_mm;
   Touch touch;
-  double distance = 0.0, rounding = 0.0;
+  double distance = 0.0;
   if (piece.normal == Vec3(0.0)) {
     distance = glm::length(away);
-    rounding = piece.size_mm;
-    gap_mm = distance - part.radius_mm - rounding;
+    gap_mm = distance - part.radius_mm - piece.size_mm;
     if (gap_mm > within_mm) return {};
     touch.normal = distance > 0.0 ? away / distance : Vec3(0.0, 0.0, 1.0);
   } else {
@@ -87,7 +87,7 @@ std::optional<Touch> SolidSurface::touchWithin(std::size_t number, const PlacedB
       distance = glm::length(to_rim);
       touch.normal = distance > 0.0 ? to_rim / distance : piece.normal;
     }
-    gap_mm = distance - part.radius_mm - rounding;
+    gap_mm = distance - part.radius_mm;
     if (gap_mm > within_mm) return {};
   }
   touch.gap_mm = gap_mm;

@@ -60,17 +60,18 @@ struct SurfacePiece {
   }
 };
 
-// The least box of some voxels; of none it is empty.
+// The least box of some voxels, bounds included; of none it is empty.
 struct VoxelBounds {
   Index3 low{kFar, kFar, kFar}, high{-1, -1, -1};
 
-  void add(const Index3& voxel) {
+  void add(const Index3& voxel) { join({voxel, voxel}); }
+  void join(const VoxelBounds& other) {
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      low[axis] = std::min(low[axis], voxel[axis]);
-      high[axis] = std::max(high[axis], voxel[axis]);
+      low[axis] = std::min(low[axis], other.low[axis]);
+      high[axis] = std::max(high[axis], other.high[axis]);
     }
   }
-  // Whether the two come so near each other.
+  // Whether the two come so near each other; an empty one comes near none.
   bool meets(const VoxelBounds& other, const Index3& within = {0, 0, 0}) const {
     for (std::size_t axis = 0; axis < 3; ++axis) {
       if (other.high[axis] + within[axis] < low[axis]) return false;
@@ -156,6 +157,8 @@ class SolidSurface {
   // fall with distance: a single piece is off by a degree or two.
   Touch blended(const Touch& touch, std::size_t piece, const PlacedBody& body);
 
+  // Touch version 11 and later.
+  bool byRows() const { return by_rows_; }
   // Whether the centre of a piece's voxel is in the body.
   bool centreIn(const PlacedBody& body) const;
 

@@ -53,12 +53,8 @@ Result<std::vector<RecommendedSetting>> readRecommended(const std::filesystem::p
 std::vector<RecommendedSetting> renewed(std::vector<RecommendedSetting> before,
                                         const std::vector<RecommendedSetting>& now) {
   for (const RecommendedSetting& setting : now) {
-    const auto same = std::ranges::find(before, setting.knob, &RecommendedSetting::knob);
-    if (same == before.end()) {
-      before.push_back(setting);
-    } else {
-      *same = setting;
-    }
+    std::erase_if(before, [&](const RecommendedSetting& s) { return s.knob == setting.knob; });
+    before.push_back(setting);
   }
   return before;
 }
@@ -79,11 +75,8 @@ Result<std::vector<RecommendedSetting>> recommendedHere(const Policy& policy,
       spdlog::warn("A recommended.json is left out. {}", over.error().sentence());
       continue;
     }
-    for (RecommendedSetting& setting : *over) {
-      if (locked(setting) && folder == own_folder) continue;
-      std::erase_if(here, [&](const RecommendedSetting& s) { return s.knob == setting.knob; });
-      here.push_back(std::move(setting));
-    }
+    if (folder == own_folder) std::erase_if(*over, locked);
+    here = renewed(std::move(here), *over);
   }
   std::erase_if(here, [&](const RecommendedSetting& s) { return locked(s) && policy.rate_hz; });
   return here;

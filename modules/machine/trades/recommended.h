@@ -28,8 +28,8 @@ Json toJson(const std::vector<RecommendedSetting>& settings);
 // figure below 0, a knob given twice).
 Result<std::vector<RecommendedSetting>> readRecommended(const std::filesystem::path& file);
 
-// Those of `before`, each replaced by that of its knob in `now` where there is one, and then the
-// others of `now`: a measurement that leaves a knob out says nothing of it.
+// Those of `before` whose knobs `now` has not, and then those of `now`: what leaves a knob out says
+// nothing of it.
 std::vector<RecommendedSetting> renewed(std::vector<RecommendedSetting> before,
                                         const std::vector<RecommendedSetting>& now);
 

@@ -53,7 +53,7 @@ TEST(Recommended, AMeasurementKeepsTheKnobsThatItLeavesOut) {
                                                of("ray_casting", "0.25 voxels")};
   const std::vector<RecommendedSetting> now{of("rate_hz", "1000"), of("grid", "half")};
   const std::vector<RecommendedSetting> expected{
-      of("grid", "half"), of("ray_casting", "0.25 voxels"), of("rate_hz", "1000")};
+      of("ray_casting", "0.25 voxels"), of("rate_hz", "1000"), of("grid", "half")};
   EXPECT_EQ(renewed(before, now), expected);
 }
 
