@@ -52,8 +52,8 @@ TEST(Recommended, AMeasurementKeepsTheKnobsThatItLeavesOut) {
   const std::vector<RecommendedSetting> before{of("grid", "full"),
                                                of("ray_casting", "0.25 voxels")};
   const std::vector<RecommendedSetting> now{of("rate_hz", "1000"), of("grid", "half")};
-  const std::vector<RecommendedSetting> expected{
-      of("ray_casting", "0.25 voxels"), of("rate_hz", "1000"), of("grid", "half")};
+  const std::vector<RecommendedSetting> expected{of("ray_casting", "0.25 voxels"),
+                                                 of("rate_hz", "1000"), of("grid", "half")};
   EXPECT_EQ(renewed(before, now), expected);
 }
 
