@@ -12,8 +12,21 @@ TissueBricks::TissueBricks(const Grid& grid, const TissueLookup& lookup)
     : size_(grid.geometry().size), solid_(size_) {
   for (int axis = 0; axis < 3; ++axis) bricks_[axis] = (size_[axis] + kBrickEdge - 1) / kBrickEdge;
   count_.assign(std::size_t(bricks_[0]) * std::size_t(bricks_[1]) * std::size_t(bricks_[2]), {});
-  for (std::size_t brick = 0; brick < count_.size(); ++brick) {
-    count_[brick] = tissueIn(brick, grid, lookup);
+  // In the order of memory: half the time of brick after brick.
+  std::size_t voxel = 0;
+  for (int k = 0; k < size_[2]; ++k) {
+    for (int j = 0; j < size_[1]; ++j) {
+      const std::size_t row = at(0, j >> kBrickShift, k >> kBrickShift);
+      for (int i = 0; i < size_[0]; ++i, ++voxel) {
+        const int c = lookup.classAt(grid, voxel);
+        if (c < 0) continue;
+        Brick& brick = count_[row + std::size_t(i >> kBrickShift)];
+        ++brick.tissue;
+        if (!lookup.isSolid(c)) continue;
+        ++brick.solid;
+        solid_.set({i, j, k}, true);
+      }
+    }
   }
 }
 
