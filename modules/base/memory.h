@@ -13,6 +13,11 @@ namespace trephine {
 double residentMb();
 double peakResidentMb();
 
+// Gives the pages of freed memory back to the system, which the C library otherwise keeps between
+// blocks that are still in use. To be asked after something large has ended, an exercise or an
+// import; takes some ms.
+void giveBackFreedMemory();
+
 // What could be allocated now without pushing anything out to disk, and without the kernel ending
 // the process for it: the least of what the machine, the process's control groups (memory.max) and
 // RLIMIT_DATA leave.

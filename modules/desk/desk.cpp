@@ -224,6 +224,7 @@ void Desk::stopped(const Status& status) {
   if (!poke) events_.onReport(session.report());
   const std::optional<Error> stuck = session.leftBehind();
   std::get<Ending>(activity_).session.reset();
+  giveBackFreedMemory();
   noteController(exercise_->controller);
   go(Idle{});
   // In Prepare they held only for what ran.
