@@ -43,6 +43,7 @@ struct Answer {
   bool done = false;
   int version = 0;
   char driver[160] = {};  // empty: no context could be made
+  char renderer[160] = {};
 };
 
 // An X server under xvfb-run starts afresh when its last client leaves, and refuses newcomers while
@@ -72,7 +73,11 @@ void tryOpenGl(Answer& answer) {
   answer.version = openGlVersion();
   const auto* driver = reinterpret_cast<const char*>(glGetString(GL_VERSION));
   std::snprintf(answer.driver, sizeof answer.driver, "%s", driver ? driver : "");
+  const auto* renderer = reinterpret_cast<const char*>(glGetString(GL_RENDERER));
+  std::snprintf(answer.renderer, sizeof answer.renderer, "%s", renderer ? renderer : "");
 }
+
+std::string probed_renderer;
 
 [[noreturn]] void becomeProbe(int answers) noexcept {
   // Xlib and drivers call exit(): what this copy has inherited, open files above all, is not its to
@@ -159,7 +164,12 @@ Status probeDisplay() {
   }
   if (answer->version < kOpenGlNeeded) return openGlTooOld(answer->driver);
   usable = true;
+  probed_renderer = answer->renderer;
   return {};
+}
+
+std::string probedRenderer() {
+  return probed_renderer;
 }
 
 }  // namespace trephine

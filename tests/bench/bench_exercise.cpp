@@ -13,9 +13,9 @@
 #include <thread>
 #include <vector>
 
-#include "base/file.h"
 #include "base/json.h"
 #include "base/rt/thread.h"
+#include "bench/repeated_exercise.h"
 #include "haptics/loop_clock.h"
 #include "haptics/safety.h"
 #include "training/session_reader.h"
@@ -109,51 +109,12 @@ Lateness recorded(const std::string& file, std::int64_t period_ns) {
   return lateness;
 }
 
-// The exercise with its script over and over, each time a little beside, so that the arms cut all
-// the while.
-std::filesystem::path repeated(const std::filesystem::path& file, double seconds,
-                               const std::filesystem::path& folder) {
-  constexpr double kAside_mm = 1.5;
-  Json exercise = *readJsonFile(file);
-  const auto absolute = [&](Json& path) {
-    path = std::filesystem::absolute(file.parent_path() / path.get<std::string>())
-               .lexically_normal()
-               .string();
-  };
-  absolute(exercise["tissues"]);
-  absolute(exercise["operator"]);
-  for (Json& tool : exercise["tools"]) absolute(tool["file"]);
-  Json script = *readJsonFile(exercise["operator"].get<std::string>());
-  double once_s = 0.0;
-  for (const Json& arm : script["arms"]) {
-    once_s = std::max(once_s, arm["waypoints"].back()["t"].get<double>());
-  }
-  for (Json& arm : script["arms"]) {
-    const Json one = arm["waypoints"];
-    constexpr double kBetween_s = 0.001;  // the end of one and the start of the next
-    for (int n = 1; n * once_s < seconds; ++n) {
-      for (Json at : one) {
-        at["t"] = at["t"].get<double>() + n * (once_s + kBetween_s);
-        at["at_mm"][1] = at["at_mm"][1].get<double>() + kAside_mm * (n % 5);
-        arm["waypoints"].push_back(at);
-      }
-    }
-  }
-  exercise["operator"] = (folder / "script.json").string();
-  if (!writeTextFile(folder / "script.json", script.dump()) ||
-      !writeTextFile(folder / "scene.json", exercise.dump())) {
-    std::fprintf(stderr, "%s cannot be written\n", folder.c_str());
-    std::exit(1);
-  }
-  return folder / "scene.json";
-}
-
 int run(const std::string& file, double seconds, int runs) {
   const std::filesystem::path folder =
       std::filesystem::temp_directory_path() / ("bench-exercise-" + std::to_string(::getpid()));
   std::error_code ec;
   std::filesystem::create_directories(folder, ec);
-  const std::string exercise = repeated(file, seconds, folder).string();
+  const std::string exercise = bench::repeated(file, seconds, folder).string();
   std::printf("%-4s %-9s %8s %9s %8s %6s %10s %8s %9s %7s\n", "run", "thread", "ticks", "on time",
               "reduced", "away", "longest ms", "frames/s", "frame p99", "stall");
   bool within = true;

@@ -19,6 +19,10 @@ void prepareMemory() {
   // Left alone the C library raises this limit to the largest block that was ever freed.
   constexpr int kOwnPages_bytes = 1 << 20;
   ::mallopt(M_MMAP_THRESHOLD, kOwnPages_bytes);
+  // What a picture frees the next one needs: given back to the system each time, it comes as fresh
+  // pages again. giveBackFreedMemory() gives back all of it.
+  constexpr int kKept_bytes = 32 << 20;
+  ::mallopt(M_TRIM_THRESHOLD, kKept_bytes);
 }
 
 Status prepareDisplay() {

@@ -218,6 +218,8 @@ void ArmsPanel::showState(const LoopState& state, const TissueSet& tissues,
     Card& card = cards_[i];
     const double sent_N = glm::length(arm.sent_N), demanded_N = glm::length(arm.demanded_N);
     card.bar->setForce(sent_N, demanded_N, limits_N[i]);
+    card.force_trace->update();
+    card.energy_trace->update();
     card.force->setText(tr("%1 of %2").arg(newtons(sent_N), newtons(limits_N[i])));
     card.demanded->setText(tr("demanded %1").arg(newtons(demanded_N)));
     const Vec3& p = arm.proxy_position_mm;

@@ -13,7 +13,7 @@ namespace trephine {
 
 namespace {
 
-constexpr int kPanelEvery_ms = 66;   // numbers that change faster cannot be read
+constexpr int kPanelEvery_ms = 100;  // numbers that change faster cannot be read
 constexpr int kCardsEvery_ms = 200;  // they are pictures
 constexpr int kRatesEvery_ms = 1000;
 constexpr int kRemovedEvery_ms = 500;

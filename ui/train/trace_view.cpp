@@ -34,7 +34,6 @@ void TraceView::add(double time_s, double value, double demanded) {
       samples_, [&](const Sample& s) { return s.time_s >= time_s - kShown_s; });
   const auto count = std::size_t(old - samples_.begin());
   if (count >= kBlock) samples_.erase(samples_.begin(), old);
-  update();
 }
 
 void TraceView::clear() {

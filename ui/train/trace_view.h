@@ -22,7 +22,8 @@ class TraceView : public QWidget {
   void setColour(const QColor& colour) { colour_ = colour; }  // from the next value on
   // `time_s` of the session; finite numbers. An earlier time than the last begins the trace anew.
   // What is older than ten seconds goes, in blocks of 256 values. The second line is drawn once a
-  // `demanded` was not the value.
+  // `demanded` was not the value. Shown with the next update(): values come more often than a line
+  // of hundreds of them can be drawn.
   void add(double time_s, double value) { add(time_s, value, value); }
   void add(double time_s, double value, double demanded);
   void clear();

@@ -11,6 +11,7 @@
 
 #include "base/tr.h"
 #include "imaging/codes.h"
+#include "render/display_probe.h"
 #include "ui/common/colours.h"
 #include "ui/common/event_loop.h"
 #include "ui/views/device_pixels.h"
@@ -54,7 +55,8 @@ void addLines(const WorkspaceBox& box, const ViewCamera& camera, const QSize& al
 }  // namespace
 
 ViewWidget::ViewWidget(Toolbox& toolbox, QWidget* parent)
-    : QOpenGLWidget(parent),
+    : OpenGlPane(wayToScreen(probedRenderer(), qEnvironmentVariable("TREPHINE_VIEW").toStdString()),
+                 parent),
       hint_(new QLabel(this)),
       level_(new QLabel(this)),
       strip_(new ViewStrip(renderer_, this)),
@@ -118,14 +120,7 @@ void ViewWidget::fitRenderer() {
   renderer_.resize(pixelsOf(*this).width(), pixelsOf(*this).height());
 }
 
-// Qt paints within it, for a layout more than once, and once more when all is in its place.
-void ViewWidget::resizeEvent(QResizeEvent* event) {
-  resizing_ = true;
-  QOpenGLWidget::resizeEvent(event);
-  resizing_ = false;
-}
-
-void ViewWidget::resizeGL(int, int) {
+void ViewWidget::resizeGL() {
   fitRenderer();
   fitHint();
   if (renderer_.hasVolume()) redraw();  // sizes follow each other like turns of the camera
@@ -135,7 +130,7 @@ void ViewWidget::resizeGL(int, int) {
 void ViewWidget::fitHint() {
   strip_->place();
   hint_->setGeometry(rect().adjusted(20, 20, -20, -20));
-  // Always as large and never hidden: over a QOpenGLWidget, pixels that a child leaves stay.
+  // Always as large and never hidden: over a composed view, pixels that a child leaves stay.
   level_->setGeometry(10, 8, std::max(0, strip_->x() - 20), 6 * fontMetrics().height());
 }
 
@@ -181,7 +176,6 @@ void ViewWidget::paintInstead() {
 }
 
 void ViewWidget::paintGL() {
-  if (resizing_) return;
   worked_ = true;
   QElapsedTimer timer;
   timer.start();
@@ -456,7 +450,7 @@ void ViewWidget::keyPressEvent(QKeyEvent* event) {
     if (key == Qt::Key_Home && training_) return emit toolStraightened();
     const bool plain =
         !(event->modifiers() & (Qt::ShiftModifier | Qt::ControlModifier | Qt::AltModifier));
-    if (!plain || !tool_.key(key)) QOpenGLWidget::keyPressEvent(event);
+    if (!plain || !tool_.key(key)) OpenGlPane::keyPressEvent(event);
     return;
   }
   if (!renderer_.hasVolume()) return;
@@ -479,7 +473,7 @@ void ViewWidget::keyPressEvent(QKeyEvent* event) {
 
 // The hand changes by Tab; Shift+Tab leaves the view as ever.
 bool ViewWidget::focusNextPrevChild(bool next) {
-  if (!training_ || !next) return QOpenGLWidget::focusNextPrevChild(next);
+  if (!training_ || !next) return OpenGlPane::focusNextPrevChild(next);
   emit otherHandWanted();
   return true;
 }

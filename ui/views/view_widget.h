@@ -12,7 +12,6 @@
 
 #include <QElapsedTimer>
 #include <QLabel>
-#include <QOpenGLWidget>
 #include <QTimer>
 #include <functional>
 
@@ -20,12 +19,13 @@
 #include "base/result.h"
 #include "base/tr.h"
 #include "exercise/landmark.h"
+#include "ui/views/opengl_pane.h"
 #include "ui/views/tool_in_3d.h"
 #include "ui/views/workspace_box.h"
 
 namespace trephine {
 
-class ViewWidget : public QOpenGLWidget {
+class ViewWidget : public OpenGlPane {
   Q_OBJECT
  public:
   explicit ViewWidget(Toolbox& toolbox, QWidget* parent = nullptr);  // which outlives it
@@ -100,8 +100,7 @@ class ViewWidget : public QOpenGLWidget {
 
  protected:
   void initializeGL() override;
-  void resizeEvent(QResizeEvent* event) override;
-  void resizeGL(int width, int height) override;
+  void resizeGL() override;
   void paintGL() override;
   void mousePressEvent(QMouseEvent* event) override;
   void mouseMoveEvent(QMouseEvent* event) override;
@@ -141,7 +140,6 @@ class ViewWidget : public QOpenGLWidget {
   Vec3 turned_about_mm_{0.0};  // by a drag
   std::optional<QPointF> pressed_at_;  // of a click, as long as it may be one
   bool training_ = false;
-  bool resizing_ = false;
   bool worked_ = false;  // since the event loop came round
   bool put_off_ = false;  // what is to be warmed
   bool moving_ = false;

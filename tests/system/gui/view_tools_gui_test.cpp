@@ -326,6 +326,44 @@ class ViewToolsGuiTest : public test::WindowTest {
     QVERIFY(QTest::qWaitFor(alike, 3000));
   }
 
+  void whatChangesOverTheViewAloneDrawsNoPicture() {
+    seen();  // at rest
+    QSignalSpy painted(&view(), &ViewWidget::framePainted);
+    QLabel over(&view());
+    over.setText("over the view");
+    over.setGeometry(20, view().height() / 2, 120, 30);
+    over.setAutoFillBackground(true);
+    over.show();
+    const QPoint place = over.mapTo(window_.get(), over.rect().topLeft());
+    const auto onScreen = [&] {
+      rest();
+      return window_->screen()
+          ->grabWindow(window_->winId(), place.x(), place.y(), over.width(), over.height())
+          .toImage()
+          .convertToFormat(QImage::Format_RGB32);
+    };
+    const auto own = [&] { return over.grab().toImage().convertToFormat(QImage::Format_RGB32); };
+    QVERIFY(QTest::qWaitFor([&] { return onScreen() == own(); }, 3000));
+    const QImage first = onScreen();
+    over.setText("and something else");
+    QVERIFY(QTest::qWaitFor([&] { return onScreen() == own() && own() != first; }, 3000));
+    QCOMPARE(painted.count(), 0);
+  }
+
+  // A card may cover all of it while others wait for a picture.
+  void aViewThatIsCoveredDrawsAllTheSame() {
+    seen();
+    QWidget cover(view().parentWidget());
+    cover.setGeometry(view().geometry());
+    cover.setAutoFillBackground(true);
+    cover.show();
+    cover.raise();
+    rest();
+    QSignalSpy painted(&view(), &ViewWidget::framePainted);
+    view().update();
+    QTRY_VERIFY(!painted.isEmpty());
+  }
+
   void aLostContextIsRebuilt() {
     const Picture before = shot();
     QWidget* home = view().parentWidget();
