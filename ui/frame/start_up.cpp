@@ -21,7 +21,7 @@ void prepareMemory() {
   ::mallopt(M_MMAP_THRESHOLD, kOwnPages_bytes);
   // What a picture frees the next one needs: given back to the system each time, it comes as fresh
   // pages again. giveBackFreedMemory() gives back all of it.
-  constexpr int kKept_bytes = 32 << 20;
+  constexpr int kKept_bytes = 16 << 20;
   ::mallopt(M_TRIM_THRESHOLD, kKept_bytes);
 }
 
