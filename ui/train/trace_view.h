@@ -19,7 +19,7 @@ class TraceView : public QWidget {
   TraceView(const QString& title, const QString& unit, double low, double high,
             QWidget* parent = nullptr);
 
-  void setColour(const QColor& colour) { colour_ = colour; }  // from the next value on
+  void setColour(const QColor& colour) { colour_ = colour; }  // from the next update() on
   // `time_s` of the session; finite numbers. An earlier time than the last begins the trace anew.
   // What is older than ten seconds goes, in blocks of 256 values. The second line is drawn once a
   // `demanded` was not the value. Shown with the next update(): values come more often than a line

@@ -11,6 +11,7 @@
 #include <QPainter>
 #include <QTimer>
 #include <QWindow>
+#include <cmath>
 #include <cstdint>
 #include <cstring>
 #include <utility>
@@ -91,7 +92,23 @@ void OpenGlPane::makeCurrent() {
   if (composed_) return composed_->makeCurrent();
   if (!context_) return;
   context_->makeCurrent(surface_.get());
+  if (!size().isEmpty()) fit();
   if (framebuffer_) framebuffer_->bind();
+}
+
+// What is drawn into and read back to has the size that the pane has now.
+void OpenGlPane::fit() {
+  const QSize size = pixelsOf(*this);
+  if (framebuffer_ && framebuffer_->size() == size) return;
+  framebuffer_.reset();
+  framebuffer_ = std::make_unique<QOpenGLFramebufferObject>(
+      size, QOpenGLFramebufferObject::CombinedDepthStencil);
+  QImage picture(size, QImage::Format_RGB32);
+  QImage read(size, QImage::Format_RGBX8888);
+  picture.fill(Qt::black);
+  const bool fits = framebuffer_->isValid() && !picture.isNull() && !read.isNull();
+  picture_ = fits ? picture : QImage();
+  read_ = fits ? read : QImage();
 }
 
 void OpenGlPane::doneCurrent() {
@@ -121,6 +138,7 @@ bool OpenGlPane::start() {
   surface->create();
   if (!context->create() || !context->makeCurrent(surface.get())) {
     refused_ = true;
+    couldNotStart();
     return false;
   }
   context_ = std::move(context);
@@ -132,37 +150,37 @@ bool OpenGlPane::start() {
 
 // Into our own framebuffer, and from there into the picture.
 void OpenGlPane::draw() {
-  const QSize size = pixelsOf(*this);
   makeCurrent();
-  if (!framebuffer_ || framebuffer_->size() != size) {
-    framebuffer_ = std::make_unique<QOpenGLFramebufferObject>(
-        size, QOpenGLFramebufferObject::CombinedDepthStencil);
-    picture_ = QImage(size, QImage::Format_RGB32);
-    read_.resize(std::size_t(size.width()) * std::size_t(size.height()) * 4);
-  }
-  framebuffer_->bind();
   QOpenGLExtraFunctions& gl = *context_->extraFunctions();
-  gl.glViewport(0, 0, size.width(), size.height());
+  gl.glViewport(0, 0, framebuffer_->width(), framebuffer_->height());
   wanted_ = false;  // paintGL() may want another
   paintGL();
-  gl.glBindFramebuffer(GL_READ_FRAMEBUFFER, framebuffer_->handle());
-  gl.glReadBuffer(GL_COLOR_ATTACHMENT0);
-  gl.glPixelStorei(GL_PACK_ALIGNMENT, 4);
-  gl.glReadPixels(0, 0, size.width(), size.height(), GL_RGBA, GL_UNSIGNED_BYTE, read_.data());
-  turnOver(read_.data(), picture_);
-  picture_.setDevicePixelRatio(devicePixelRatioF());
+  makeCurrent();  // who heard of the picture may have worked with the context
+  if (!picture_.isNull()) {
+    gl.glBindFramebuffer(GL_READ_FRAMEBUFFER, framebuffer_->handle());
+    gl.glReadBuffer(GL_COLOR_ATTACHMENT0);
+    gl.glBindBuffer(GL_PIXEL_PACK_BUFFER, 0);
+    gl.glPixelStorei(GL_PACK_ALIGNMENT, 4);
+    gl.glPixelStorei(GL_PACK_ROW_LENGTH, 0);
+    gl.glReadPixels(0, 0, read_.width(), read_.height(), GL_RGBA, GL_UNSIGNED_BYTE, read_.bits());
+    turnOver(read_.constBits(), picture_);
+    picture_.setDevicePixelRatio(devicePixelRatioF());
+  }
   doneCurrent();
 }
 
 // Before what is seen of it is painted: Qt paints nothing that is covered, and others wait for a
 // picture all the same. What nobody can see waits until it is shown.
 void OpenGlPane::drawWanted() {
+  if (!wanted_ || !isVisible() || size().isEmpty()) return;
   const QWindow* window = this->window()->windowHandle();
-  if (!wanted_ || !isVisible() || size().isEmpty() || !window || !window->isExposed()) return;
+  if (!window || !window->isExposed()) return QWidget::update();  // which Qt keeps until it is
   if (!start()) return;
   if (!updatesEnabled()) return QTimer::singleShot(0, this, &OpenGlPane::update);
   draw();
-  QWidget::update();
+  unseen_ = true;
+  repaint();  // at once: what was drawn may have asked for another already
+  unseen_ = false;
 }
 
 bool OpenGlPane::event(QEvent* event) {
@@ -195,12 +213,18 @@ void OpenGlPane::resizeEvent(QResizeEvent* event) {
   update();
 }
 
+// A picture that was just drawn is shown, even where another is wanted by now.
 void OpenGlPane::paintEvent(QPaintEvent* event) {
   if (composed_) return;
-  if (wanted_ && start()) draw();
+  const bool fits = picture_.size() == pixelsOf(*this) &&
+                    picture_.devicePixelRatio() == devicePixelRatioF();
+  const bool fresh = unseen_ && fits;
+  if ((wanted_ || !fits) && !fresh && !size().isEmpty() && start()) draw();
   QPainter painter(this);
-  if (picture_.isNull()) return painter.fillRect(event->rect(), Qt::black);
-  painter.drawImage(0, 0, picture_);
+  // At a scale that is no whole number an edge may be left.
+  const bool whole = devicePixelRatioF() == std::floor(devicePixelRatioF());
+  if (picture_.isNull() || !whole) painter.fillRect(event->rect(), Qt::black);
+  if (!picture_.isNull()) painter.drawImage(0, 0, picture_);
 }
 
 }  // namespace trephine

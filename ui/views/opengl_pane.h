@@ -9,7 +9,6 @@
 #include <QImage>
 #include <QWidget>
 #include <memory>
-#include <vector>
 
 #include "ui/views/way_to_screen.h"
 
@@ -43,6 +42,7 @@ class OpenGlPane : public QWidget {
   virtual void initializeGL() = 0;
   virtual void resizeGL() = 0;  // of which the size in pixels is pixelsOf()
   virtual void paintGL() = 0;
+  virtual void couldNotStart() = 0;  // there is no context to be had; said once
 
   bool event(QEvent* event) override;
   void showEvent(QShowEvent* event) override;
@@ -52,6 +52,7 @@ class OpenGlPane : public QWidget {
  private:
   class Composed;
   bool start();
+  void fit();
   void draw();
   void drawWanted();
 
@@ -61,11 +62,12 @@ class OpenGlPane : public QWidget {
   std::unique_ptr<QOffscreenSurface> surface_;
   std::unique_ptr<QOpenGLContext> context_;
   std::unique_ptr<QOpenGLFramebufferObject> framebuffer_;
-  std::vector<unsigned char> read_;  // rows go up, as OpenGL's do
-  QImage picture_;
+  QImage read_;     // rows go up, as OpenGL's do
+  QImage picture_;  // null where there is no room for it
   bool refused_ = false;  // there is no context to be had
   bool wanted_ = true;    // another picture is to be drawn
   bool posted_ = false;   // and the event that asks for it is on its way
+  bool unseen_ = false;   // it was drawn and not painted yet
 };
 
 }  // namespace trephine

@@ -115,6 +115,11 @@ void ViewWidget::initializeGL() {
   }
 }
 
+void ViewWidget::couldNotStart() {
+  // Not while the window is laid out or painted: a dialog paints.
+  QTimer::singleShot(0, this, [this] { emit failed(drawing_.error()); });
+}
+
 // The renderer counts device pixels, the widget does not.
 void ViewWidget::fitRenderer() {
   renderer_.resize(pixelsOf(*this).width(), pixelsOf(*this).height());

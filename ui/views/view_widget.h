@@ -102,6 +102,7 @@ class ViewWidget : public OpenGlPane {
   void initializeGL() override;
   void resizeGL() override;
   void paintGL() override;
+  void couldNotStart() override;
   void mousePressEvent(QMouseEvent* event) override;
   void mouseMoveEvent(QMouseEvent* event) override;
   void mouseReleaseEvent(QMouseEvent* event) override;

@@ -350,6 +350,45 @@ class ViewToolsGuiTest : public test::WindowTest {
     QCOMPARE(painted.count(), 0);
   }
 
+  // Input that comes while a picture is drawn wants another: both are shown.
+  void noPictureIsDrawnInVain() {
+    if (view().way() == WayToScreen::composed) QSKIP("Qt draws as it paints");
+    seen();
+    int drawn = 0, painted = 0;
+    QObject ears;
+    connect(&view(), &ViewWidget::framePainted, &ears, [&] { ++drawn; });
+    struct Painted : QObject {
+      explicit Painted(int& count) : count_(count) {}
+      bool eventFilter(QObject*, QEvent* event) override {
+        count_ += event->type() == QEvent::Paint;
+        return false;
+      }
+      int& count_;
+    } filter(painted);
+    view().installEventFilter(&filter);
+    connect(&view(), &ViewWidget::framePainted, &ears, [&] {
+      if (drawn < 20) view().update();
+    });
+    view().update();
+    QTRY_COMPARE(drawn, 20);
+    rest();
+    QVERIFY2(painted >= drawn, qPrintable(QString("%1 of %2").arg(painted).arg(drawn)));
+    view().removeEventFilter(&filter);
+  }
+
+  void whatChangedWhileTheWindowWasAwayIsDrawnOnceItIsBack() {
+    seen();
+    window_->windowHandle()->setVisible(false);
+    QTRY_VERIFY(!window_->windowHandle()->isExposed());
+    QSignalSpy painted(&view(), &ViewWidget::framePainted);
+    view().update();
+    rest();
+    QCOMPARE(painted.count(), 0);
+    window_->windowHandle()->setVisible(true);
+    QTRY_VERIFY(window_->windowHandle()->isExposed());
+    QTRY_VERIFY(!painted.isEmpty());
+  }
+
   // A card may cover all of it while others wait for a picture.
   void aViewThatIsCoveredDrawsAllTheSame() {
     seen();

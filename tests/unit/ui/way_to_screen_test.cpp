@@ -8,6 +8,7 @@ namespace {
 TEST(WayToScreen, IsCopiedWhereAProcessorDraws) {
   for (const char* renderer :
        {"llvmpipe (LLVM 15.0.6, 256 bits)", "softpipe", "Software Rasterizer", "SWR (LLVM 9.0)",
+        "virgl (LLVMPIPE (LLVM 15.0.7 256 bits))", "D3D12 (Microsoft Basic Render Driver)",
         "ANGLE (Google, Vulkan 1.3.0 (SwiftShader Device (LLVM 10.0.0)), SwiftShader driver)"}) {
     EXPECT_EQ(wayToScreen(renderer, ""), WayToScreen::copied) << renderer;
   }
