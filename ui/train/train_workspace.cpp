@@ -116,8 +116,12 @@ void TrainWorkspace::buildActions() {
 void TrainWorkspace::connectParts() {
   connect(start_, &QAction::triggered, this, &TrainWorkspace::start);
   connect(stop_, &QAction::triggered, &workstation_, [this] { workstation_.stop(); });
-  connect(pause_, &QAction::triggered, this,
-          [this](bool on) { command(on ? CommandKind::pause : CommandKind::resume); });
+  // By what the session does, which the action shows a moment later.
+  connect(pause_, &QAction::triggered, this, [this] {
+    const Session* session = workstation_.session();
+    if (!session) return;
+    command(session->state().paused ? CommandKind::resume : CommandKind::pause);
+  });
   connect(notice_, &StateNotice::goOnWanted, this, [this] { command(CommandKind::resume); });
   connect(notice_, &StateNotice::forceWanted, this, [this] { command(CommandKind::clear_faults); });
   connect(app_.undoAction(), &QAction::triggered, running_,
