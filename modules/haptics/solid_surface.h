@@ -1,6 +1,7 @@
 // The surface of solid tissue near a tool, as pieces that the tool must stay outside of.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <limits>
@@ -293,6 +294,14 @@ class SolidSurface {
   NearPieces near_{0};
   bool near_known_ = false;
   static constexpr std::int32_t kNoCell = -1;
+  static constexpr double kPlate = 0.45;      // voxels: half the thickness of a plate as thin as one
+  static constexpr double kStretch_mm = 8.0;  // a longer part is searched in stretches of this length
+  // One voxel at most is found in each part of a row, of this length or a voxel.
+  static constexpr double kRowPart_mm = 0.4;
+  // Where on an axis the nearest place to a point is, as a share of it.
+  static double nearestOn(const Vec3& from, const Vec3& along, double per_length2, const Vec3& to) {
+    return std::clamp(glm::dot(to - from, along) * per_length2, 0.0, 1.0);
+  }
 };
 
 }  // namespace trephine
