@@ -294,8 +294,9 @@ class SolidSurface {
   NearPieces near_{0};
   bool near_known_ = false;
   static constexpr std::int32_t kNoCell = -1;
-  static constexpr double kPlate = 0.45;      // voxels: half the thickness of a plate as thin as one
-  static constexpr double kStretch_mm = 8.0;  // a longer part is searched in stretches of this length
+  static constexpr double kPlate = 0.45;  // voxels: half the thickness of a plate as thin as one
+  static constexpr double kStretch_mm =
+      8.0;  // a longer part is searched in stretches of this length
   // One voxel at most is found in each part of a row, of this length or a voxel.
   static constexpr double kRowPart_mm = 0.4;
   // Where on an axis the nearest place to a point is, as a share of it.
