@@ -15,11 +15,11 @@ namespace {
 
 // One line that leaves room for the buttons beside it, whatever a file calls itself.
 QString listedName(const std::string& name) {
-  constexpr int kMostLetters = 40;
+  constexpr int kMostOfLine = 40;
   QString line = toQt(name).simplified();
   line.removeIf([](QChar c) { return !c.isPrint(); });
   if (line.isEmpty()) return ExerciseChoice::tr("(no name)");
-  return line.size() > kMostLetters ? line.left(kMostLetters - 1) + QChar(0x2026) : line;
+  return line.size() > kMostOfLine ? line.left(kMostOfLine - 1) + QChar(0x2026) : line;
 }
 
 }  // namespace

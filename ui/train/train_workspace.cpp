@@ -118,7 +118,7 @@ void TrainWorkspace::connectParts() {
   connect(stop_, &QAction::triggered, &workstation_, [this] { workstation_.stop(); });
   // By what the session does, which the action shows a moment later.
   connect(pause_, &QAction::triggered, this, [this] {
-    const Session* session = workstation_.session();
+    Session* session = workstation_.session();
     if (!session) return;
     command(session->state().paused ? CommandKind::resume : CommandKind::pause);
   });
