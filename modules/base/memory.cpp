@@ -68,7 +68,9 @@ double residentMb() {
   return resident * static_cast<double>(::sysconf(_SC_PAGESIZE)) / kMb;
 }
 
-void giveBackFreedMemory() { ::malloc_trim(0); }
+void giveBackFreedMemory() {
+  ::malloc_trim(0);
+}
 
 double peakResidentMb() {
   // Not getrusage(): it knows the memory of the program that started this one, too.

@@ -72,8 +72,9 @@ void draw(std::uint32_t number, int height) {
 class Counter : public QObject {
  public:
   explicit Counter(MainWindow& window) : view_(window.view()) {
-    QObject::connect(&window.workstation(), &Workstation::sessionStarted, this,
-                     [this] { QTimer::singleShot(int(1e3 * kUncounted_s), this, [this] { begin(); }); });
+    QObject::connect(&window.workstation(), &Workstation::sessionStarted, this, [this] {
+      QTimer::singleShot(int(1e3 * kUncounted_s), this, [this] { begin(); });
+    });
     QObject::connect(&view_, &ViewWidget::framePainted, this, [this](double ms) { painted(ms); });
     qApp->installEventFilter(this);
   }
@@ -98,7 +99,8 @@ class Counter : public QObject {
       const auto painted = painted_.find(number);
       if (painted == painted_.end() || at > ended_) continue;
       ++counts_.shown;
-      to_screen_ms.push_back(std::chrono::duration<double, std::milli>(at - painted->second).count());
+      to_screen_ms.push_back(
+          std::chrono::duration<double, std::milli>(at - painted->second).count());
       const std::chrono::duration<double, std::milli> gap = at - last.value_or(at);
       counts_.longest_gap_ms = std::max(counts_.longest_gap_ms, gap.count());
       last = at;

@@ -216,8 +216,8 @@ void OpenGlPane::resizeEvent(QResizeEvent* event) {
 // A picture that was just drawn is shown, even where another is wanted by now.
 void OpenGlPane::paintEvent(QPaintEvent* event) {
   if (composed_) return;
-  const bool fits = picture_.size() == pixelsOf(*this) &&
-                    picture_.devicePixelRatio() == devicePixelRatioF();
+  const bool fits =
+      picture_.size() == pixelsOf(*this) && picture_.devicePixelRatio() == devicePixelRatioF();
   const bool fresh = unseen_ && fits;
   if ((wanted_ || !fits) && !fresh && !size().isEmpty() && start()) draw();
   QPainter painter(this);

@@ -62,8 +62,8 @@ class OpenGlPane : public QWidget {
   std::unique_ptr<QOffscreenSurface> surface_;
   std::unique_ptr<QOpenGLContext> context_;
   std::unique_ptr<QOpenGLFramebufferObject> framebuffer_;
-  QImage read_;     // rows go up, as OpenGL's do
-  QImage picture_;  // null where there is no room for it
+  QImage read_;           // rows go up, as OpenGL's do
+  QImage picture_;        // null where there is no room for it
   bool refused_ = false;  // there is no context to be had
   bool wanted_ = true;    // another picture is to be drawn
   bool posted_ = false;   // and the event that asks for it is on its way

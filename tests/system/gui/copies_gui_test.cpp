@@ -122,8 +122,9 @@ class CopiesGuiTest : public test::WindowTest {
     const double running_mb = exercise_mb();
     const double copies =
         (opened_mb + running_mb - solidMb(count) - kHashedAtOnce_mb - beside_mb) / copy_mb;
-    std::printf("practised on: %.2f copies, and %.0f MB beside them; %.0f MB more of %.0f promised\n",
-                copies, beside_mb, running_mb, exerciseMb(count, true));
+    std::printf(
+        "practised on: %.2f copies, and %.0f MB beside them; %.0f MB more of %.0f promised\n",
+        copies, beside_mb, running_mb, exerciseMb(count, true));
     QVERIFY2(running_mb < exerciseMb(count, true), "what was promised");
     QCOMPARE(workstation().session()->grid().geometry().voxelCount(), count);
     QVERIFY(std::abs(copies - 3.0) < 0.3);
