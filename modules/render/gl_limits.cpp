@@ -5,6 +5,10 @@
 #include <vtk_glew.h>
 #endif
 //
+#include <algorithm>
+#include <array>
+#include <cctype>
+
 #include "render/gl_limits.h"
 
 namespace trephine {
@@ -16,10 +20,19 @@ int largestVolumeEdge() {
 }
 
 bool isSoftware(const std::string& driver) {
-  for (const char* name : {"llvmpipe", "softpipe", "Software"}) {
-    if (driver.find(name) != std::string::npos) return true;
-  }
-  return false;
+  std::string lower = driver;
+  std::ranges::transform(lower, lower.begin(),
+                         [](unsigned char c) { return char(std::tolower(c)); });
+  // Mesa's renderers that run on the processor, and those of others.
+  constexpr std::array kNames{"llvmpipe",
+                              "softpipe",
+                              "software",
+                              "swr",
+                              "swiftshader",
+                              "gdi generic",
+                              "microsoft basic render"};
+  return std::ranges::any_of(
+      kNames, [&](const char* name) { return lower.find(name) != std::string::npos; });
 }
 
 }  // namespace trephine

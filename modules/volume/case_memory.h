@@ -12,12 +12,10 @@ namespace trephine {
 
 // The window before a case is opened, where no graphics card draws; measured on Debian 12.
 constexpr double kWindow_mb = 110.0;
-// Part of the voxels that is hashed at once.
-constexpr double kHashedAtOnce_mb = 16.0;
-// An exercise beside its voxels: the journal's ring (82 MB), the rings to the recorder, HDF5, what
-// is hashed at once, and what threads keep for themselves. Measured, 122 to 124 in turn on a case
-// of 64^3, which is hashed in one small part, and 165 to 170 on one of 400^3; what an exercise
-// before gave back counts.
+// An exercise beside its voxels: the journal's ring (82 MB), the rings to the recorder, HDF5, the
+// slab that is hashed (16 MB), and what threads keep for themselves. Measured, 122 to 124 in turn
+// on a case of 64^3, whose slab is small, and 165 to 170 on one of 400^3; what an exercise before
+// gave back counts.
 constexpr double kExercise_mb = 180.0;
 // The stacks of all threads and what else nobody had touched, which the first exercise holds in
 // memory and the process keeps. Measured on two cores, 137 to 160 in turn; every further one may

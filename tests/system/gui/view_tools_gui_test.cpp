@@ -356,7 +356,6 @@ class ViewToolsGuiTest : public test::WindowTest {
     seen();
     int drawn = 0, painted = 0;
     QObject ears;
-    connect(&view(), &ViewWidget::framePainted, &ears, [&] { ++drawn; });
     struct Painted : QObject {
       explicit Painted(int& count) : count_(count) {}
       bool eventFilter(QObject*, QEvent* event) override {
@@ -366,11 +365,12 @@ class ViewToolsGuiTest : public test::WindowTest {
       int& count_;
     } filter(painted);
     view().installEventFilter(&filter);
+    constexpr int kPictures = 20;
     connect(&view(), &ViewWidget::framePainted, &ears, [&] {
-      if (drawn < 20) view().update();
+      if (++drawn < kPictures) view().update();
     });
     view().update();
-    QTRY_COMPARE(drawn, 20);
+    QTRY_COMPARE(drawn, kPictures);
     rest();
     QVERIFY2(painted >= drawn, qPrintable(QString("%1 of %2").arg(painted).arg(drawn)));
     view().removeEventFilter(&filter);
