@@ -2,6 +2,7 @@
 // its pixels.
 #include <QApplication>
 #include <QLabel>
+#include <QLibrary>
 #include <QMouseEvent>
 #include <QScreen>
 #include <QSignalSpy>
@@ -378,13 +379,24 @@ class ViewToolsGuiTest : public test::WindowTest {
 
   void whatChangedWhileTheWindowWasAwayIsDrawnOnceItIsBack() {
     seen();
-    window_->windowHandle()->setVisible(false);
+    // As a window manager takes it to another desktop: Qt is not asked.
+    const auto onServer = [&](const char* what) {
+      QLibrary x11("libX11", 6);
+      const auto open = reinterpret_cast<void* (*)(const char*)>(x11.resolve("XOpenDisplay"));
+      const auto ask = reinterpret_cast<int (*)(void*, unsigned long)>(x11.resolve(what));
+      const auto close = reinterpret_cast<int (*)(void*)>(x11.resolve("XCloseDisplay"));
+      void* display = open ? open(nullptr) : nullptr;
+      if (!display || !ask || !close) qFatal("no %s", what);
+      ask(display, window_->winId());
+      close(display);  // which waits until it is done
+    };
+    onServer("XUnmapWindow");
     QTRY_VERIFY(!window_->windowHandle()->isExposed());
     QSignalSpy painted(&view(), &ViewWidget::framePainted);
     view().update();
     rest();
     QCOMPARE(painted.count(), 0);
-    window_->windowHandle()->setVisible(true);
+    onServer("XMapWindow");
     QTRY_VERIFY(window_->windowHandle()->isExposed());
     QTRY_VERIFY(!painted.isEmpty());
   }
