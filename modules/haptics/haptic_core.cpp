@@ -21,6 +21,10 @@ HapticCore::ArmTool::ArmTool(const Tool& tool, const HapticParameters& all,
       points(all.force_at == ForceAt::tip ? 1 : tool.points_m.size()) {
   for (LawKind kind : all.laws) laws.push_back(makeLaw(kind, points.size(), tool, geometry));
   if (stopAtSolid(all.laws)) proxy.emplace(tool, geometry, all.touch_version);
+  const SoftLaws soft_laws{names(all.laws, LawKind::membrane), names(all.laws, LawKind::cutting),
+                           names(all.laws, LawKind::friction),
+                           names(all.laws, LawKind::relaxation)};
+  if (soft_laws.any()) soft.emplace(tool, geometry, soft_laws, all.period_s);
   const bool driven = tool.made_from.motor_W > 0.0;
   cutting = driven ? Cutting::driven : Cutting::by_hand;
   // A burr without a motor cuts nothing, but where there is no barrier: there it cuts as the seed
@@ -208,6 +212,7 @@ void HapticCore::apply(const Command& command, std::uint64_t tick) {
 
 void HapticCore::forgetLaws(Arm& arm) {
   for (Law& law : arm.tool().laws) forgetLaw(law);
+  if (arm.tool().soft) arm.tool().soft->forget();
 }
 
 // The controller begins without credit. After voxels were put back (`restored`), the laws begin
@@ -237,6 +242,7 @@ void HapticCore::finishRestore() {
     arms_[i].tool().removal.forget();
     for (ArmTool& tool : arms_[i].tools) {
       if (tool.proxy) tool.proxy->changed();
+      if (tool.soft) tool.soft->restored(tissue_);
     }
   }
 }

@@ -18,6 +18,7 @@
 #include "haptics/proxy.h"
 #include "haptics/removal.h"
 #include "haptics/safety.h"
+#include "haptics/soft_hold.h"
 #include "haptics/tissue_field.h"
 #include "haptics/tool.h"
 #include "haptics/workspace_map.h"
@@ -92,6 +93,7 @@ class HapticCore {
     std::vector<Law> laws;
     ToolContact contact;
     std::optional<Proxy> proxy;  // where a law stops it at solid tissue; else it is at its arm
+    std::optional<SoftHold> soft;  // where a law holds it in soft tissue
     Removal removal;
     std::vector<TouchPoint> points;
     double rubs_N = 0.0;  // dry friction of the solid tissue that it touched in the last tick
@@ -101,6 +103,7 @@ class HapticCore {
     static void visitState(Self& self, Archive& archive) {
       archive(self.laws, self.contact, self.removal, self.rubs_N);
       if (self.proxy) archive(*self.proxy);
+      if (self.soft) archive(*self.soft);
     }
   };
   struct Arm {
@@ -129,6 +132,7 @@ class HapticCore {
     bool as_exercise = false;        // the map, wherever the arm is
     WorkspaceMap exercise_map;
     HandWork work;
+    double cut_J = 0.0;  // work that parted soft tissue and of motors, by the law of cutting
     Vec3 last_model_N{0.0};     // demanded in the tick before, patient axes
     Vec3 last_elastic_Nm{0.0};  // of the rendered springs in the tick before, patient axes
     bool cuts = false;           // may remove in this tick
@@ -150,7 +154,7 @@ class HapticCore {
       archive(self.controller, self.limiter, self.errors, self.warmth);
       archive(self.last_pose, self.tool_mm);
       archive(self.clutched, self.remap, self.turn_to, self.as_exercise);
-      archive(self.work, self.last_model_N, self.last_elastic_Nm);
+      archive(self.work, self.cut_J, self.last_model_N, self.last_elastic_Nm);
       archive(self.placed, self.waiting, self.not_as_stated, self.hooked_s, self.let_go_share);
       archive(self.energy_out_J, self.faults, self.air_ticks);
     }
@@ -200,10 +204,13 @@ class HapticCore {
   void startAtArm(ArmTick& now);
   bool startsInTissue(ArmTool& tool, const Pose& arm_mm);
   void followArm(ArmTick& now);
+  void followBy(ArmTick& now, const Pose& wanted_mm, bool still);
+  void placeTool(ArmTool& tool, const Pose& arm_mm) const;
   void letGoOfHook(ArmTick& now);
   bool wouldTouch(const ArmTool& tool, const Pose& pose_mm) const;
   void touchPoints(ArmTool& tool, const Motion& motion) const;
   double rubbing_N(const ArmTool& tool) const;
+  bool paysByCutting() const { return names(parameters_.laws, LawKind::cutting); }
   bool atWork(const Arm& arm) const;
   static bool motorIsOff(const Arm& arm, std::uint32_t buttons);
 

@@ -51,6 +51,7 @@ void HapticCore::engageArm(ArmTick& now, const Pose& device_m) {
   arm.limiter.engage();
   forgetForce(arm, in_tissue);
   for (Law& law : arm.tool().laws) engageLaw(law);
+  if (arm.tool().soft) arm.tool().soft->forget();
   arm.last_model_N = arm.last_elastic_Nm = Vec3(0.0);
   if (turned && arm.tool().proxy) arm.tool().proxy->place(arm_mm);
 }
@@ -67,7 +68,7 @@ void HapticCore::recentreArm(ArmTick& now, const Pose& device_m) {
   arm.limiter.engage();
   forgetForce(arm, true);
   arm.last_model_N = arm.last_elastic_Nm = Vec3(0.0);
-  if (arm.tool().proxy) arm.tool().proxy->place(map.toPatient_mm(device_m));
+  placeTool(arm.tool(), map.toPatient_mm(device_m));
 }
 
 }  // namespace trephine

@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::string_view kStateKind = "core";
 // Goes up with every change of what any visitState() below the core names, or of its order.
-constexpr std::uint32_t kStateVersion = 5;
+constexpr std::uint32_t kStateVersion = 6;
 
 Error badState(const std::string& what) {
   return {code::kBadState, what, tr("the state `{}`", kStateKind),

@@ -216,7 +216,7 @@ void HapticCore::checkFinite(ArmTick& now) {
   forgetLaws(arm);
   forgetController(arm.controller);
   arm.work.forget();
-  if (arm.tool().proxy) arm.tool().proxy->place(motion.arm_mm);
+  placeTool(arm.tool(), motion.arm_mm);
   arm.last_elastic_Nm = Vec3(0.0);
   if (!isFinite(arm.energy_out_J)) arm.energy_out_J = Vec3(0.0);
   out.velocity_m_s = out.demanded_N = out.demanded_torque_Nm = out.bounded_N = Vec3(0.0);
@@ -268,6 +268,13 @@ void HapticCore::giveWork(ArmTick& now) {
   arm.last_model_N = now.finite ? now.model_N : Vec3(0.0);
   const double more_J =
       now.finite ? arm.work.endTick(now.stored_J, now.out.rendered_share, motor_J) : 0.0;
+  if (paysByCutting()) {
+    // What parted tissue pays, and no friction; at the model's own force, whatever the arm shows.
+    const double paid_J = at_work && now.finite ? arm.tool().soft->cut_J() + motor_J : 0.0;
+    arm.cut_J += paid_J;
+    arm.tool().removal.giveWork(paid_J, arm.cut_J, tissue_);
+    return;
+  }
   arm.tool().removal.giveWork(at_work && !now.jumped ? more_J : 0.0, arm.work.lost_J(),
                               tissue_);
 }

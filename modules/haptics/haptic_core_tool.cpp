@@ -9,7 +9,7 @@ void HapticCore::changeTool(ArmTick& now) {
   if (arm.wanted == arm.in_hand || !mayChangeTool(now)) return;
   takeTool(now.index, now.input.tick);
   ArmTool& tool = arm.tool();
-  if (tool.proxy) tool.proxy->place(now.motion.arm_mm);
+  placeTool(tool, now.motion.arm_mm);
 }
 
 // Where neither the tool in hand nor the one that is wanted touches anything, and no force is left

@@ -28,23 +28,28 @@ void HapticCore::moveProxy(ArmTick& now) {
   arm.placed = true;
   if (first) startAtArm(now);
   if (tool.proxy && arm.waiting) {
+    if (tool.soft) tool.soft->place(motion.arm_mm);
     if (journal_.busy()) {
       tool.proxy->place(motion.arm_mm);
     } else if (!first) {
       arm.waiting = startsInTissue(tool, motion.arm_mm);
     }
-  } else if (tool.proxy) {
+  } else if (tool.proxy || tool.soft) {
     followArm(now);
-    motion.pose_mm = tool.proxy->pose_mm();
   }
   arm.tool_mm = motion.pose_mm;
+}
+
+void HapticCore::placeTool(ArmTool& tool, const Pose& arm_mm) const {
+  if (tool.proxy) tool.proxy->place(arm_mm);
+  if (tool.soft) tool.soft->place(arm_mm);
 }
 
 // A tool that starts in tissue has no force and cuts nothing until it has been out of it.
 void HapticCore::startAtArm(ArmTick& now) {
   Arm& arm = now.arm;
   ArmTool& tool = arm.tool();
-  if (tool.proxy) tool.proxy->place(now.motion.arm_mm);
+  placeTool(tool, now.motion.arm_mm);
   if (!startsInTissue(tool, now.motion.arm_mm)) return;
   arm.waiting = tool.proxy.has_value();
   events_.push_back({now.input.tick, EventKind::starts_in_tissue, std::int32_t(now.index), 0, {}});
@@ -62,13 +67,32 @@ void HapticCore::followArm(ArmTick& now) {
   Arm& arm = now.arm;
   ArmTool& tool = arm.tool();
   const bool still = paused_ || arm.faults != 0;
+  const Pose& arm_mm = now.motion.arm_mm;
+  const bool stopped = still || (tool.proxy && tool.proxy->held());
+  Pose to = arm_mm;
+  if (tool.soft) {
+    const bool motor = tool.cutting == Cutting::driven && !motorIsOff(arm, now.out.buttons);
+    to = tool.soft->follow(tissue_, arm_mm, stopped, motor);
+  }
+  if (tool.proxy) {
+    followBy(now, to, still);
+    to = tool.proxy->pose_mm();
+  }
+  now.motion.pose_mm = tool.soft ? tool.soft->moved(tissue_, to, stopped) : to;
+}
+
+// The proxy goes towards where the tool would be by its arm and soft tissue.
+void HapticCore::followBy(ArmTick& now, const Pose& wanted_mm, bool still) {
+  Arm& arm = now.arm;
+  ArmTool& tool = arm.tool();
   const Pose before = tool.proxy->pose_mm();
   const bool may_cut = !still && !journal_.busy();
   const Cutting cutting = may_cut ? tool.cutting : Cutting::nothing;
   // What a motor cuts rubs on the arm, and holds the tool by what is left to be cut alone.
   const bool runs = cutting == Cutting::driven && !motorIsOff(arm, now.out.buttons);
   now.drags = !runs && parameters_.touch_version > 9 && names(parameters_.laws, LawKind::coulomb);
-  tool.proxy->follow(tissue_, now.motion.arm_mm, cutting, now.drags ? tool.rubs_N : 0.0);
+  const bool by_push = !runs && names(parameters_.laws, LawKind::friction);
+  tool.proxy->follow(tissue_, wanted_mm, cutting, now.drags ? tool.rubs_N : 0.0, by_push);
   if (!still) {
     letGoOfHook(now);
   } else if (wouldTouch(tool, tool.proxy->pose_mm())) {
@@ -90,7 +114,7 @@ void HapticCore::letGoOfHook(ArmTick& now) {
   arm.let_go_share += T / kLetGo_s;
   tool.proxy->fade(std::max(0.0, 1.0 - arm.let_go_share));
   if (arm.let_go_share < 1.0 && tool.proxy->held()) return;
-  if (!wouldTouch(tool, arm_mm)) tool.proxy->place(arm_mm);
+  if (!wouldTouch(tool, arm_mm)) placeTool(tool, arm_mm);
   arm.let_go_share = arm.hooked_s = 0.0;
 }
 
@@ -121,6 +145,7 @@ void HapticCore::touch(ArmTick& now) {
     in.pull.drags = now.drags && in.pull.stiffness > 0.0;
     tool.rubs_N = in.tissue_class < 0 ? 0.0 : rubbing_N(tool);
   }
+  if (tool.soft) in.soft = tool.soft->pull();
   for (Law& law : tool.laws) law_tissues_.ask(law, tissue_, motion.pose_mm, in);
 
   out.tissue_class = contact.tissue_class;

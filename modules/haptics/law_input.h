@@ -11,6 +11,7 @@
 #include "haptics/arm_dynamics.h"
 #include "haptics/law_words.h"
 #include "haptics/proxy.h"
+#include "haptics/soft_pull.h"
 #include "tissue/tissue_set.h"
 
 namespace trephine {
@@ -41,6 +42,7 @@ struct LawInput {
   const TissueTable* tissues = nullptr;
   Impedance share{1.0, 1.0};  // rendered / demanded, of the tissues' damping and stiffness
   Pull pull;  // from the arm to the proxy that solid tissue holds, if a law stops its tool there
+  SoftPull soft;  // of soft tissue, if a law holds its tool there
 
   bool touching() const { return tissue_class >= 0; }
   const TissueClass& tissue(const TouchPoint& p) const {

@@ -15,6 +15,7 @@
 //
 //   using StandsInFor = Other                  where both are named and it acts, Other does not
 //   static constexpr bool kStopsAtSolid        its tool is where solid tissue lets it be (proxy.h)
+//   static constexpr bool kHoldsInSoft         its tool is where soft tissue lets it be (soft_hold.h)
 //   void engage()                              its arm was put back to it: it begins unstretched
 //   struct Query                               what it asks of the tissue around a tool, once a
 //   tick
@@ -39,7 +40,11 @@
 #include <vector>
 
 #include "haptics/laws/coulomb.h"
+#include "haptics/laws/cutting.h"
 #include "haptics/laws/elastic.h"
+#include "haptics/laws/friction.h"
+#include "haptics/laws/membrane.h"
+#include "haptics/laws/relaxation.h"
 #include "haptics/laws/rupture.h"
 #include "haptics/laws/viscous.h"
 
@@ -47,11 +52,21 @@ namespace trephine {
 
 template <class... Laws>
 struct LawList {};
-using AllLaws = LawList<ViscousLaw, CoulombLaw, ElasticLaw, RuptureLaw>;
+using AllLaws = LawList<ViscousLaw, CoulombLaw, ElasticLaw, RuptureLaw, MembraneLaw, CuttingLaw,
+                        FrictionLaw, RelaxationLaw>;
 
 // A law's place in the list. Those that are spoken of elsewhere have a name here; that of any is
 // kLawKind.
-enum class LawKind { viscous, coulomb, elastic, rupture };
+enum class LawKind {
+  viscous,
+  coulomb,
+  elastic,
+  rupture,
+  membrane,
+  cutting,
+  friction,
+  relaxation
+};
 
 inline bool names(const std::vector<LawKind>& laws, LawKind law) {
   return std::find(laws.begin(), laws.end(), law) != laws.end();
@@ -155,6 +170,10 @@ static_assert(kLawKind<ViscousLaw> == LawKind::viscous);
 static_assert(kLawKind<CoulombLaw> == LawKind::coulomb);
 static_assert(kLawKind<ElasticLaw> == LawKind::elastic);
 static_assert(kLawKind<RuptureLaw> == LawKind::rupture);
+static_assert(kLawKind<MembraneLaw> == LawKind::membrane);
+static_assert(kLawKind<CuttingLaw> == LawKind::cutting);
+static_assert(kLawKind<FrictionLaw> == LawKind::friction);
+static_assert(kLawKind<RelaxationLaw> == LawKind::relaxation);
 
 inline constexpr auto kLawTraits = detail::traitsOfAll(AllLaws{});
 // By the laws' ids, in files.

@@ -265,7 +265,7 @@ void Proxy::move(const Pose& to, const PlacedBody& body, Way& way) {
 
 // Nothing is near: goes as far as the gathered surface holds. True when the arm is farther.
 bool Proxy::goFreely(Way& way) {
-  way.load = way.stiff = way.most = 0.0;
+  way.load = way.stiff = way.rough = way.most = 0.0;
   blocker_count_ = 0;
   const SmallMotion wanted = towards(pose_, arm_);
   const double length_mm = way_mm(wanted);
@@ -305,9 +305,16 @@ bool Proxy::putBack(const SmallMotion& motion, double least_mm, Pose& there, Pla
 
 // What friction leaves of a motion along what bears load: without it the tool would stop where the
 // motion ends, with it as far before as the friction's pull stretches.
-SmallMotion Proxy::dragged(const SmallMotion& motion, const Way& way) const {
-  if (!(way.friction_N > 0.0) || !(way.stiff > 0.0)) return motion;
-  const double behind_mm = 1000.0 * way.friction_N * way.load / way.stiff;
+SmallMotion Proxy::dragged(const SmallMotion& motion, const SmallMotion& wanted,
+                           const Way& way) const {
+  if (!(way.friction_N > 0.0 || way.by_push) || !(way.stiff > 0.0)) return motion;
+  double behind_mm = 1000.0 * way.friction_N * way.load / way.stiff;
+  if (way.by_push) {
+    // What the touches take of the wanted motion is the push on them, over the pull's stiffness.
+    const double pressed_mm =
+        std::sqrt(cost({wanted.shift_mm - motion.shift_mm, wanted.turn - motion.turn}));
+    behind_mm += way.rough / way.load * pressed_mm;
+  }
   const double left_mm = std::sqrt(cost(motion));
   if (left_mm <= behind_mm) return {};
   const double share = 1.0 - behind_mm / left_mm;
@@ -319,7 +326,7 @@ SmallMotion Proxy::dragged(const SmallMotion& motion, const Way& way) const {
 bool Proxy::slide(const TissueField& tissue, Way& way) {
   const SmallMotion wanted = towards(pose_, arm_);
   SmallMotion motion = nearestMotion(wanted, turn_mm2_, {touches_.data(), touch_count_});
-  way.load = way.stiff = way.most = 0.0;
+  way.load = way.stiff = way.rough = way.most = 0.0;
   blocker_count_ = 0;
   for (std::size_t i = 0; i < touch_count_; ++i) {
     const double load = touches_[i].load;
@@ -331,9 +338,10 @@ bool Proxy::slide(const TissueField& tissue, Way& way) {
       way.tissue_class = piece.tissue_class;
     }
     way.stiff += load * tissue.ofClass(piece.tissue_class).stiffness_N_per_m;
+    way.rough += load * tissue.ofClass(piece.tissue_class).friction_coefficient;
     if (piece.cuttable) blockers_[blocker_count_++] = {piece.voxel, piece.tissue_class};
   }
-  if (!way.inside) motion = dragged(motion, way);
+  if (!way.inside) motion = dragged(motion, wanted, way);
   const double arrived_mm = kArrived * surface_.voxel_mm();
   const double length_mm = way_mm(motion);
   if (length_mm < arrived_mm && !way.inside) return false;
@@ -356,11 +364,12 @@ bool Proxy::slide(const TissueField& tissue, Way& way) {
 }
 
 void Proxy::follow(const TissueField& tissue, const Pose& arm_mm, Cutting cutting,
-                   double friction_N) {
+                   double friction_N, bool by_push) {
   arm_ = arm_mm;
   blocker_count_ = 0;
   Way way{surface_.place(pose_)};
   way.friction_N = friction_N;
+  way.by_push = by_push;
   if (!surface_.mayMeet(tissue, way.body, surface_.place(arm_mm))) {
     place(arm_mm);
     return;

@@ -33,9 +33,10 @@ class Proxy {
   // or removed() said so.
   // `friction_N`: the dry friction of the solid tissue that it touches. Where that bears load the
   // tool does not slide before the pull along the surface is more, and then stays behind its arm by
-  // so much pull: of what the arm does nothing is stored but in that one pull.
+  // so much pull: of what the arm does nothing is stored but in that one pull. `by_push`: of that
+  // tissue, its coefficient times the force with which the tool is pressed on it, beside that.
   void follow(const TissueField& tissue, const Pose& arm_mm, Cutting cutting,
-              double friction_N = 0.0);
+              double friction_N = 0.0, bool by_push = false);
   // Back to where it was before follow(). The tissue that held it in the last step of that still
   // pulls; where none did, nothing pulls.
   void hold(const Pose& pose_mm);
@@ -98,9 +99,10 @@ class Proxy {
     PlacedBody body;
     double step_mm = 0.0;            // at most, in the next step
     double friction_N = 0.0;
-    // Of the touches in the last step: the sum of loads, that of load times stiffness, the greatest
-    // load and the class of its tissue.
-    double load = 0.0, stiff = 0.0, most = 0.0;
+    bool by_push = false;
+    // Of the touches in the last step: the sum of loads, that of load times stiffness and times the
+    // coefficient of friction, the greatest load and the class of its tissue.
+    double load = 0.0, stiff = 0.0, rough = 0.0, most = 0.0;
     std::int8_t tissue_class = -1;
     double least_mm = 0.0;  // gap that the next pose must have at least
     bool inside = false;    // deeper than kInside: it is put outside first
@@ -125,7 +127,7 @@ class Proxy {
   std::size_t nearPieces(const PlacedBody& body, double within_mm, double moved_mm);
   std::size_t merge(std::size_t first, std::size_t count);
   double touches(const PlacedBody& body, double within_mm, double moved_mm, double clear_mm);
-  SmallMotion dragged(const SmallMotion& motion, const Way& way) const;
+  SmallMotion dragged(const SmallMotion& motion, const SmallMotion& wanted, const Way& way) const;
   void move(const Pose& to, const PlacedBody& body, Way& way);
   bool goFreely(Way& way);
   bool slide(const TissueField& tissue, Way& way);

@@ -15,15 +15,6 @@ constexpr int kLooksPerRow = 26;
 constexpr int kBatch = 16;            // rows
 constexpr double kKept_s = 0.05;      // time constant with which unspent work is forgotten
 
-double voxelWork_J(const TissueClass& tissue, double voxel_mm3) {
-  return tissue.cutting_J_per_mm3 * voxel_mm3;
-}
-
-// What a tool pays for a voxel.
-double cost_J(RemovalKind kind, const TissueClass& tissue, double voxel_mm3) {
-  return kind == RemovalKind::instant ? 0.0 : voxelWork_J(tissue, voxel_mm3);
-}
-
 }  // namespace
 
 // The first and last whole index within an interval, cut to 0 .. count - 1. No floor() or ceil():
@@ -51,6 +42,31 @@ Removal::Removal(const Tool& tool, const GridGeometry& geometry, RemovalKind kin
   still_mm_ = 0.125 * std::min({s.x, s.y, s.z});
   looks_ = int(kLooksPerTick * std::clamp(1000.0 * period_s, 1.0, kMostLooks));
   farthest_mm_ = 1000.0 * kFastest_m_s * period_s;
+  // A slot of the area A is 2 r A of the voxels as the sweep sees them.
+  voxel_m2_ = 1e-6 * s.x * s.y * s.z / (2.0 * radius_mm_);
+}
+
+// By the area of new surface, or by volume.
+double Removal::voxelWork_J(const TissueClass& tissue) const {
+  if (tissue.toughness_J_per_m2 > 0.0) return tissue.toughness_J_per_m2 * voxel_m2_;
+  return tissue.cutting_J_per_mm3 * geometry_.voxelVolume_mm3();
+}
+
+// What a tool pays for a voxel.
+double Removal::cost_J(const TissueClass& tissue) const {
+  return kind_ == RemovalKind::instant ? 0.0 : voxelWork_J(tissue);
+}
+
+bool Removal::isSpared(int tissue_class, int i, int j, int k) const {
+  return (spared_ >> tissue_class & 1u) && glm::dot(Vec3(i, j, k) - tip_, ahead_) > 0.0;
+}
+
+void Removal::goOnFrom(const Pose& from_mm) {
+  clear_ = capsuleAt(from_mm);
+  clear_.radius = 0.0;
+  known_ = went_on_ = true;
+  passing_ = false;
+  last_.reset();
 }
 
 Capsule Removal::capsuleAt(const Pose& pose_mm) const {
@@ -66,7 +82,7 @@ void Removal::giveWork(double work_J, double lost_J, const TissueField& tissue) 
   double dearest_J = 0.0;
   for (int c = 0; c < tissue.tissues().count; ++c) {
     const TissueClass& t = tissue.ofClass(c);
-    if (t.cuttable) dearest_J = std::max(dearest_J, voxelWork_J(t, geometry_.voxelVolume_mm3()));
+    if (t.cuttable) dearest_J = std::max(dearest_J, voxelWork_J(t));
   }
   recent_J_ = fading_ * (recent_J_ + work_J);
   credit_J_ = std::min(credit_J_ + work_J, recent_J_ + 2.0 * dearest_J);
@@ -76,7 +92,8 @@ void Removal::begin(const Capsule& now) {
   goal_ = now;
   const double clear_mm = known_ ? clear_.radius : -layer_mm_;
   goal_.radius = std::min(radius_mm_, std::max(0.0, clear_mm) + layer_mm_);
-  if (kind_ == RemovalKind::instant || !known_) goal_.radius = radius_mm_;
+  if (kind_ == RemovalKind::instant || !known_ || went_on_) goal_.radius = radius_mm_;
+  went_on_ = false;
   layOut();
   slice_ = 0;
   row_ = -1;
@@ -116,8 +133,7 @@ void Removal::end(const Capsule& now) {
 
 void Removal::take(const TissueField& tissue, const Index3& voxel, int tissue_class,
                    std::vector<RemovedVoxel>& removed) {
-  const double price_J = cost_J(kind_, tissue.ofClass(tissue_class),
-                                geometry_.voxelVolume_mm3());
+  const double price_J = cost_J(tissue.ofClass(tissue_class));
   if (!affords(price_J) || removed.size() == kMostVoxels) return;
   spend(price_J);
   removed.push_back({voxel, tissue_class, price_J});
@@ -138,10 +154,16 @@ void Removal::sweep(const TissueField& tissue, const Pose& pose_mm,
   }
   if (last_ && !(moved(*last_, now) <= farthest_mm_)) forget();
   last_ = now;
+  if (spared_ != 0) {
+    // The plane across the tool at its tip: a way that is ahead of it is so in voxels, too.
+    tip_ = Vec3(patient_to_voxel_ * glm::dvec4(pose_mm.position, 1.0));
+    const Mat3 to_patient = glm::inverse(Mat3(patient_to_voxel_));
+    ahead_ = glm::transpose(to_patient) * (pose_mm.orientation * Vec3(0.0, 0.0, -1.0));
+  }
   // Work ran short and the tool went on: it must not take later what it has left.
   if (passing_ && !paid_ && moved(goal_, now) > layer_mm_) end(now);
   if (!passing_ && !beginWhereNeeded(tissue, now)) return;
-  Tick tick{tissue, removed, geometry_.voxelVolume_mm3(), looks_};
+  Tick tick{tissue, removed, looks_};
   if (!sweepSlices(tick)) return;
   paid_ = true;  // waited for, but paid in the end
   end(now);
@@ -264,7 +286,8 @@ bool Removal::sweepRow(Tick& tick, const Row& row) {
     const std::int16_t hu = tick.tissue.hu(voxel);
     const int c = hu == kAirHu ? -1 : tick.tissue.classAt(voxel, hu);
     if (c < 0 || !tick.tissue.ofClass(c).cuttable) continue;
-    const double price_J = cost_J(kind_, tick.tissue.ofClass(c), tick.voxel_mm3);
+    if (spared_ != 0 && isSpared(c, i, row.j, row.k)) continue;
+    const double price_J = cost_J(tick.tissue.ofClass(c));
     const bool pays = affords(price_J);
     if (!pays) paid_ = false;
     if (!pays || tick.removed.size() == kMostVoxels) return false;

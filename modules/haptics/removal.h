@@ -49,6 +49,15 @@ class Removal {
   // Goes on with the sweep to this pose; appends what the tool takes, which the caller removes in
   // this tick, to `removed` (room for kMostVoxels). No allocation.
   void sweep(const TissueField& tissue, const Pose& pose_mm, std::vector<RemovedVoxel>& removed);
+  // From the next sweep on, voxels of these classes, a bit each, are left ahead of the tip: their
+  // membrane is whole. Called every tick.
+  void spareAhead(std::uint32_t classes) {
+    if (classes == spared_) return;
+    spared_ = classes;
+    forget();
+  }
+  // A membrane gave way at `from_mm`: the tool has gone on at once from there, and sweeps its way.
+  void goOnFrom(const Pose& from_mm);
   // Takes this one voxel, which holds the tool back, if the credit pays for it.
   void take(const TissueField& tissue, const Index3& voxel, int tissue_class,
             std::vector<RemovedVoxel>& removed);
@@ -86,7 +95,7 @@ class Removal {
     archive(self.recent_J_, self.credit_J_, self.spent_J_);
     archive(self.known_, self.clear_, self.last_);
     archive(self.passing_, self.paid_, self.backwards_, self.goal_);
-    archive(self.slice_, self.row_);
+    archive(self.slice_, self.row_, self.spared_, self.went_on_);
     if constexpr (Archive::kReads) {
       if (!self.takeOver()) archive.refuse();
     }
@@ -114,7 +123,6 @@ class Removal {
   struct Tick {
     const TissueField& tissue;
     std::vector<RemovedVoxel>& removed;
-    double voxel_mm3;
     int looks;
   };
   static Indices indices(const Interval& mm, double per_spacing, int count);
@@ -131,11 +139,18 @@ class Removal {
   bool sweepRow(Tick& tick, const Row& row);
   bool mayMeetTissue(const TissueField& tissue, const Capsule& now) const;
   Capsule capsuleAt(const Pose& pose_mm) const;
+  double voxelWork_J(const TissueClass& tissue) const;
+  double cost_J(const TissueClass& tissue) const;
+  bool isSpared(int tissue_class, int i, int j, int k) const;
 
   Tool tool_;
   GridGeometry geometry_;
   Mat4 patient_to_voxel_;
   RemovalKind kind_;
+  double voxel_m2_;   // new surface that a voxel of a slot stands for
+  std::uint32_t spared_ = 0;
+  bool went_on_ = false;       // the pass to come is of a way that goOnFrom() began
+  Vec3 tip_{0.0}, ahead_{0.0};  // of the tool in this sweep: voxels, and the way that it points there
   Vec3 per_spacing_;  // 1 / mm
   Vec3
       spacing_mm_;  // as the sweep sees it: at most the tool's diameter, so that none slips between

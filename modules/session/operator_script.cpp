@@ -64,7 +64,7 @@ void readTissueChange(JsonReader changes, const Json& names, TissueSet& set) {
     for (const TissueNumber& number : kTissueNumbers) {
       const SourcedNumber* was = number.of(*tissue);
       if (!was) continue;  // one that the tissue does not have cannot change
-      number.set(*tissue, {change.number(number.key, kMechanicsRange, was->value), was->source});
+      number.set(*tissue, {change.number(number.key, number.row().range, was->value), was->source});
     }
     tissue->cuttable = change.boolean("cuttable", tissue->cuttable);
   }

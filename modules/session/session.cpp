@@ -51,7 +51,10 @@ void warnOfAbsentLabels(const TissueSet& tissues, const LabelMap* labels) {
 // Nothing of it can be paid for, and it is felt as it is: a sharp tool parts what could be cut.
 TissueSet tooToughToCut(TissueSet tissues) {
   for (Tissue& tissue : tissues.tissues) {
-    tissue.cutting_J_per_mm3.value = kMechanicsRange.high;
+    const std::string source =
+        tissue.cutting_J_per_mm3 ? tissue.cutting_J_per_mm3->source : kOwnSource;
+    tissue.toughness_J_per_m2.reset();
+    tissue.cutting_J_per_mm3 = SourcedNumber{kMechanicsRange.high, source};
   }
   return tissues;
 }

@@ -34,7 +34,13 @@ struct TissueNumbers {
   Number stiffness_N_per_m{};
   Number friction_N{};
   MaybeNumber rupture_N{};
-  Number cutting_J_per_mm3{};
+  MaybeNumber cutting_J_per_mm3{};
+  MaybeNumber toughness_J_per_m2{};
+  MaybeNumber rupture_mm{};
+  MaybeNumber shaft_N_per_mm{};
+  MaybeNumber friction_coefficient{};
+  MaybeNumber relaxation_share{};
+  MaybeNumber relaxation_s{};
 
   friend bool operator==(const TissueNumbers&, const TissueNumbers&) = default;
 };
@@ -54,10 +60,11 @@ struct TissueNumber {
   int decimals = 2;
   const char* shown_unit = nullptr;  // null: the file's
   double shown_per = 1.0;
+  double greatest = kMechanicsRange.high;  // in files
 
   constexpr FieldRow row() const {
     return {key,
-            {kMechanicsRange.low, kMechanicsRange.high, unit},
+            {kMechanicsRange.low, greatest, unit},
             in_set.index() == 0 ? Given::always : Given::may_be,
             meaning};
   }
@@ -67,8 +74,14 @@ struct TissueNumber {
     const SourcedNumber* number = of(tissue);
     return number ? number->value : 0.0;
   }
+  // Of the two that say what cutting costs, by volume and by area, the other one goes.
   void set(SetNumbers& tissue, const SourcedNumber& number) const;
   void clear(SetNumbers& tissue) const;  // not given, where it may be so; else it stays
+  // A tissue has one of the two.
+  constexpr bool isCutting() const {
+    return in_tick == &TickNumbers::cutting_J_per_mm3 ||
+           in_tick == &TickNumbers::toughness_J_per_m2;
+  }
 };
 
 inline constexpr TissueNumber kTissueNumbers[] = {
@@ -79,12 +92,37 @@ inline constexpr TissueNumber kTissueNumbers[] = {
      10.0},
     {"friction_N", "N", trLater("coulomb law: what a tool that slides in it feels"),
      &SetNumbers::friction_N, &TickNumbers::friction_N, trLater("Friction"), 100.0, 0.05},
-    {"rupture_N", "N", trLater("rupture law: the force at which a capsule gives way; at 0, none"),
+    {"rupture_N", "N",
+     trLater("membrane and rupture laws: the force at which a membrane gives way; at 0, none. By "
+             "the membrane law, to a tool 1.2 mm wide, to others in proportion"),
      &SetNumbers::rupture_N, &TickNumbers::rupture_N, trLater("Rupture"), 100.0, 0.05},
     {"cutting_J_per_mm3", "J/mm\u00b3",
-     trLater("work that removes it: its specific cutting energy"), &SetNumbers::cutting_J_per_mm3,
-     &TickNumbers::cutting_J_per_mm3, trLater("Cutting"), 10'000.0, 0.001, 4, "mJ/mm\u00b3",
-     1000.0},
+     trLater("work that removes it, by volume: its specific cutting energy. This or the toughness, "
+             "not both"),
+     &SetNumbers::cutting_J_per_mm3, &TickNumbers::cutting_J_per_mm3, trLater("Cutting"), 10'000.0,
+     0.001, 4, "mJ/mm\u00b3", 1000.0},
+    {"toughness_J_per_m2", "J/m\u00b2",
+     trLater("cutting law, and work that removes it, by area of new surface. This or the cutting "
+             "energy, not both"),
+     &SetNumbers::toughness_J_per_m2, &TickNumbers::toughness_J_per_m2, trLater("Toughness"), 1e5,
+     10.0, 1},
+    {"rupture_mm", "mm",
+     trLater("membrane law: how far the arm goes on until it gives way to a tool 1.2 mm wide"),
+     &SetNumbers::rupture_mm, &TickNumbers::rupture_mm, trLater("Gives way after"), 50.0, 0.5},
+    {"shaft_N_per_mm", "N/mm",
+     trLater("friction law, soft tissue: by millimetre of the shaft that lies in it"),
+     &SetNumbers::shaft_N_per_mm, &TickNumbers::shaft_N_per_mm, trLater("Along a shaft"), 10'000.0,
+     1.0, 1, "mN/mm", 1000.0},
+    {"friction_coefficient", "",
+     trLater("friction law, solid tissue: force along the surface by force onto it"),
+     &SetNumbers::friction_coefficient, &TickNumbers::friction_coefficient,
+     trLater("Friction by push"), 10.0, 0.05},
+    {"relaxation_share", "",
+     trLater("relaxation law: the share of its force that a tool loses that is held still"),
+     &SetNumbers::relaxation_share, &TickNumbers::relaxation_share, trLater("Relaxes by"), 100.0,
+     5.0, 0, "%", 100.0, 1.0},
+    {"relaxation_s", "s", trLater("relaxation law: the time within which it does"),
+     &SetNumbers::relaxation_s, &TickNumbers::relaxation_s, trLater("Relaxes within"), 1000.0, 0.5},
 };
 static_assert(sizeof(TickNumbers) == sizeof(double) * std::size(kTissueNumbers),
               "each number has one row");

@@ -48,6 +48,43 @@ Status checkSourced(const std::string& file, const std::string& field, const Ran
   return {};
 }
 
+// Numbers that contradict each other, or that one needs which the tissue lacks.
+Status checkTogether(const std::string& file, const std::string& field, const Tissue& t) {
+  const auto valueOf = [](const std::optional<SourcedNumber>& n) { return n ? n->value : 0.0; };
+  if (t.cutting_J_per_mm3 && t.toughness_J_per_m2) {
+    return bad(file, field + ".toughness_J_per_m2",
+               tr("Cutting '{}' costs {} J/m\u00b2 by area and {} J/mm\u00b3 by volume: one contradicts "
+                  "the other",
+                  t.id, shown(t.toughness_J_per_m2->value), shown(t.cutting_J_per_mm3->value)),
+               tr("Give toughness_J_per_m2 for soft tissue, or cutting_J_per_mm3"));
+  }
+  if (!t.cutting_J_per_mm3 && !t.toughness_J_per_m2) {
+    return bad(file, field + ".cutting_J_per_mm3", tr("Nothing says what cutting '{}' costs", t.id),
+               tr("Give toughness_J_per_m2 for soft tissue, or cutting_J_per_mm3"));
+  }
+  const double rupture_N = valueOf(t.rupture_N), rupture_mm = valueOf(t.rupture_mm);
+  if (rupture_N > 0.0 && !(rupture_mm > 0.0) && !(t.stiffness_N_per_m.value > 0.0)) {
+    return bad(file, field + ".rupture_N",
+               tr("'{}' gives way at {} N, and nothing says how far it lets itself be pressed in",
+                  t.id, shown(rupture_N)),
+               tr("Give rupture_mm, or a stiffness above 0"));
+  }
+  if (rupture_mm > 0.0 && !(rupture_N > 0.0)) {
+    return bad(file, field + ".rupture_mm",
+               tr("'{}' gives way after {} mm, and nothing says at which force", t.id,
+                  shown(rupture_mm)),
+               tr("Give rupture_N"));
+  }
+  const double relaxes = valueOf(t.relaxation_share), within_s = valueOf(t.relaxation_s);
+  if ((relaxes > 0.0) != (within_s > 0.0)) {
+    return bad(file, field + (relaxes > 0.0 ? ".relaxation_share" : ".relaxation_s"),
+               tr("'{}' relaxes by {} within {} s: one of the two is missing", t.id, shown(relaxes),
+                  shown(within_s)),
+               tr("Give both, relaxation_share and relaxation_s, or none"));
+  }
+  return {};
+}
+
 // A source may be pasted from anywhere: what ends its line, or what nobody sees, becomes a blank.
 std::string sourceIn(JsonReader& object, const char* key) {
   constexpr std::size_t kMost = 4096;
@@ -151,6 +188,7 @@ Status validate(const TissueSet& set, const std::string& file) {
       const std::string of = field + ".mechanics." + row.key;
       if (Status s = checkSourced(file, of, row.row().range, *number); !s) return s;
     }
+    if (Status s = checkTogether(file, field + ".mechanics", t); !s) return s;
     for (std::size_t j = 0; j < i; ++j) {
       const Tissue& other = set.tissues[j];
       if (other.id == t.id) return bad(file, field + ".id", tr("The id '{}' is used twice", t.id));

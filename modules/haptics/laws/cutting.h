@@ -1,0 +1,44 @@
+#pragma once
+
+#include <array>
+
+#include "base/tr.h"
+#include "haptics/contact_force.h"
+#include "haptics/law_input.h"
+
+namespace trephine {
+
+// The share `of` the spring between a tool in soft tissue and its arm.
+inline void addSoftSpring(const LawInput& in, double of, ContactForce& out) {
+  if (!(in.soft.stiffness > 0.0) || !(of > 0.0)) return;
+  const double k = in.share.stiffness * of * in.soft.stiffness;
+  const Vec3 stretch_m = in.soft.force_N / in.soft.stiffness;
+  out.elastic_N += k * stretch_m;
+  out.stiffness += k;
+  out.stored_J += 0.5 * k * glm::dot(stretch_m, stretch_m);
+}
+
+// A tip or an edge that goes on through whole tissue feels its toughness J_c times the width that
+// is engaged, against its motion, one way; less where an edge slides along itself: of a way with
+// the share c across the edge, J_c w c (Atkins, Xu and Jeronimidis 2004: by the work per new
+// surface). It sticks and slips (SoftHold). A tool whose motor runs feels none of it.
+// Members as every law has them: haptics/laws.h. Patient axes, SI; the haptic thread.
+struct CuttingLaw {
+  static constexpr LawWords kWords{
+      "cutting", trLater("Cutting"),
+      trLater("Whole tissue resists an edge by its toughness times the width that it cuts.")};
+  static constexpr std::array kNumbers{&TickNumbers::toughness_J_per_m2};
+
+  static constexpr bool kHoldsInSoft = true;
+
+  explicit CuttingLaw(std::size_t /*points*/ = 1) {}
+  static Impedance impedance(const TissueClass& tissue) {
+    return {0.0, tissue.solid ? 0.0 : kCling_N_per_m};
+  }
+  void add(const LawInput& in, ContactForce& out) const {
+    addSoftSpring(in, in.soft.cutting, out);
+  }
+  void forget() {}
+};
+
+}  // namespace trephine
