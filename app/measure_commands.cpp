@@ -17,6 +17,7 @@
 #include "lab/touch/extremes_measurement.h"
 #include "lab/touch/haptics_measurement.h"
 #include "lab/touch/rest_measurement.h"
+#include "lab/touch/tissue_measurement.h"
 #include "lab/trades/trade_charts.h"
 #include "machine/ticks/jitter_measurement.h"
 #include "machine/trades/trades_measurement.h"
@@ -168,6 +169,27 @@ int measureHapticsCommand(const std::string& out, bool json, const Progress& pro
   Result<HapticsMeasurement> measured = measureHaptics({}, out, progress);
   if (!measured) return printError("measure.haptics", measured.error(), json);
   printMeasured("measure.haptics", *measured, json);
+  return 0;
+}
+
+int measureTissueCommand(const std::string& out, bool json, const Progress& progress) {
+  constexpr const char* kName = "measure.tissue";
+  if (Status made = makeFolder(out); !made) return printError(kName, made.error(), json);
+  Result<TissueMeasurement> measured = measureTissue(progress);
+  if (!measured) return printError(kName, measured.error(), json);
+  if (Status written = writeTissueTables(*measured, out); !written) {
+    return printError(kName, written.error(), json);
+  }
+  const Result<Json> plots = drawnFiles("plots", [&] { return drawTissue(*measured, out); });
+  if (!plots) return printError(kName, plots.error(), json);
+  if (json) {
+    Json answer = toJson(*measured);
+    answer["table"] = (std::filesystem::path(out) / "tissue.csv").string();
+    answer["plots"] = *plots;
+    printAnswer(kName, answer);
+  } else {
+    say("%s", toText(*measured).c_str());
+  }
   return 0;
 }
 

@@ -40,6 +40,7 @@ int measureExtremesCommand(const std::string& case_source, const std::string& ou
 int measureHapticsCommand(const std::string& out, bool json, const Progress&);
 int measureRenderCommand(const std::string& case_source, const std::string& out, bool json,
                          const Progress&);
+int measureTissueCommand(const std::string& out, bool json, const Progress&);
 int measureTradesCommand(const std::string& out, bool json, const Progress&);
 constexpr const char* kOtherPrograms =
     "Other programs and compressed series are measured by bench_import, which is built with the "

@@ -54,6 +54,9 @@ int run(int argc, char** argv) {
   auto* haptics_command = with_json(app.add_subcommand(
       "haptics", "What a tick costs, and how true the push of elastic tissue is"));
   haptics_command->add_option("--out", out, "Folder for the table")->required();
+  auto* tissue_command = with_json(app.add_subcommand(
+      "tissue", "The laws and numbers of tissue beside published measurements"));
+  tissue_command->add_option("--out", out, "Folder for tables and plots")->required();
   auto* render_command = with_json(app.add_subcommand(
       "render", "What a picture costs and how true it is, beside VTK's own ray caster"));
   render_command->add_option("--case", case_source, "Bone in a case of your own as well");
@@ -131,6 +134,7 @@ int run(int argc, char** argv) {
   if (*stability_command) return measureStabilityCommand(stability, json, progress);
   if (*extremes_command) return measureExtremesCommand(case_source, out, json, progress);
   if (*haptics_command) return measureHapticsCommand(out, json, progress);
+  if (*tissue_command) return measureTissueCommand(out, json, progress);
   if (*render_command) return measureRenderCommand(case_source, out, json, progress);
   if (*trades_command) return measureTradesCommand(out, json, progress);
   if (*measure_import_command) {

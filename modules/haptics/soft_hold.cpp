@@ -70,6 +70,7 @@ void SoftHold::place(const Pose& arm_mm) {
   arm_mm_ = tip_mm_ = behind_mm_ = arm_mm.position;
   fresh_ = true;
   class_ = ahead_ = passing_ = -1;
+  enclosed_ = false;
   std::fill(shaft_.begin(), shaft_.end(), std::int8_t(-1));
   std::fill(edge_.begin(), edge_.end(), std::int8_t(-1));
   count();
@@ -147,7 +148,7 @@ void SoftHold::slip(const TissueField& tissue, const Vec3& target_mm, bool drive
   const double length_mm = glm::length(pulls_mm);
   if (!(length_mm > kTiny_mm)) return;
   const Vec3 way = pulls_mm / length_mm;
-  int ahead = ahead_;
+  int ahead = enclosed_ ? ahead_ : -1;
   if (let_go_J >= 0.0) {
     const Vec3 forwards = last_.orientation * Vec3(0.0, 0.0, -1.0);
     ahead = softAt(tissue, placeOf(target_mm) + beyond(forwards));
@@ -284,8 +285,9 @@ void SoftHold::creep(const TissueField& tissue) {
 
 void SoftHold::tell(const TissueField& tissue, const Vec3& arm_mm) {
   pull_ = {};
+  pull_.parts = laws_.cutting && parts_tissue_;
   const Vec3 pulls_mm = stretch_mm_ - crept_mm_;
-  if (pulls_mm != Vec3(0.0) || in_tissue_ > 0 || ahead_ >= 0) {
+  if (pulls_mm != Vec3(0.0) || in_tissue_ > 0 || enclosed_) {
     pull_.stiffness = kCling_N_per_m;
     pull_.force_N = -0.001 * kCling_N_per_m * pulls_mm;
     pull_.cutting = !laws_.friction ? 1.0 : !laws_.cutting ? 0.0 : cutting_share_;
@@ -308,6 +310,16 @@ Vec3 SoftHold::wayOfTip(const Vec3& tip_mm) const {
   const Vec3 way = tip_mm - behind_mm_;
   const double length_mm = glm::length(way);
   return length_mm > kTiny_mm ? way / length_mm : last_.orientation * Vec3(0.0, 0.0, -1.0);
+}
+
+// Whether there is tissue beside the tip: before that the slot's front is not in it.
+bool SoftHold::isEnclosed(const TissueField& tissue, const Pose& at) const {
+  const Vec3 place = placeOf(at.position);
+  for (const Vec3& side : {Vec3(1, 0, 0), Vec3(0, 1, 0)}) {
+    const Vec3 reach = beyond(at.orientation * side);
+    if (softAt(tissue, place + reach) >= 0 || softAt(tissue, place - reach) >= 0) return true;
+  }
+  return false;
 }
 
 Pose SoftHold::moved(const TissueField& tissue, const Pose& tool, bool stopped) {
@@ -346,6 +358,7 @@ Pose SoftHold::moved(const TissueField& tissue, const Pose& tool, bool stopped) 
   if (lag > kLeash_mm) behind_mm_ = at.position - (kLeash_mm / lag) * lag_mm;
   const int was_ahead = ahead_;
   ahead_ = softAt(tissue, placeOf(at.position) + beyond(forwards));
+  enclosed_ = ahead_ >= 0 && isEnclosed(tissue, at);
   // The other side of a thick membrane, where nothing stands behind it.
   if (passing_ >= 0 && ahead_ == passing_ && on && !gave_way_) {
     within_mm_ += glm::length(at.position - from_mm);

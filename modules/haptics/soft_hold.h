@@ -60,7 +60,7 @@ class SoftHold {
   template <class Self, class Archive>
   static void visitState(Self& self, Archive& archive) {
     archive(self.last_, self.stretch_mm_, self.crept_mm_, self.cutting_share_);
-    archive(self.tip_mm_, self.behind_mm_, self.fresh_);
+    archive(self.tip_mm_, self.behind_mm_, self.fresh_, self.enclosed_);
     for (auto* c : {&self.held_, &self.class_, &self.passing_, &self.ahead_}) {
       archive.within(*c, -1, kMaxTissues);
     }
@@ -107,6 +107,7 @@ class SoftHold {
   void creep(const TissueField& tissue);
   void tell(const TissueField& tissue, const Vec3& arm_mm);
   bool meets(const TissueField& tissue, const Vec3& tip_mm, const Vec3& place, int c);
+  bool isEnclosed(const TissueField& tissue, const Pose& at) const;
   bool isSheet(const TissueField& tissue, const Vec3& place, int c) const;
   std::int32_t holeAt(const Vec3& tip_mm, int c) const;
   void meet(int c, const Vec3& tip_mm);
@@ -141,6 +142,7 @@ class SoftHold {
   bool fresh_ = true;            // the tip was placed, and its tissue is not known
   std::int32_t class_ = -1;      // at the tip
   std::int32_t ahead_ = -1;      // before the slot that it has cut
+  bool enclosed_ = false;        // and there is tissue beside the tip
   std::int32_t held_ = -1;       // of the membrane that holds the tip; -1: none does
   Vec3 from_mm_{0.0};            // where the arm was when the tip met it
   Vec3 kept_mm_{0.0};            // and the place that the tool follows meanwhile

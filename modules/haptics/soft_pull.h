@@ -30,6 +30,8 @@ struct SoftPull {
   Vec3 force_N{0.0};
   double stiffness = 0.0;  // N/m; 0: there is none
   double cutting = 0.0, friction = 0.0;
+  // The tool is sharp, and what parts for it resists by its toughness: it does not push it out.
+  bool parts = false;
   // Of the membrane that holds the tip.
   Vec3 membrane_N{0.0};
   double membrane_stiffness = 0.0;  // N/m, at this travel; 0: there is none

@@ -19,6 +19,7 @@
 #include "session/arm_devices.h"
 #include "session/codes.h"
 #include "session/session_engine.h"
+#include "tissue/tissue_edits.h"
 #include "volume/case_memory.h"
 
 namespace trephine {

@@ -32,7 +32,7 @@ ElasticLaw::Answer ElasticLaw::Query::ask(const Tissues& tissues, const TissueFi
   answer.sphere_m = -radius_m * in.tool_direction;
   const int c = in.tip_class >= 0 ? in.tip_class : in.tissue_class;
   answer.parts = !blunt && (c < 0 || tissue.ofClass(c).cuttable != 0);
-  if (tissues.any) {
+  if (tissues.any && !in.soft.parts) {
     answer.push =
         sphere.push(tissue, tissues.stiffness, tool_mm.position + 1000.0 * answer.sphere_m);
   }

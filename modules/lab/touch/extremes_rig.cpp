@@ -15,78 +15,6 @@ constexpr double kPeriod_s = 0.001;
 constexpr int kCatchUpTicks = int(kCatchUp_s / kPeriod_s + 0.5);
 constexpr int kCatchUpTicksAtStart = int(kCatchUpAtStart_s / kPeriod_s + 0.5);
 
-// The handle that the plugin's functions get: TrephineDevice is each plugin's own and opaque here.
-struct ScriptedArm {
-  std::function<Sample(int)> script;
-  TrephineCapabilities capabilities = armCapabilities();
-  std::vector<Vec3> commanded_N;
-};
-
-// `open` is given no user data.
-thread_local ScriptedArm* to_open = nullptr;
-
-ScriptedArm& armOf(TrephineDevice* device) {
-  return *reinterpret_cast<ScriptedArm*>(device);
-}
-
-int answer(TrephineDevice*) {
-  return TREPHINE_OK;
-}
-
-int write(TrephineDevice* device, const TrephineArmCommand* commands) {
-  const double* force = commands[0].force_N;
-  armOf(device).commanded_N.emplace_back(force[0], force[1], force[2]);
-  return TREPHINE_OK;
-}
-
-int read(TrephineDevice* device, double, TrephineArmState* states) {
-  ScriptedArm& arm = armOf(device);
-  const Sample sample = arm.script(int(arm.commanded_N.size()));
-  if (sample.answer != TREPHINE_OK) return sample.answer;
-  TrephineArmState& state = states[0];
-  ++state.sequence;
-  state.time_ns = sample.time_ns;
-  for (int axis = 0; axis < 3; ++axis) state.position_m[axis] = sample.position_m[axis];
-  const Quat& q = sample.orientation;
-  const double wxyz[] = {q.w, q.x, q.y, q.z};
-  std::copy_n(wxyz, 4, state.orientation);
-  state.flags = sample.flags;
-  return TREPHINE_OK;
-}
-
-const TrephineDeviceApi kApi = [] {
-  TrephineDeviceApi api{};
-  api.size = sizeof(api);
-  api.version = TREPHINE_DEVICE_ABI;
-  api.name = "scripted";
-  api.enumerate = [](TrephineArmInfo*, std::uint32_t) { return std::uint32_t(1); };
-  api.open = [](const std::uint32_t*, std::uint32_t, TrephineDevice** device) -> int {
-    *device = reinterpret_cast<TrephineDevice*>(to_open);
-    return TREPHINE_OK;
-  };
-  api.configure = [](TrephineDevice* device, const char*) { return answer(device); };
-  api.capabilities = [](TrephineDevice* device, std::uint32_t, TrephineCapabilities* out) -> int {
-    *out = armOf(device).capabilities;
-    return TREPHINE_OK;
-  };
-  api.calibrate = [](TrephineDevice* device, std::uint32_t) { return answer(device); };
-  api.start = [](TrephineDevice* device) { return answer(device); };
-  api.read = read;
-  api.write = write;
-  api.stop = answer;
-  api.safe_stop = [](TrephineDevice*) {};
-  api.last_error = [](TrephineDevice*) { return "scripted"; };
-  api.close = [](TrephineDevice*) {};
-  return api;
-}();
-
-Result<std::unique_ptr<Device>> openArm(ScriptedArm& arm) {
-  auto plugin = DevicePlugin::builtIn(kApi);
-  if (!plugin) return plugin.error();
-  to_open = &arm;
-  return Device::open(*plugin, {0}, "{}");
-}
-
 HapticParameters rigParameters(const Setup& setup, const TrephineCapabilities& capabilities) {
   HapticParameters p;
   const double peak_N = capabilities.peak_force_N;
@@ -224,31 +152,19 @@ void ScriptedClock::sleepUntil(std::int64_t until_ns) {
 }
 
 TrephineCapabilities armCapabilities() {
-  TrephineCapabilities c{};
-  c.size = sizeof(c);
-  c.version = TREPHINE_DEVICE_ABI;
-  c.input_dof = 6;
-  const double workspace_m[] = {0.16, 0.12, 0.07};
-  std::copy_n(workspace_m, 3, c.workspace_m);
-  c.peak_force_N = 3.3;
-  c.continuous_force_N = 0.88;
-  c.apparent_mass_kg = 0.045;
-  c.encoder_step_m = 0.055e-3;
-  c.rate_hz = 1000.0;
-  return c;
+  return omniCapabilities();
 }
 
 Status tryToOpen(const TrephineCapabilities& capabilities) {
-  ScriptedArm arm{stroke, capabilities, {}};
-  if (auto device = openArm(arm); !device) return device.error();
+  ScriptedArm arm(stroke, capabilities, 0);
+  if (auto device = arm.open(); !device) return device.error();
   return {};
 }
 
 Run run(const Setup& setup) {
   Run run;
-  ScriptedArm arm{setup.script, armCapabilities(), {}};
-  arm.commanded_N.reserve(kTicks);
-  auto device = openArm(arm);
+  ScriptedArm arm(setup.script, armCapabilities(), kTicks);
+  auto device = arm.open();
   if (!device) {
     run.broken = device.error().sentence();
     return run;
@@ -280,7 +196,7 @@ Run run(const Setup& setup) {
   if (!run.broken.empty()) return run;
   if (loop.ticks() != setup.first_tick + kTicks || loop.dropped() > 0) {
     run.broken = "not every tick was done and recorded";
-  } else if (!wasSent(arm.commanded_N, run.trace)) {
+  } else if (!wasSent(arm.commanded_N(), run.trace)) {
     run.broken = "the arm was not sent what the record says";
   } else if (gone != run.removed) {
     run.broken = std::to_string(gone) + " voxels are gone, but the journal has " +

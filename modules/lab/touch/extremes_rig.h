@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "haptics/haptic_loop.h"
+#include "lab/common/scripted_arm.h"
 
 namespace trephine::extremes {
 
@@ -17,14 +18,7 @@ constexpr int kTicks = 400;          // of a run, 1 ms each
 constexpr int kMiddle = kTicks / 2;  // when a script does its worst
 constexpr std::int16_t kBoneHu = 1000;
 
-// What the scripted arm answers in one exchange.
-struct Sample {
-  Vec3 position_m{0.0};
-  Quat orientation{1, 0, 0, 0};
-  std::int64_t time_ns = 0;
-  std::uint32_t flags = TREPHINE_ARM_CALIBRATED;
-  int answer = TREPHINE_OK;
-};
+using Sample = ScriptedArm::Sample;
 
 // 10 mm along +x through the middle of the patient at 25 mm/s, tick by tick.
 Sample stroke(int tick);
