@@ -169,10 +169,10 @@ std::string provenanceWords(const SourcedNumber& number, std::string_view unit, 
                           : confidenceWord(number.confidence());
   if (!number.condition.empty()) known += (known.empty() ? "" : "; ") + number.condition;
   if (!number.range) return known;
-  std::string words = tr("published {}{}", spanWords(*number.range, shown_per), of_unit);
-  if (!known.empty()) words += " (" + known + ")";
-  if (!number.isOutOfRange()) return words;
-  return tr("{}; {}{} lies outside of it", words, plainNumber(number.value * shown_per), of_unit);
+  const std::string span = spanWords(*number.range, shown_per) + of_unit;
+  const std::string words =
+      number.isOutOfRange() ? tr("outside the published {}", span) : tr("published {}", span);
+  return known.empty() ? words : words + " (" + known + ")";
 }
 
 }  // namespace trephine

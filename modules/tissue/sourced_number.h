@@ -65,8 +65,8 @@ std::string sourcedFieldsPage();
 std::string exactNumber(double value);
 // "measured", as a person reads it; empty: not stated.
 std::string confidenceWord(Confidence confidence);
-// "published 2.2 to 3.3 N (measured; human cadaver, access needle)", and whether the value lies
-// outside; empty where its source says all. `shown_per` of `unit` make one of the number's.
+// "published 2.2 to 3.3 N (measured; human cadaver, access needle)", "outside the published ..." of
+// a value that is; empty where its source says all. `shown_per` of `unit` make one of the number's.
 std::string provenanceWords(const SourcedNumber& number, std::string_view unit, double shown_per);
 
 }  // namespace trephine

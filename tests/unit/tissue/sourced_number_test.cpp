@@ -83,11 +83,9 @@ TEST(SourcedNumber, OfItsOwnSourceIsTunedAndOfAnotherNotStated) {
 
 TEST(SourcedNumber, DiffersInWhateverIsKnownOfIt) {
   for (const auto& change : std::vector<void (*)(SourcedNumber&)>{
-           [](SourcedNumber& n) { n.value = 2.6; },
-           [](SourcedNumber& n) { n.source = "a book"; },
+           [](SourcedNumber& n) { n.value = 2.6; }, [](SourcedNumber& n) { n.source = "a book"; },
            [](SourcedNumber& n) { n.range->low = 2.1; },
-           [](SourcedNumber& n) { n.range->high = 3.4; },
-           [](SourcedNumber& n) { n.range.reset(); },
+           [](SourcedNumber& n) { n.range->high = 3.4; }, [](SourcedNumber& n) { n.range.reset(); },
            [](SourcedNumber& n) { n.stated = Confidence::derived; },
            [](SourcedNumber& n) { n.condition.clear(); }}) {
     SourcedNumber other = measured();
@@ -97,7 +95,8 @@ TEST(SourcedNumber, DiffersInWhateverIsKnownOfIt) {
 }
 
 TEST(SourcedNumber, ItsRangeIsTwoFiniteNumbersInOrderAndNoneNegative) {
-  for (const char* range : {"[1]", "[1, 2, 3]", "7", "null", R"(["a", 2])", "[-1, 2]", "[1, 1e10]"}) {
+  for (const char* range :
+       {"[1]", "[1, 2, 3]", "7", "null", R"(["a", 2])", "[-1, 2]", "[1, 1e10]"}) {
     EXPECT_EQ(errorWith("range", Json::parse(range)).where, "t.json: rupture_N.range") << range;
   }
   const Error falling = errorWith("range", {3.3, 2.2});
@@ -174,10 +173,10 @@ TEST(Provenance, SaysWhatWasPublishedHowItIsKnownAndUnderWhichCondition) {
 
 TEST(Provenance, SaysThatAValueLiesOutsideOfWhatWasPublished) {
   SourcedNumber number = measured();
-  for (const auto& [value, words] : {std::pair{4.5, "; 4.5 N lies outside of it"},
-                                     std::pair{2.0, "; 2 N lies outside of it"}}) {
+  for (const double value : {2.1, 3.4}) {
     number.value = value;
-    EXPECT_EQ(provenanceWords(number, "N", 1.0), provenanceWords(measured(), "N", 1.0) + words);
+    EXPECT_EQ(provenanceWords(number, "N", 1.0),
+              "outside the " + provenanceWords(measured(), "N", 1.0));
   }
   for (const double end : {2.2, 3.3}) {
     number.value = end;
