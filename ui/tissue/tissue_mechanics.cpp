@@ -3,6 +3,7 @@
 #include <QFormLayout>
 #include <QHBoxLayout>
 #include <QVBoxLayout>
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -31,7 +32,15 @@ TissueMechanics::TissueMechanics(QWidget* parent) : QWidget(parent) {
   form->setContentsMargins(0, 0, 0, 0);
   form->setFieldGrowthPolicy(QFormLayout::AllNonFixedFieldsGrow);
   form->setVerticalSpacing(6);
-  for (const TissueNumber& row : kTissueNumbers) addNumber(row);
+  std::vector<QLabel*> labels;
+  for (const TissueNumber& row : kTissueNumbers) labels.push_back(addNumber(row));
+  // Longer ones over two lines, as the row is: the numbers need the width.
+  int widest_word = 0;
+  for (QLabel* label : labels) {
+    label->ensurePolished();
+    widest_word = std::max(widest_word, label->minimumSizeHint().width());
+  }
+  for (QLabel* label : labels) label->setFixedWidth(widest_word);
   cutting_ =
       std::make_unique<FieldRows<Tissue>>(FieldsOf<Tissue>(kCuttingFields), *form, this, "tissue:");
   cutting_->entered = [this](const Tissue& other, const char* key) {
@@ -55,7 +64,7 @@ TissueMechanics::TissueMechanics(QWidget* parent) : QWidget(parent) {
   });
 }
 
-void TissueMechanics::addNumber(const TissueNumber& row) {
+QLabel* TissueMechanics::addNumber(const TissueNumber& row) {
   Number number{new DecimalField(QString(row.label).toLower(), this), new LimitBar(this),
                 new QLineEdit(this), new ElidedLabel(this), &row};
   number.box->setDecimals(row.decimals);
@@ -89,7 +98,10 @@ void TissueMechanics::addNumber(const TissueNumber& row) {
   rows->addLayout(number.box->withReason());
   rows->addLayout(below);
   rows->addWidget(number.known);
-  static_cast<QFormLayout*>(layout())->addRow(fromRoom(row.label), rows);
+  auto* label = wrapped(new QLabel(fromRoom(row.label), this));
+  label->setBuddy(number.box);
+  static_cast<QFormLayout*>(layout())->addRow(label, rows);
+  return label;
 }
 
 void TissueMechanics::show(const Tissue& tissue, const Tissue& declared) {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <QComboBox>
+#include <QLabel>
 #include <QLineEdit>
 #include <QWidget>
 #include <functional>
@@ -46,7 +47,7 @@ class TissueMechanics : public QWidget {
     ElidedLabel* known;  // what was published of it
     const TissueNumber* row;
   };
-  void addNumber(const TissueNumber& row);
+  QLabel* addNumber(const TissueNumber& row);
   void entered(const Number& number);
   void sourceEntered(const Number& number);
   void showOutcome();
