@@ -35,7 +35,7 @@ bool isForce(const TissueNumber& number) {
 
 bool isFelt(const TissueNumber& number, const Tissue& tissue, const std::vector<LawKind>& laws,
             RemovalKind removal) {
-  const bool cuts = number.in_tick == &TickNumbers::cutting_J_per_mm3;
+  const bool cuts = number.isCutting() && number.of(tissue);  // it is paid by the one that is given
   if (cuts && removal == RemovalKind::work && tissue.cuttable) return true;
   TickNumbers numbers;
   for (const TissueNumber& one : kTissueNumbers) numbers.*one.in_tick = one.valueOf(tissue);
@@ -57,7 +57,7 @@ std::optional<double> mostShown(const TissueNumber& number, const Tissue& tissue
     return demanded(other);
   };
   if (isForce(number)) return arms.force_N;
-  const double highest = kMechanicsRange.high;
+  const double highest = number.greatest;
   const Impedance least = at(0.0), most = at(highest);
   const bool damps = least.damping != most.damping, pulls = least.stiffness != most.stiffness;
   if (!damps && !pulls) return {};

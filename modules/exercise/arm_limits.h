@@ -25,7 +25,7 @@ std::optional<ArmsLimit> armsLimit(const Exercise& exercise, const Rig& rig);
 bool isForce(const TissueNumber& number);
 
 // Whether the exercise has a use for the number in this tissue: a law that uses it, and whatever
-// else of the tissue that law needs; of cutting energy, removal by work of a tissue that can be
+// else of the tissue that law needs; of what cutting costs, removal by work of a tissue that can be
 // cut.
 bool isFelt(const TissueNumber& number, const Tissue& tissue, const std::vector<LawKind>& laws,
             RemovalKind removal);

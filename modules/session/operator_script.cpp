@@ -49,7 +49,8 @@ ScriptHand readHand(JsonReader& item, const Exercise& exercise) {
   return hand;
 }
 
-// A tissue change starts from what the exercise or the change before it says.
+// A tissue change starts from what the exercise or the change before it says. A number that it
+// changes no longer claims what was known of the other one.
 void readTissueChange(JsonReader changes, const Json& names, TissueSet& set) {
   for (auto it = names.begin(); it != names.end(); ++it) {
     auto tissue = std::find_if(set.tissues.begin(), set.tissues.end(),
@@ -64,7 +65,8 @@ void readTissueChange(JsonReader changes, const Json& names, TissueSet& set) {
     for (const TissueNumber& number : kTissueNumbers) {
       const SourcedNumber* was = number.of(*tissue);
       if (!was) continue;  // one that the tissue does not have cannot change
-      number.set(*tissue, {change.number(number.key, number.row().range, was->value), was->source});
+      const double value = change.number(number.key, number.row().range, was->value);
+      if (value != was->value) number.set(*tissue, {value, kOwnSource});
     }
     tissue->cuttable = change.boolean("cuttable", tissue->cuttable);
   }

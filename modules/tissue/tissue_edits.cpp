@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
 #include <optional>
 
@@ -156,6 +157,38 @@ Tissue inStructure(const TissueSet& set, const Tissue& tissue, const std::string
     out.hu_max = kCtHu.high;
     out.hu_source = "whatever HU, where the structure is";
   }
+  return out;
+}
+
+Tissue withNumber(const Tissue& tissue, const TissueNumber& number, double value, double least,
+                  const Tissue& declared) {
+  const auto same = [&](double other) { return std::abs(value - other) < least; };
+  Tissue out = tissue;
+  if (same(number.valueOf(tissue))) return out;
+  const SourcedNumber* cited = number.of(declared);
+  if (cited && same(cited->value)) {
+    number.set(out, *cited);
+  } else if (cited || value != 0.0) {
+    number.set(out, {value, kOwnSource});
+  } else if (!number.isCutting()) {
+    number.clear(out);
+  } else {
+    number.set(out, {0.0, kOwnSource});
+    for (const TissueNumber& other : kTissueNumbers) {
+      const SourcedNumber* given = other.isCutting() ? other.of(declared) : nullptr;
+      if (given) other.set(out, *given);
+    }
+  }
+  return out;
+}
+
+Tissue withSource(const Tissue& tissue, const TissueNumber& number, const std::string& source,
+                  const Tissue& declared) {
+  Tissue out = tissue;
+  const double value = number.valueOf(tissue);
+  const SourcedNumber* cited = number.of(declared);
+  const bool as_cited = cited && cited->value == value && cited->source == source;
+  number.set(out, as_cited ? *cited : SourcedNumber{value, source});
   return out;
 }
 

@@ -8,9 +8,6 @@
 
 namespace trephine {
 
-// The source of a number that a person set here.
-inline constexpr const char* kOwnSource = "tuned here, uncited";
-
 // Both ends included.
 struct HuRange {
   int low = 0;
@@ -47,6 +44,17 @@ TissueSet withRangesOf(const TissueSet& set, const TissueSet& ranges);
 // as in `declared`. Alone in a structure it is all of it, whatever HU.
 Tissue inStructure(const TissueSet& set, const Tissue& tissue, const std::string& structure,
                    const TissueSet& declared);
+
+// The tissue with this value of a number as a person enters it; what differs by less than
+// `least` is the same. A number that is as in `declared` is that one whole, another is tuned here.
+// 0 gives up one that `declared` does not give either; of the two that say what cutting costs, the
+// other one is then as in `declared`, and 0 stays where it has none.
+Tissue withNumber(const Tissue& tissue, const TissueNumber& number, double value, double least,
+                  const Tissue& declared);
+// The tissue with another source of a number that it has: what was known by the old one goes, and
+// is back where the number is as in `declared`.
+Tissue withSource(const Tissue& tissue, const TissueNumber& number, const std::string& source,
+                  const Tissue& declared);
 
 // One more, of any voxel, first of the list: in the widest free range of what is no air, or, where
 // there is none, in the topmost 100 HU of the widest within kCtHu. Error: NO_ROOM.

@@ -13,19 +13,13 @@
 
 #include "base/field.h"
 #include "base/tr.h"
+#include "tissue/sourced_number.h"
 
 namespace trephine {
 
 // Of each of the mechanics. Far beyond steel; what lies below it and above the arm is bounded, and
 // felt as the arm's most.
 constexpr Range kMechanicsRange{0, 1e9};
-
-// A number that a person set, and where it comes from: a citation, or "tuned here, uncited".
-struct SourcedNumber {
-  double value = 0.0;
-  std::string source;
-  bool operator==(const SourcedNumber&) const = default;
-};
 
 // `Number` is what a file always gives, `MaybeNumber` what it may give.
 template <class Number, class MaybeNumber>

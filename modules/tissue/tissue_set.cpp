@@ -4,7 +4,6 @@
 #include <utility>
 
 #include "base/tr.h"
-#include "base/utf8.h"
 #include "tissue/codes.h"
 
 namespace trephine {
@@ -24,30 +23,6 @@ bool sameVoxels(const Tissue& a, const Tissue& b) {
   return inSamePlace(a, b) && a.hu_min <= b.hu_max && b.hu_min <= a.hu_max;
 }
 
-std::string shown(double value) {
-  return isFinite(value) ? Json(value).dump() : std::to_string(value);  // JSON has no nan
-}
-
-Status checkSourced(const std::string& file, const std::string& field, const Range& range,
-                    const SourcedNumber& number) {
-  if (!isFinite(number.value)) {
-    return bad(file, field, tr("The value {} is not finite", shown(number.value)));
-  }
-  if (number.value < 0.0) {
-    return bad(file, field, tr("The value {} is negative", shown(number.value)),
-               tr("A tissue cannot push: use 0 or more"));
-  }
-  if (!range.holds(number.value)) {
-    return bad(file, field, tr("The value {} is absurd: no tissue has it", shown(number.value)),
-               tr("Use one {}", range.words()));
-  }
-  if (number.source.empty()) {
-    return bad(file, field, tr("The value {} has no source", shown(number.value)),
-               tr("Cite one, or write \"tuned here, uncited\""));
-  }
-  return {};
-}
-
 // Numbers that contradict each other, or that one needs which the tissue lacks.
 Status checkTogether(const std::string& file, const std::string& field, const Tissue& t) {
   const auto valueOf = [](const std::optional<SourcedNumber>& n) { return n ? n->value : 0.0; };
@@ -55,7 +30,7 @@ Status checkTogether(const std::string& file, const std::string& field, const Ti
     return bad(file, field + ".toughness_J_per_m2",
                tr("Cutting '{}' costs {} J/m\u00b2 by area and {} J/mm\u00b3 by volume: one contradicts "
                   "the other",
-                  t.id, shown(t.toughness_J_per_m2->value), shown(t.cutting_J_per_mm3->value)),
+                  t.id, exactNumber(t.toughness_J_per_m2->value), exactNumber(t.cutting_J_per_mm3->value)),
                tr("Give toughness_J_per_m2 for soft tissue, or cutting_J_per_mm3"));
   }
   if (!t.cutting_J_per_mm3 && !t.toughness_J_per_m2) {
@@ -66,39 +41,30 @@ Status checkTogether(const std::string& file, const std::string& field, const Ti
   if (rupture_N > 0.0 && !(rupture_mm > 0.0) && !(t.stiffness_N_per_m.value > 0.0)) {
     return bad(file, field + ".rupture_N",
                tr("'{}' gives way at {} N, and nothing says how far it lets itself be pressed in",
-                  t.id, shown(rupture_N)),
+                  t.id, exactNumber(rupture_N)),
                tr("Give rupture_mm, or a stiffness above 0"));
   }
   if (rupture_mm > 0.0 && !(rupture_N > 0.0)) {
     return bad(file, field + ".rupture_mm",
                tr("'{}' gives way after {} mm, and nothing says at which force", t.id,
-                  shown(rupture_mm)),
+                  exactNumber(rupture_mm)),
                tr("Give rupture_N"));
   }
   const double relaxes = valueOf(t.relaxation_share), within_s = valueOf(t.relaxation_s);
   if ((relaxes > 0.0) != (within_s > 0.0)) {
     return bad(file, field + (relaxes > 0.0 ? ".relaxation_share" : ".relaxation_s"),
-               tr("'{}' relaxes by {} within {} s: one of the two is missing", t.id, shown(relaxes),
-                  shown(within_s)),
+               tr("'{}' relaxes by {} within {} s: one of the two is missing", t.id, exactNumber(relaxes),
+                  exactNumber(within_s)),
                tr("Give both, relaxation_share and relaxation_s, or none"));
   }
   return {};
-}
-
-// A source may be pasted from anywhere: what ends its line, or what nobody sees, becomes a blank.
-std::string sourceIn(JsonReader& object, const char* key) {
-  constexpr std::size_t kMost = 4096;
-  const Json& text = object.raw(key);
-  const bool known = text.is_string() && text.get_ref<const std::string&>().size() <= kMost;
-  return known ? cleanUtf8(text.get_ref<const std::string&>()) : object.text(key);
 }
 
 void readMechanics(JsonReader mechanics, Tissue& tissue) {
   for (const TissueNumber& number : kTissueNumbers) {
     const FieldRow row = number.row();
     if (row.given == Given::may_be && !mechanics.has(row.key)) continue;
-    JsonReader object = mechanics.object(row.key);
-    number.set(tissue, {object.number("value", row.range), sourceIn(object, "source")});
+    number.set(tissue, readSourced(mechanics.object(row.key), row.range));
   }
   readFields(mechanics, kCuttingFields, tissue);
   if (mechanics.has("solid")) tissue.solid = mechanics.boolean("solid", false);
@@ -108,7 +74,7 @@ Json mechanicsOf(const Tissue& tissue) {
   Json mechanics;
   for (const TissueNumber& row : kTissueNumbers) {
     const SourcedNumber* number = row.of(tissue);
-    if (number) mechanics[row.key] = {{"value", number->value}, {"source", number->source}};
+    if (number) mechanics[row.key] = toJson(*number);
   }
   writeFields(mechanics, kCuttingFields, tissue);
   if (tissue.solid) mechanics["solid"] = *tissue.solid;
@@ -156,7 +122,7 @@ Status validate(const TissueSet& set, const std::string& file) {
     if (t.shell && (t.shell->of.empty() || !kShellRange.holds(t.shell->thickness_mm))) {
       return bad(file, field + ".shell",
                  tr("The shell of '{}', {} mm thick, is not possible", t.shell->of,
-                    shown(t.shell->thickness_mm)),
+                    exactNumber(t.shell->thickness_mm)),
                  tr("Name a structure and a thickness of {}", kShellRange.words()));
     }
     if (t.within == t.id || (!t.within.empty() && !set.find(t.within))) {
@@ -174,12 +140,12 @@ Status validate(const TissueSet& set, const std::string& file) {
     }
     if (!kShareRange.holds(t.opacity)) {
       return bad(file, field + ".opacity",
-                 tr("The opacity {} is not between 0 and 1", shown(t.opacity)));
+                 tr("The opacity {} is not between 0 and 1", exactNumber(t.opacity)));
     }
     for (int c = 0; c < 3; ++c) {
       if (!kShareRange.holds(t.colour[c])) {
         return bad(file, field + ".colour",
-                   tr("The colour value {} is not between 0 and 1", shown(t.colour[c])));
+                   tr("The colour value {} is not between 0 and 1", exactNumber(t.colour[c])));
       }
     }
     for (const TissueNumber& row : kTissueNumbers) {
@@ -260,7 +226,7 @@ std::string tissueFieldsPage() {
   for (const TissueNumber& number : kTissueNumbers) {
     page += schemaLine("`mechanics`", number.row(), "sourced number", "none");
   }
-  return page + schemaLines<Tissue>("`mechanics`", kCuttingFields);
+  return page + schemaLines<Tissue>("`mechanics`", kCuttingFields) + sourcedFieldsPage();
 }
 
 TissueTable tissueTable(const TissueSet& set) {

@@ -3,11 +3,15 @@
 #include <QFormLayout>
 #include <QHBoxLayout>
 #include <QVBoxLayout>
+#include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "base/utf8.h"
 #include "tissue/tissue_edits.h"
+#include "ui/common/colours.h"
 #include "ui/common/making.h"
+#include "ui/common/plain_text.h"
 #include "ui/common/translations.h"
 #include "ui/common/words.h"
 
@@ -28,7 +32,15 @@ TissueMechanics::TissueMechanics(QWidget* parent) : QWidget(parent) {
   form->setContentsMargins(0, 0, 0, 0);
   form->setFieldGrowthPolicy(QFormLayout::AllNonFixedFieldsGrow);
   form->setVerticalSpacing(6);
-  for (const TissueNumber& row : kTissueNumbers) addNumber(row);
+  std::vector<QLabel*> labels;
+  for (const TissueNumber& row : kTissueNumbers) labels.push_back(addNumber(row));
+  // Longer ones over two lines, as the row is: the numbers need the width.
+  int widest_word = 0;
+  for (QLabel* label : labels) {
+    label->ensurePolished();
+    widest_word = std::max(widest_word, label->minimumSizeHint().width());
+  }
+  for (QLabel* label : labels) label->setFixedWidth(widest_word);
   cutting_ =
       std::make_unique<FieldRows<Tissue>>(FieldsOf<Tissue>(kCuttingFields), *form, this, "tissue:");
   cutting_->entered = [this](const Tissue& other, const char* key) {
@@ -52,9 +64,9 @@ TissueMechanics::TissueMechanics(QWidget* parent) : QWidget(parent) {
   });
 }
 
-void TissueMechanics::addNumber(const TissueNumber& row) {
+QLabel* TissueMechanics::addNumber(const TissueNumber& row) {
   Number number{new DecimalField(QString(row.label).toLower(), this), new LimitBar(this),
-                new QLineEdit(this), &row};
+                new QLineEdit(this), new ElidedLabel(this), &row};
   number.box->setDecimals(row.decimals);
   number.box->setLimits(row.row().range.low, row.most);
   number.box->setSingleStep(row.step);
@@ -64,7 +76,6 @@ void TissueMechanics::addNumber(const TissueNumber& row) {
   number.bar->setRange(row.most, row.step, row.decimals);
   number.source->setObjectName(QString(row.label).toLower() + "Source");
   number.source->setAccessibleName(tr("Source of %1").arg(fromRoom(row.label)));
-  number.source->setPlaceholderText(tr("where the number comes from"));
   number.source->setFrame(false);
   number.source->setMaxLength(300);
   QFont small = number.source->font();
@@ -73,6 +84,8 @@ void TissueMechanics::addNumber(const TissueNumber& row) {
   number.source->setFont(small);
   number.source->setMinimumWidth(40);
   number.bar->setFont(small);
+  number.known->setObjectName(QString(row.label).toLower() + "Known");
+  number.known->setFont(small);
   number.box->entered = [this, number] { entered(number); };
   connect(number.source, &QLineEdit::editingFinished, this,
           [this, number] { sourceEntered(number); });
@@ -84,7 +97,11 @@ void TissueMechanics::addNumber(const TissueNumber& row) {
   auto* rows = tight(new QVBoxLayout, 0);
   rows->addLayout(number.box->withReason());
   rows->addLayout(below);
-  static_cast<QFormLayout*>(layout())->addRow(fromRoom(row.label), rows);
+  rows->addWidget(number.known);
+  auto* label = wrapped(new QLabel(fromRoom(row.label), this));
+  label->setBuddy(number.box);
+  static_cast<QFormLayout*>(layout())->addRow(label, rows);
+  return label;
 }
 
 void TissueMechanics::show(const Tissue& tissue, const Tissue& declared) {
@@ -95,8 +112,13 @@ void TissueMechanics::show(const Tissue& tissue, const Tissue& declared) {
 }
 
 void TissueMechanics::update(const Tissue& tissue, const Tissue& declared) {
-  tissue_ = tissue;
+  const Tissue before = std::exchange(tissue_, tissue);
   declared_ = declared;
+  // Of the two that say what cutting costs, the one that was not entered has changed as well.
+  for (const Number& n : numbers_) {
+    const double value = n.row->valueOf(tissue);
+    if (n.row->isCutting() && value != n.row->valueOf(before)) n.box->show(value * n.row->shown_per);
+  }
   showOutcome();
 }
 
@@ -119,12 +141,15 @@ void TissueMechanics::showOutcome() {
     if (!n.source->hasFocus() || !n.source->isModified()) n.source->setText(source);
     n.source->setCursorPosition(0);
     n.source->setToolTip(source);
+    n.source->setPlaceholderText(given ? tr("where the number comes from") : tr("not given"));
+    showKnown(n);
     n.box->setToolTip(tr("%1. From %2 to %3 %4.")
                           .arg(fromRoom(n.row->meaning))
                           .arg(n.row->row().range.low)
                           .arg(n.row->most, 0, 'g', 6)
                           .arg(unitOf(*n.row)) +
-                      (given ? '\n' + tr("Source: %1").arg(source) : QString()));
+                      '\n' + (given ? tr("Source: %1").arg(source) : tr("It is not given.")) +
+                      (n.known->text().isEmpty() ? QString() : '\n' + inLines(n.known->text())));
     n.bar->setFelt(!laws_ || isFelt(*n.row, tissue_, *laws_, removal_));
     n.bar->setWeaker(arms_ && demanded_ && in_force_ == ControllerKind::bounded &&
                      isWeaker(*n.row, tissue_, *arms_, demanded_));
@@ -142,6 +167,17 @@ void TissueMechanics::showOutcome() {
   solid_->setItemText(kStops, tr("is stopped until it is cut"));
   solid_->setItemText(kGoesIn, tr("goes in"));
   solid_->setCurrentIndex(!tissue_.solid ? kByStiffness : *tissue_.solid ? kStops : kGoesIn);
+}
+
+void TissueMechanics::showKnown(const Number& n) {
+  const SourcedNumber* given = n.row->of(tissue_);
+  const QString words =
+      given ? toQt(provenanceWords(*given, unitOf(*n.row).toStdString(), n.row->shown_per))
+            : QString();
+  n.known->setText(words);
+  n.known->setVisible(!words.isEmpty());
+  const bool outside = given && given->isOutOfRange();
+  colours::setText(*n.known, outside ? colours::kCaution : colours::kQuiet);
 }
 
 QString TissueMechanics::feltWords() const {
@@ -164,22 +200,10 @@ QString TissueMechanics::feltWords() const {
 
 void TissueMechanics::entered(const Number& n) {
   const TissueNumber& row = *n.row;
-  Tissue other = tissue_;
   // Half a digit: what is shown rounded is not another number.
   const double half = 0.5 * std::pow(10.0, -row.decimals);
-  const auto shown = [&](double value) {
-    return std::abs(n.box->wanted() - value * row.shown_per) < half;
-  };
-  if (!shown(row.valueOf(tissue_))) {
-    const SourcedNumber* cited = row.of(declared_);
-    if (cited && shown(cited->value)) {
-      row.set(other, *cited);
-    } else if (!cited && n.box->wanted() == 0.0) {
-      row.clear(other);
-    } else {
-      row.set(other, {n.box->wanted() / row.shown_per, kOwnSource});
-    }
-  }
+  const Tissue other = withNumber(tissue_, row, n.box->wanted() / row.shown_per,
+                                  half / row.shown_per, declared_);
   if (wanted && wanted(other, row.key)) n.box->take();
 }
 
@@ -188,9 +212,7 @@ void TissueMechanics::sourceEntered(const Number& n) {
   const QString typed = toQt(cleanUtf8(n.source->text().simplified().toStdString()));
   n.source->setModified(false);
   if (!given || typed.isEmpty() || typed == toQt(given->source)) return showOutcome();
-  Tissue other = tissue_;
-  n.row->set(other, {given->value, typed.toStdString()});
-  if (wanted) (void)wanted(other, n.row->key);
+  if (wanted) (void)wanted(withSource(tissue_, *n.row, typed.toStdString(), declared_), n.row->key);
 }
 
 }  // namespace trephine

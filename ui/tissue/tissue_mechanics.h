@@ -1,8 +1,9 @@
-// What a tissue does to a hand: each number with its unit, its range, its source and what the arms
-// can show of it, and whether it can be cut and stops a tool.
+// What a tissue does to a hand: each number with its unit, its range, its source, what was published
+// of it and what the arms can show of it, and whether it can be cut and stops a tool.
 #pragma once
 
 #include <QComboBox>
+#include <QLabel>
 #include <QLineEdit>
 #include <QWidget>
 #include <functional>
@@ -14,6 +15,7 @@
 #include "haptics/controllers.h"
 #include "ui/common/field_rows.h"
 #include "ui/common/number_field.h"
+#include "ui/common/placing.h"
 #include "ui/tissue/limit_bar.h"
 
 namespace trephine {
@@ -42,12 +44,14 @@ class TissueMechanics : public QWidget {
     DecimalField* box;
     LimitBar* bar;
     QLineEdit* source;
+    ElidedLabel* known;  // what was published of it
     const TissueNumber* row;
   };
-  void addNumber(const TissueNumber& row);
+  QLabel* addNumber(const TissueNumber& row);
   void entered(const Number& number);
   void sourceEntered(const Number& number);
   void showOutcome();
+  void showKnown(const Number& number);
 
   std::vector<Number> numbers_;
   std::unique_ptr<FieldRows<Tissue>> cutting_;

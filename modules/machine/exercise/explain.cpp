@@ -148,7 +148,44 @@ Json settingsOf(const Exercise& exercise, const std::vector<RecommendedSetting>&
   return settings;
 }
 
+// Whether a law of the exercise, or its removal, goes by the number of this tissue.
+bool isUsed(const TissueNumber& number, const Tissue& tissue, const Exercise& exercise) {
+  if (!number.of(tissue)) return false;
+  if (number.isCutting() && exercise.removal == RemovalKind::work && tissue.cuttable) return true;
+  return std::ranges::any_of(exercise.laws, [&](LawKind law) {
+    const auto& of = kLawTraits[std::size_t(law)].numbers;
+    return std::ranges::find(of, number.in_tick) != of.end();
+  });
+}
+
+// "Friction 0.3 N, from: a paper; published 0.2 to 0.4 N (measured)"
+std::string numberWords(const TissueNumber& row, const SourcedNumber& number) {
+  const std::string unit = row.shown_unit ? row.shown_unit : row.unit;
+  const std::string words = tr("{} {}{}, from: {}", tr(row.label),
+                               plainNumber(number.value * row.shown_per),
+                               (unit.empty() ? "" : " ") + unit, number.source);
+  const std::string known = provenanceWords(number, unit, row.shown_per);
+  return known.empty() ? words : words + "; " + known;
+}
+
 }  // namespace
+
+Json usedNumbers(const Exercise& exercise) {
+  Json numbers = Json::array();
+  for (const Tissue& tissue : exercise.tissues.tissues) {
+    for (const TissueNumber& row : kTissueNumbers) {
+      if (!isUsed(row, tissue, exercise)) continue;
+      const SourcedNumber& number = *row.of(tissue);
+      Json item{{"tissue", tissue.id}, {"number", row.key}, {"unit", row.unit}};
+      SourcedNumber said = number;
+      said.stated = number.confidence();
+      item.update(toJson(said));
+      item["text"] = numberWords(row, number);
+      numbers.push_back(std::move(item));
+    }
+  }
+  return numbers;
+}
 
 std::vector<std::pair<std::string, std::string>> exerciseSettings(const Exercise& exercise) {
   std::vector<std::pair<std::string, std::string>> settings;
@@ -326,6 +363,7 @@ Result<Json> explainExercise(Exercise exercise, const std::vector<RecommendedSet
               {"barrier", stopAtSolid(exercise.laws) ? "solid tissue stops a tool until it is cut"
                                                      : "no barrier: a tool is where its arm is"},
               {"tissues", tissues},
+              {"numbers", usedNumbers(exercise)},
               {"arms", arms},
               {"warnings", *warnings},
               {"bounded", bounded},
@@ -361,6 +399,9 @@ std::string explanationText(const Json& explained) {
       word(explained, "controller").c_str(), word(explained, "force_at").c_str(),
       word(explained, "removal").c_str());
   text += tr("  laws: {}\n  tissues: {}\n", list("laws"), list("tissues"));
+  for (const Json& item : explained.at("numbers")) {
+    text += "    " + word(item, "tissue") + ": " + word(item, "text") + "\n";
+  }
   text += "  " + word(explained, "barrier") + "\n";
   for (const Json& arm : explained.at("arms")) {
     const Json& most = arm.at("renderable");

@@ -14,6 +14,7 @@
 namespace trephine {
 
 // -> {exercise, goal (of its card; null: none), case, rate_hz, controller, laws, removal, tissues,
+//     numbers (usedNumbers),
 //     arms:[{name, plugin, tool, other_tools, points, renderable}],
 //     warnings:[{code, text}] as of a run of the exercise's own script in its own case: tools that
 //     start in tissue; null where it has no case or no script,
@@ -25,6 +26,11 @@ namespace trephine {
 // Errors: those of the devices, the script and the case, CANCELLED.
 Result<Json> explainExercise(Exercise exercise, const std::vector<RecommendedSetting>& recommended,
                              const Progress& progress = Progress());
+
+// [{tissue, number, unit, value, source, range, confidence, condition, text}]: of each tissue the
+// numbers that the exercise's laws and its removal go by, in the units of its file; what is not
+// known is not there. `text` is all of it for a person.
+Json usedNumbers(const Exercise& exercise);
 
 // The same for a person, some lines, together with what the command adds of the workstation:
 // `locks` [names], `refused` (a sentence or null).

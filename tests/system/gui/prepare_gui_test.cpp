@@ -269,8 +269,8 @@ class PrepareGuiTest : public test::WindowTest {
     enter("rupture", "1.25");
     QCOMPARE(tissue("dura").rupture_N->value, 1.25);
     enter("cutting", "0.25");
-    QCOMPARE(tissue("dura").cutting_J_per_mm3.value, 0.00025);
-    QCOMPARE(QString::fromStdString(tissue("dura").cutting_J_per_mm3.source), QString(kOwnSource));
+    QCOMPARE(tissue("dura").cutting_J_per_mm3->value, 0.00025);
+    QCOMPARE(QString::fromStdString(tissue("dura").cutting_J_per_mm3->source), QString(kOwnSource));
     auto* source = find<QLineEdit>("ruptureSource");
     source->setFocus();
     source->selectAll();

@@ -74,6 +74,12 @@ TEST(ArmLimits, ANumberIsFeltWhereALawOfTheExerciseUsesIt) {
   tissue.cuttable = true;
   EXPECT_TRUE(felt("cutting_J_per_mm3", {}));
   EXPECT_FALSE(felt("cutting_J_per_mm3", {}, RemovalKind::instant));
+  EXPECT_FALSE(felt("toughness_J_per_m2", {})) << "it is not given";
+  number("toughness_J_per_m2").set(tissue, {75.8, "a paper"});
+  EXPECT_TRUE(felt("toughness_J_per_m2", {}));
+  EXPECT_FALSE(felt("toughness_J_per_m2", {}, RemovalKind::instant));
+  EXPECT_FALSE(felt("cutting_J_per_mm3", {})) << "the toughness has taken its place";
+  number("cutting_J_per_mm3").set(tissue, {1e-5, "a paper"});
   tissue.cuttable = false;
   EXPECT_FALSE(felt("cutting_J_per_mm3", {}));
 }

@@ -10,6 +10,7 @@
 #include <map>
 #include <set>
 
+#include "base/system.h"
 #include "machine/trades/recommended.h"
 #include "machine/trades/trade_knobs.h"
 #include "machine/trades/trade_stroke.h"

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "session_support.h"
 
 namespace trephine {
@@ -73,14 +75,17 @@ TEST(OperatorScript, ChangesEachNumberThatATissueHasAndNoOther) {
     Tissue& bone = whole.tissues.tissues[3];
     if (!number.of(bone)) number.set(bone, {1.0, "made up"});
   }
-  const TissueTable before = tissueTable(whole.tissues);
   for (const TissueNumber& number : kTissueNumbers) {
+    // Of the two that say what cutting costs, a tissue has one.
+    number.set(whole.tissues.tissues[3], {1.0, "made up"});
+    const TissueTable before = tissueTable(whole.tissues);
+    const double value = std::min(77.0, 0.5 * number.greatest);
     Json json = script();
-    json["commands"][2]["tissues"] = {{"bone", {{number.key, 77.0}}}};
+    json["commands"][2]["tissues"] = {{"bone", {{number.key, value}}}};
     const auto read = parseOperatorScript(json, "script.json", whole);
     ASSERT_TRUE(read.ok()) << read.error().sentence();
     TissueTable expected = before;
-    expected.classes[3].*number.in_tick = 77.0;
+    expected.classes[3].*number.in_tick = value;
     EXPECT_EQ(*read->commands[2].command.tissues, expected) << number.key;
 
     const auto plainly = parseOperatorScript(json, "script.json", plain);

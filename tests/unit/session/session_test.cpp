@@ -313,7 +313,8 @@ TEST(Session, APokeCutsNothingWhateverIsEditedAndTellsForceAgainstDepth) {
   TissueSet softer = session->exercise().tissues;
   for (Tissue& tissue : softer.tissues) {
     tissue.cuttable = true;
-    tissue.cutting_J_per_mm3.value = 1e-9;
+    tissue.toughness_J_per_m2.reset();
+    tissue.cutting_J_per_mm3 = SourcedNumber{1e-9, "test"};
   }
   ASSERT_TRUE(session->setTissues(softer).ok());
   ASSERT_TRUE(session->freewheel(10.0).ok());
@@ -336,7 +337,8 @@ TEST(Session, APokeCutsNothingWhateverIsEditedAndTellsForceAgainstDepth) {
 TEST(Session, APokeIsFeltAsTheExerciseIsUntilThatCuts) {
   Exercise tough = cranium();
   for (Tissue& tissue : tough.tissues.tissues) {
-    tissue.cutting_J_per_mm3.value = kMechanicsRange.high;
+    tissue.toughness_J_per_m2.reset();
+    tissue.cutting_J_per_mm3 = SourcedNumber{kMechanicsRange.high, "test"};
   }
   const auto felt = [](const Exercise& exercise, bool poke) {
     SessionOptions options = scripted();

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 namespace trephine {
 namespace {
 
@@ -153,6 +155,77 @@ TEST(OverlapsOf, AreTheSharedHuOfTheSamePlace) {
   wanted.label = 5;
   EXPECT_EQ(overlapsOf(set, 2, wanted), (std::vector<HuOverlap>{{3, {90, 400}}}));
   EXPECT_TRUE(overlapsOf(set, 2, set.tissues[2]).empty());
+}
+
+// What is known of a tissue's numbers: one of each kind.
+Tissue known() {
+  Tissue t = tissue("capsule", 0, 200);
+  t.friction_N = {0.3, "a paper", {{0.2, 0.4}}, Confidence::measured, "pig, 37 degrees"};
+  t.rupture_N = SourcedNumber{2.5, "a thesis", {{2.2, 3.3}}, Confidence::second_hand};
+  t.toughness_J_per_m2 = SourcedNumber{75.8, "a book", {}, Confidence::derived};
+  return t;
+}
+const TissueNumber& number(const std::string& key) {
+  return *std::ranges::find(kTissueNumbers, key, &TissueNumber::key);
+}
+
+TEST(WithNumber, AnEditedNumberIsTunedHereAndClaimsNothingOfTheOldMeasurement) {
+  const Tissue declared = known();
+  const Tissue other = withNumber(declared, number("friction_N"), 0.5, 0.005, declared);
+  EXPECT_EQ(other.friction_N.value, 0.5);
+  EXPECT_EQ(other.friction_N.source, kOwnSource);
+  EXPECT_EQ(other.friction_N.confidence(), Confidence::tuned);
+  EXPECT_FALSE(other.friction_N.range);
+  EXPECT_EQ(other.friction_N.condition, "");
+  EXPECT_EQ(other.rupture_N, declared.rupture_N) << "the others stay";
+}
+
+TEST(WithNumber, TheDeclaredNumberIsBackWholeWhereItsValueIs) {
+  const Tissue declared = known();
+  const Tissue other = withNumber(declared, number("friction_N"), 0.5, 0.005, declared);
+  EXPECT_EQ(withNumber(other, number("friction_N"), 0.3, 0.005, declared), declared);
+  EXPECT_EQ(withNumber(other, number("friction_N"), 0.303, 0.005, declared), declared)
+      << "as it is shown";
+}
+
+TEST(WithNumber, WhatIsShownRoundedIsNoOtherNumber) {
+  const Tissue declared = known();
+  Tissue other = declared;
+  other.friction_N = {0.5, "another paper"};
+  EXPECT_EQ(withNumber(other, number("friction_N"), 0.504, 0.005, declared), other);
+}
+
+TEST(WithNumber, ZeroGivesUpWhatTheDeclaredTissueLacksToo) {
+  const Tissue declared = known();
+  const Tissue given = withNumber(declared, number("rupture_mm"), 3.0, 0.005, declared);
+  ASSERT_TRUE(given.rupture_mm);
+  EXPECT_EQ(withNumber(given, number("rupture_mm"), 0.0, 0.005, declared), declared);
+  EXPECT_EQ(withNumber(declared, number("rupture_N"), 0.0, 0.005, declared).rupture_N,
+            (SourcedNumber{0.0, kOwnSource}));
+}
+
+TEST(WithNumber, WhatCuttingCostsByVolumeTakesThePlaceOfWhatItCostsByArea) {
+  const Tissue declared = known();
+  const Tissue by_volume = withNumber(declared, number("cutting_J_per_mm3"), 0.002, 1e-6, declared);
+  EXPECT_EQ(by_volume.cutting_J_per_mm3, (SourcedNumber{0.002, kOwnSource}));
+  EXPECT_FALSE(by_volume.toughness_J_per_m2);
+  EXPECT_EQ(withNumber(by_volume, number("cutting_J_per_mm3"), 0.0, 1e-6, declared), declared)
+      << "given up, the declared one is back";
+  EXPECT_EQ(withNumber(by_volume, number("toughness_J_per_m2"), 75.8, 0.05, declared), declared);
+  const Tissue free = withNumber(by_volume, number("cutting_J_per_mm3"), 0.0, 1e-6, {});
+  EXPECT_EQ(free.cutting_J_per_mm3, (SourcedNumber{0.0, kOwnSource})) << "one of the two is given";
+}
+
+TEST(WithSource, AnotherSourceDoesNotInheritWhatTheOldOneSaid) {
+  const Tissue declared = known();
+  const Tissue other = withSource(declared, number("friction_N"), "another paper", declared);
+  EXPECT_EQ(other.friction_N, (SourcedNumber{0.3, "another paper"}));
+  EXPECT_EQ(other.friction_N.confidence(), Confidence::unstated);
+  EXPECT_EQ(withSource(other, number("friction_N"), "a paper", declared), declared);
+  const Tissue moved = withNumber(declared, number("friction_N"), 0.5, 0.005, declared);
+  EXPECT_EQ(withSource(moved, number("friction_N"), "a paper", declared).friction_N,
+            (SourcedNumber{0.5, "a paper"}))
+      << "its value is another";
 }
 
 TEST(NewTissue, TakesTheWidestFreeRangeUnderANameOfItsOwnAndTheSetStaysPossible) {

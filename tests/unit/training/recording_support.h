@@ -30,11 +30,11 @@ inline Exercise exerciseWithOneArm() {
   bone.hu_min = 226;
   bone.hu_max = 3071;
   bone.hu_source = bone.damping_Ns_per_m.source = bone.stiffness_N_per_m.source =
-      bone.friction_N.source = bone.cutting_J_per_mm3.source = "test";
+      bone.friction_N.source = "test";
   bone.damping_Ns_per_m.value = 10;
   bone.stiffness_N_per_m.value = 800;
   bone.friction_N.value = 2;
-  bone.cutting_J_per_mm3.value = 1e-4;
+  bone.cutting_J_per_mm3 = SourcedNumber{1e-4, "test"};
   exercise.tissues = {"test", {bone}};
   exercise.tools.push_back({"blade", makeBlade(0.008, 17), {}});
   ExerciseArm arm;

@@ -35,7 +35,8 @@ TissueSet twoTissues() {
   soft.colour = Vec3(0.8);
   soft.opacity = 0.1;
   soft.damping_Ns_per_m = soft.stiffness_N_per_m = {1.0, "a paper"};
-  soft.friction_N = soft.cutting_J_per_mm3 = soft.stiffness_N_per_m;
+  soft.friction_N = soft.stiffness_N_per_m;
+  soft.cutting_J_per_mm3 = soft.stiffness_N_per_m;
   Tissue bone = soft;
   bone.id = "bone";
   bone.name = "Bone";
@@ -283,6 +284,104 @@ TEST_F(TissuePanelTest, BesideANumberStandsWhetherItIsFeltAndWhatTheOthersLeave)
   for (const char* bar : {"dampingLimit", "stiffnessLimit", "frictionLimit", "ruptureLimit"}) {
     EXPECT_EQ(words(bar), "not felt") << bar;
   }
+}
+
+// Bone as it was measured, in every number that the tests of it ask for.
+class KnownNumbersTest : public TissuePanelTest {
+ protected:
+  KnownNumbersTest() {
+    TissueSet set = twoTissues();
+    Tissue& bone = set.tissues[1];
+    bone.friction_N = {2.5, "a paper", {{2.2, 3.3}}, Confidence::measured,
+                       "human cadaver, access needle"};
+    bone.relaxation_share = SourcedNumber{0.5, "a book", {{0.4, 0.6}}, Confidence::derived};
+    bone.relaxation_s = SourcedNumber{2.0, "a book"};
+    panel_.setTissues(set);
+    panel_.select("bone");
+  }
+  QLabel& known(const char* number) {
+    return find<QLabel>(panel_, (std::string(number) + "Known").c_str());
+  }
+  QString tip(const char* number) { return find<QDoubleSpinBox>(panel_, number).toolTip(); }
+  Tissue bone() { return panel_.tissues().tissues[1]; }
+};
+
+TEST_F(KnownNumbersTest, WhatWasPublishedStandsBelowTheNumberAndInItsTip) {
+  const QString words = "published 2.2 to 3.3 N (measured; human cadaver, access needle)";
+  EXPECT_EQ(known("friction").text(), words);
+  EXPECT_FALSE(known("friction").isHidden());
+  EXPECT_TRUE(tip("friction").contains("Source: a paper\n" + words)) << tip("friction").toStdString();
+  EXPECT_EQ(known("relaxes by").text(), "published 40 to 60 % (derived)") << "in the shown unit";
+  EXPECT_TRUE(known("stiffness").isHidden()) << "nothing is known but its source";
+}
+
+TEST_F(KnownNumbersTest, ANumberOutsideOfWhatWasPublishedSaysSo) {
+  TissueSet set = panel_.tissues();
+  set.tissues[1].friction_N.value = 4.5;
+  panel_.setTissues(set);
+  panel_.select("bone");
+  EXPECT_EQ(known("friction").text(),
+            "outside the published 2.2 to 3.3 N (measured; human cadaver, access needle)");
+  EXPECT_EQ(known("friction").palette().color(QPalette::WindowText), colours::kCaution);
+  EXPECT_NE(known("relaxes by").palette().color(QPalette::WindowText), colours::kCaution);
+}
+
+TEST_F(KnownNumbersTest, ANumberThatIsEditedClaimsNothingOfTheMeasurementUntilItIsBack) {
+  const Tissue declared = bone();
+  find<QDoubleSpinBox>(panel_, "friction").setValue(2.6);
+  EXPECT_EQ(bone().friction_N, (SourcedNumber{2.6, kOwnSource}));
+  EXPECT_TRUE(known("friction").isHidden());
+  EXPECT_FALSE(tip("friction").contains("published"));
+  find<QDoubleSpinBox>(panel_, "friction").setValue(2.5);
+  EXPECT_EQ(bone(), declared);
+  EXPECT_FALSE(known("friction").isHidden());
+}
+
+TEST_F(KnownNumbersTest, AnotherSourceDoesNotInheritWhatTheOldOneSaid) {
+  const Tissue declared = bone();
+  QLineEdit& source = find<QLineEdit>(panel_, "frictionSource");
+  source.setText("another paper");
+  emit source.editingFinished();
+  EXPECT_EQ(bone().friction_N, (SourcedNumber{2.5, "another paper"}));
+  EXPECT_TRUE(known("friction").isHidden());
+  source.setText("a paper");
+  emit source.editingFinished();
+  EXPECT_EQ(bone(), declared);
+}
+
+TEST_F(KnownNumbersTest, ToughnessTakesThePlaceOfTheCuttingEnergyAndBack) {
+  const Tissue declared = bone();
+  QDoubleSpinBox& cutting = find<QDoubleSpinBox>(panel_, "cutting");
+  QDoubleSpinBox& toughness = find<QDoubleSpinBox>(panel_, "toughness");
+  const auto isGiven = [&](const char* number) {
+    const QLineEdit& source = find<QLineEdit>(panel_, (std::string(number) + "Source").c_str());
+    EXPECT_EQ(source.placeholderText() == "not given", !source.isEnabled());
+    EXPECT_EQ(tip(number).contains("not given"), !source.isEnabled());
+    return source.isEnabled();
+  };
+  EXPECT_TRUE(isGiven("cutting"));
+  EXPECT_FALSE(isGiven("toughness"));
+  EXPECT_EQ(cutting.value(), 1000.0);
+  toughness.setValue(75.8);
+  EXPECT_EQ(bone().toughness_J_per_m2, (SourcedNumber{75.8, kOwnSource}));
+  EXPECT_FALSE(bone().cutting_J_per_mm3);
+  EXPECT_FALSE(isGiven("cutting"));
+  EXPECT_TRUE(isGiven("toughness"));
+  EXPECT_EQ(cutting.value(), 0.0);
+  EXPECT_EQ(toughness.value(), 75.8);
+  toughness.setValue(0.0);
+  EXPECT_EQ(bone(), declared) << "given up, what was declared is back";
+  EXPECT_EQ(cutting.value(), 1000.0);
+  EXPECT_TRUE(isGiven("cutting"));
+}
+
+TEST_F(KnownNumbersTest, AShareStaysWithinTheRangeOfItsFile) {
+  QDoubleSpinBox& share = find<QDoubleSpinBox>(panel_, "relaxes by");
+  share.setValue(100.0);
+  EXPECT_EQ(bone().relaxation_share->value, 1.0);
+  share.setValue(101.0);
+  EXPECT_EQ(bone().relaxation_share->value, 1.0);
+  EXPECT_FALSE(find<QLabel>(panel_, "relaxes byRefused").isHidden());
 }
 
 class LooksTest : public TissuePanelTest {
