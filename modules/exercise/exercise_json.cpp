@@ -170,6 +170,16 @@ Result<TissueSet> readTissues(const Json& value, const fs::path& folder, const s
   return set;
 }
 
+// Two laws that are two forms of one would give its force twice.
+void checkLaws(JsonReader& reader, const std::vector<LawKind>& laws) {
+  for (const auto& [form, other] : {std::pair(LawKind::membrane, LawKind::rupture),
+                                    std::pair(LawKind::friction, LawKind::coulomb)}) {
+    if (!names(laws, form) || !names(laws, other)) continue;
+    reader.fail("laws", tr("`{}` and `{}` are two forms of one law: name one of them",
+                           wordsOf(form).id, wordsOf(other).id));
+  }
+}
+
 // `rig`: of a recording, which says what moved the arms; null: an exercise, which does not.
 Result<Exercise> parse(const Json& json, const fs::path& file, Rig* rig) {
   const fs::path folder = file.parent_path();
@@ -225,6 +235,7 @@ Result<Exercise> parse(const Json& json, const fs::path& file, Rig* rig) {
   if (reader.has("outline")) exercise.outline = readExerciseOutline(reader.object("outline"));
   readFields(reader, kLockFields, exercise);
   if (reader.ok()) checkReferences(reader, exercise);
+  if (reader.ok()) checkLaws(reader, exercise.laws);
   if (rig && reader.ok()) checkRig(reader, exercise, *rig);
   if (Status status = reader.finish(); !status) return status.error();
   return exercise;

@@ -13,9 +13,9 @@
 //
 // and, where it is so:
 //
+//   static constexpr bool kEachAlone           each of its numbers acts without the others
 //   using StandsInFor = Other                  where both are named and it acts, Other does not
 //   static constexpr bool kStopsAtSolid        its tool is where solid tissue lets it be (proxy.h)
-//   static constexpr bool kHoldsInSoft         its tool is where soft tissue lets it be (soft_hold.h)
 //   void engage()                              its arm was put back to it: it begins unstretched
 //   struct Query                               what it asks of the tissue around a tool, once a
 //   tick
@@ -122,6 +122,7 @@ struct LawTraits {
   Impedance (*impedance)(const TissueClass&) = nullptr;
   std::optional<LawKind> stands_in_for;
   bool stops_at_solid = false;
+  bool each_alone = false;
 };
 
 template <class L, class... Laws>
@@ -139,6 +140,7 @@ constexpr LawTraits traitsOf() {
   if constexpr (requires { typename L::StandsInFor; }) {
     traits.stands_in_for = kindOf<typename L::StandsInFor>(AllLaws{});
   }
+  if constexpr (requires { L::kEachAlone; }) traits.each_alone = L::kEachAlone;
   if constexpr (requires { L::kStopsAtSolid; }) traits.stops_at_solid = L::kStopsAtSolid;
   return traits;
 }
@@ -182,15 +184,15 @@ inline constexpr auto kLawNames = detail::namesOf(kLawTraits);
 constexpr const LawWords& wordsOf(LawKind law) {
   return kLawTraits[std::size_t(law)].words;
 }
-// Whether a law has a use for a number of a tissue: it uses it, and the tissue has whatever else it
-// uses.
+// Whether a law has a use for a number of a tissue: it uses it, and the tissue has whatever else
+// that needs.
 inline bool feels(LawKind law, double TickNumbers::*number, const TickNumbers& tissue) {
   bool uses = false, has_others = true;
   for (double TickNumbers::*one : kLawTraits[std::size_t(law)].numbers) {
     uses = uses || one == number;
     has_others = has_others && (one == number || tissue.*one > 0.0);
   }
-  return uses && has_others;
+  return uses && (has_others || kLawTraits[std::size_t(law)].each_alone);
 }
 
 using Law = detail::Made<AllLaws>::OfTool;

@@ -27,9 +27,10 @@ struct CuttingLaw {
   static constexpr LawWords kWords{
       "cutting", trLater("Cutting"),
       trLater("Whole tissue resists an edge by its toughness times the width that it cuts.")};
-  static constexpr std::array kNumbers{&TickNumbers::toughness_J_per_m2};
+  static constexpr std::array kNumbers{&TickNumbers::toughness_J_per_m2,
+                                       &TickNumbers::cutting_J_per_mm3};
 
-  static constexpr bool kHoldsInSoft = true;
+  static constexpr bool kEachAlone = true;
 
   explicit CuttingLaw(std::size_t /*points*/ = 1) {}
   static Impedance impedance(const TissueClass& tissue) {

@@ -20,7 +20,7 @@ struct FrictionLaw {
   static constexpr std::array kNumbers{&TickNumbers::shaft_N_per_mm,
                                        &TickNumbers::friction_coefficient};
 
-  static constexpr bool kHoldsInSoft = true;
+  static constexpr bool kEachAlone = true;
 
   explicit FrictionLaw(std::size_t /*points*/ = 1) {}
   static Impedance impedance(const TissueClass& tissue) {

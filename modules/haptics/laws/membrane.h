@@ -21,7 +21,6 @@ struct MembraneLaw {
       trLater("A membrane stops a tip, resists more and more, then gives way at once.")};
   static constexpr std::array kNumbers{&TickNumbers::rupture_N, &TickNumbers::rupture_mm};
 
-  static constexpr bool kHoldsInSoft = true;
   // It pushes in place of the tissue behind it.
   using StandsInFor = ElasticLaw;
 

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <random>
 
 #include "base/system.h"
 #include "lab/touch/tissue_measurement.h"
@@ -135,8 +136,149 @@ TEST(Blade, CutsTheSameWithEveryArmGridAndRate) {
     if (reference_mm3 == 0.0) reference_mm3 = trace->removed_mm3;
     EXPECT_GT(trace->removed_mm3, 50.0);
     EXPECT_NEAR(trace->removed_mm3, reference_mm3, 0.05 * reference_mm3);
-    std::printf("%g mm %g Hz %g N: %.1f mm3\n", c.spacing_mm, c.rate_hz, c.peak_N,
-                trace->removed_mm3);
+  }
+}
+
+// A way through random places at random speeds.
+std::function<Vec3(double)> wander(std::mt19937& random, double& seconds) {
+  const auto of = [&](double low, double high) {
+    return std::uniform_real_distribution<double>(low, high)(random);
+  };
+  std::vector<std::pair<double, Vec3>> places{{0.0, Vec3(of(-5, 5), of(-1, 1), 3.0)}};
+  for (int n = 0; n < 14; ++n) {
+    const Vec3 next(of(-6, 6), of(-1.5, 1.5), of(-16, 2));
+    const double length = glm::length(next - places.back().second);
+    places.emplace_back(places.back().first + length / of(2.0, 80.0), next);
+  }
+  seconds = places.back().first;
+  return [places](double t_s) {
+    for (std::size_t n = 1; n < places.size(); ++n) {
+      const auto& [from_s, from] = places[n - 1];
+      const auto& [to_s, to] = places[n];
+      if (t_s < to_s) return from + ((t_s - from_s) / (to_s - from_s)) * (to - from);
+    }
+    return places.back().second;
+  };
+}
+
+// What was cut never cost more than the hand had put in by then, at the model's own force; and
+// never does the hand get back more than it put in.
+TEST(SoftTissue, TakesTheWorkThatItsCutsCostAndGivesNoneOut) {
+  const Tissue capsule = shipped("abdomen", "capsule"), liver = shipped("abdomen", "liver"),
+               vessel = shipped("abdomen", "vessel");
+  std::mt19937 random(7);
+  double most_cut_J = 0.0;
+  for (int run = 0; run < 16; ++run) {
+    SCOPED_TRACE(run);
+    const Tool tool = run % 2 ? needle(1.2) : *makeTool({ToolKind::blade, 16.0, 16, 0.6});
+    TissueStroke stroke =
+        strokeOf({{capsule, 1.0}, {liver, 7.0}, {vessel, 4.0}, {liver, 10.0}}, tool, {{}, {}}, 1.0);
+    stroke.laws.push_back(LawKind::relaxation);
+    stroke.way = wander(random, stroke.seconds);
+    stroke.wide_mm = 30.0;
+    auto trace = runStroke(stroke);
+    ASSERT_TRUE(trace);
+    const double voxel_m2 = 1e-6 * std::pow(stroke.spacing_mm, 3.0) / 1.2;
+    double in_J = 0.0, cut_J = 0.0;
+    std::size_t carve = 0;
+    for (std::size_t i = 1; i < trace->samples.size(); ++i) {
+      const TissueSample& s = trace->samples[i];
+      // The force of a tick acts until the next.
+      in_J -= 0.001 * glm::dot(trace->samples[i - 1].demanded_N,
+                               s.arm_mm - trace->samples[i - 1].arm_mm);
+      for (; carve < trace->carves.size() && trace->carves[carve].tick <= i; ++carve) {
+        const auto layer = std::size_t(trace->carves[carve].tissue_class);
+        cut_J += voxel_m2 * stroke.layers[layer].tissue.toughness_J_per_m2->value;
+      }
+      // A fast arm goes on by so much while a force is held.
+      ASSERT_LE(cut_J, in_J + 2e-4) << "at " << s.t_s << " s";
+    }
+    most_cut_J = std::max(most_cut_J, cut_J);
+  }
+  EXPECT_GT(most_cut_J, 0.01);
+}
+
+// The force along z at the n-th fall by more than a tenth of a newton.
+std::vector<Drop> dropsAlong(const std::vector<TissueLayer>& layers, const Tool& tool,
+                             const std::vector<Vec3>& places, double mm_per_s = 5.0) {
+  auto trace = runStroke(strokeOf(layers, tool, places, mm_per_s));
+  return trace ? dropsOf(trace->samples, firstTouch_mm(trace->samples)) : std::vector<Drop>();
+}
+
+TEST(Membrane, GivesWayAgainBesideItsHoleAndNotInIt) {
+  const Tissue dura = shipped("cranium", "dura"), brain = shipped("cranium", "brain");
+  const std::vector<TissueLayer> layers{{dura, 1.0}, {brain, 20.0}};
+  const Vec3 down(0, 0, -11);
+  const auto twice = [&](const Vec3& second) {
+    const Vec3 first(0.1, 0.1, 1.0);
+    return dropsAlong(layers, needle(0.9), {first, first + down, first, second, second + down});
+  };
+  EXPECT_EQ(twice({0.1, 0.1, 1.0}).size(), 1u);
+  EXPECT_EQ(twice({0.4, 0.1, 1.0}).size(), 1u);
+  EXPECT_EQ(twice({5.0, 0.1, 1.0}).size(), 2u);
+}
+
+TEST(Membrane, OfAnotherPieceBehindTheFirstGivesWayOnItsOwn) {
+  const Tissue dura = shipped("cranium", "dura"), brain = shipped("cranium", "brain");
+  const auto drops = dropsAlong({{dura, 1.0}, {brain, 8.0}, {dura, 1.0}, {brain, 12.0}},
+                                needle(0.9), {{0.1, 0.1, 1.0}, {0.1, 0.1, -19.0}});
+  EXPECT_EQ(drops.size(), 2u);
+}
+
+TEST(Membrane, IsWholeAfterATipThatDrewBack) {
+  const Tissue dura = shipped("cranium", "dura"), brain = shipped("cranium", "brain");
+  const Vec3 top(0.1, 0.1, 1.0), pressed(0.1, 0.1, -2.0), through(0.1, 0.1, -9.0);
+  const auto drops =
+      dropsAlong({{dura, 1.0}, {brain, 20.0}}, needle(0.9), {top, pressed, top, through});
+  ASSERT_EQ(drops.size(), 1u);
+  EXPECT_GT(drops[0].peak_N, 0.5);
+}
+
+TEST(Membrane, HasAPeakWhereATipComesOutOfAThickOne) {
+  const Tissue skin = shipped("abdomen", "skin");
+  const auto drops =
+      dropsAlong({{skin, 16.0}}, needle(0.9), {{0.1, 0.1, 1.0}, {0.1, 0.1, -26.0}});
+  ASSERT_GE(drops.size(), 2u);
+  EXPECT_LT(drops.front().tip_from_mm, 0.3);
+  EXPECT_NEAR(drops.back().tip_from_mm, -15.0, 1.5);
+  EXPECT_GT(drops.back().size_N, 1.0);
+}
+
+TEST(Relaxation, TakesItsShareOfAHeldForceWhereTheLawIsNamed) {
+  Tissue dura = shipped("cranium", "dura");
+  dura.relaxation_share = SourcedNumber{0.4, "of this test"};
+  dura.relaxation_s = SourcedNumber{0.5, "of this test"};
+  TissueStroke stroke = strokeOf({{dura, 3.0}}, needle(0.9), {{}, {}}, 1.0);
+  stroke.way = [](double t_s) { return Vec3(0.1, 0.1, std::max(-2.0, 1.0 - 5.0 * t_s)); };
+  stroke.seconds = 4.0;
+  const auto heldAndLater = [&] {
+    auto trace = runStroke(stroke);
+    return std::pair(trace->samples[650].demanded_N.z, trace->samples.back().demanded_N.z);
+  };
+  const auto [still_N, still_later_N] = heldAndLater();
+  EXPECT_NEAR(still_later_N, still_N, 1e-6);
+  stroke.laws.push_back(LawKind::relaxation);
+  const auto [held_N, later_N] = heldAndLater();
+  EXPECT_LT(later_N, 0.7 * held_N);
+  EXPECT_GT(later_N, 0.0);
+}
+
+TEST(Shaft, IsHeldAgainstEveryMotionAndNeverPushedOut) {
+  const Tissue liver = shipped("abdomen", "liver"), capsule = shipped("abdomen", "capsule");
+  const Vec3 top(0.1, 0.1, 1.0), bottom(0.1, 0.1, -25.0);
+  for (bool cut : {false, true}) {
+    SCOPED_TRACE(cut);
+    Tissue parted = liver;
+    parted.cuttable = cut;
+    auto trace = runStroke(
+        strokeOf({{capsule, 1.0}, {parted, 40.0}}, needle(1.2), {top, bottom, top}, 5.0));
+    ASSERT_TRUE(trace);
+    const std::size_t leg = trace->samples.size() / 2;
+    // After the spring has turned round.
+    for (std::size_t i = leg + 700; i < trace->samples.size(); ++i) {
+      ASSERT_LE(trace->samples[i].demanded_N.z, 1e-9) << trace->samples[i].arm_mm.z;
+    }
+    EXPECT_EQ(trace->samples.back().demanded_N, Vec3(0.0));
   }
 }
 
