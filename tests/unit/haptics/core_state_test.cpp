@@ -575,6 +575,7 @@ TEST(CoreStateValue, RefusesWhatIsNotItsOwnAndStaysAsItWas) {
   constexpr Change kChanges[] = {
       [](HapticParameters& p) { p.period_s *= 2.0; },
       [](HapticParameters& p) { p.stroke_gap_s *= 2.0; },
+      [](HapticParameters& p) { p.touch_by_points = 1; },
       [](HapticParameters& p) { p.arms[0].max_force_N *= 0.5; },
       [](HapticParameters& p) { p.arms[0].map.motion_scale *= 2.0; },
       [](HapticParameters& p) { p.arms[0].map.force_scale *= 0.5; },
