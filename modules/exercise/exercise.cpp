@@ -142,6 +142,10 @@ HapticParameters hapticParameters(const Exercise& exercise, const Rig& rig) {
   parameters.removal = exercise.removal;
   parameters.controller = exercise.controller;
   parameters.tissues = tissueTable(exercise.tissues);
+  for (std::size_t c = 0; c < exercise.tissues.tissues.size(); ++c) {
+    const bool pushes = std::ranges::count(exercise.touch_by_points, exercise.tissues.tissues[c].id);
+    parameters.touch_by_points |= std::uint32_t(pushes) << c;
+  }
   for (std::size_t i = 0; i < exercise.arms.size(); ++i) {
     const ExerciseArm& arm = exercise.arms[i];
     ArmDynamics dynamics =

@@ -66,6 +66,8 @@ struct Exercise {
   std::vector<LawKind> laws;
   ForceAt force_at = ForceAt::tip;
   RemovalKind removal = RemovalKind::work;
+  // Ids of the tissues that push by the seed paper's own rule of touch; empty: the program's rule.
+  std::vector<std::string> touch_by_points;
   ControllerKind controller = ControllerKind::bounded;
   double rate_hz = 1000.0;
   std::string operator_file;  // default script, empty for none

@@ -80,6 +80,11 @@ NewTissues withTissues(Exercise exercise, const TissueSet& set) {
     out.notes.push_back(
         tr("{} lay inside of {} and lies inside of nothing now", tissue.name, inside->name));
   }
+  if (std::erase_if(to.touch_by_points, [&](const auto& id) { return !set.find(id); }) > 0) {
+    out.notes.push_back(to.touch_by_points.empty()
+                            ? tr("Tools touch all tissues now, and not by their points alone")
+                            : tr("Tools touch fewer tissues by their points now"));
+  }
   std::erase_if(to.view.looks, [&](const auto& look) { return !set.find(look.first); });
   if (to.tissues_elsewhere) {
     for (const Landmark& landmark : to.landmarks) {

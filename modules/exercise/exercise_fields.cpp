@@ -45,6 +45,7 @@ Quat rotationOf(const MapTurn& turn) {
 std::string exerciseFieldsPage() {
   return schemaHead() + schemaLines<Exercise>("scene", kExerciseFields) +
          schemaLines<Exercise>("scene", kTouchFields) +
+         schemaLines<Exercise>("scene", kPointsFields) +
          schemaLines<Exercise>("scene", kLockFields) +
          schemaLines<ExerciseView>("`view`", kViewFields) +
          schemaLines<CardText>("`card`, a language", kCardFields) +

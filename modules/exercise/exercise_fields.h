@@ -90,6 +90,22 @@ inline constexpr FieldOf<Exercise> kTouchFields[] = {
       "", "rate"},
      &Exercise::rate_hz},
 };
+// Of the exercises that follow the seed paper alone: on a form only where an exercise names it.
+inline constexpr FieldOf<Exercise> kPointsFields[] = {
+    {{"touch_by_points",
+      {1, double(kMaxTissues)},
+      Given::may_be,
+      trLater(
+          "the seed paper's own rule of touch, with the ids of the tissues that push: a point of a "
+          "tool touches where the voxel that it lies in is of one of them, and that voxel goes at "
+          "once; nothing touches while the tip is outside of the case's voxels. Each id is one of "
+          "the set, and of the one for elsewhere where there is one. Only with no other law than "
+          "`viscous`, with `force_at` `tip` and `removal` `instant`. Without it a tool touches all "
+          "tissues, by its points and its solid (`modules/haptics/README.md`)"),
+      trLater("Touched by points"),
+      trLater("These tissues alone push and go, each voxel that a point of a tool lies in.")},
+     ReferencesIn<Exercise>{&Exercise::touch_by_points}},
+};
 inline constexpr FieldOf<Exercise> kLockFields[] = {
     {{"locks",
       {},

@@ -125,6 +125,29 @@ void checkRig(JsonReader& reader, const Exercise& exercise, const Rig& rig) {
   }
 }
 
+// The seed paper's rule of touch names tissues that are there, and nothing that it does not know.
+void checkTouchByPoints(JsonReader& reader, const Exercise& exercise) {
+  constexpr const char* kKey = "touch_by_points";
+  if (!reader.has(kKey)) return;
+  if (exercise.touch_by_points.empty()) {
+    reader.fail(kKey, tr("The list [] names no tissue"),
+                tr("Name the tissues that push, or take `{}` out", kKey));
+  }
+  checkNamesDiffer(reader, kKey, exercise.touch_by_points, [](const auto& id) { return id; });
+  for (const std::string& id : exercise.touch_by_points) {
+    if (!exercise.tissues.find(id)) {
+      reader.fail(kKey, tr("It names the unknown tissue '{}'", id),
+                  tr("Use the ids of the scene's tissues"));
+    } else if (exercise.tissues_elsewhere && !exercise.tissues_elsewhere->find(id)) {
+      reader.fail(kKey, tr("The set for other cases lacks the tissue '{}'", id),
+                  tr("Name a tissue of both sets, or give that set one of this id"));
+    }
+  }
+  const std::string what =
+      contradictsTouchByPoints(exercise.laws, exercise.force_at, exercise.removal);
+  if (!what.empty()) reader.fail(kKey, what, besideTouchByPoints());
+}
+
 // What one field cannot say: names that must exist, things that must be there once.
 void checkReferences(JsonReader& reader, const Exercise& exercise) {
   for (const Landmark& landmark : exercise.landmarks) {
@@ -218,6 +241,7 @@ Result<Exercise> parse(const Json& json, const fs::path& file, Rig* rig) {
     if (rig) rig->arms.push_back(readRigArm(item, folder));
   }
   readFields(reader, kTouchFields, exercise);
+  readFields(reader, kPointsFields, exercise);
   const std::string script = reader.text("operator", "");
   if (!script.empty()) {
     exercise.operator_file = (folder / script).lexically_normal().string();
@@ -236,6 +260,7 @@ Result<Exercise> parse(const Json& json, const fs::path& file, Rig* rig) {
   readFields(reader, kLockFields, exercise);
   if (reader.ok()) checkReferences(reader, exercise);
   if (reader.ok()) checkLaws(reader, exercise.laws);
+  if (reader.ok()) checkTouchByPoints(reader, exercise);
   if (rig && reader.ok()) checkRig(reader, exercise, *rig);
   if (Status status = reader.finish(); !status) return status.error();
   return exercise;
@@ -362,6 +387,7 @@ Json toJson(const Exercise& exercise) {
   json["tools"] = tools;
   json["arms"] = arms;
   writeFields(json, kTouchFields, exercise);
+  writeFields(json, kPointsFields, exercise);
   if (!exercise.view.landmark.empty()) writeFields(json["view"], kViewFields, exercise.view);
   for (const auto& [id, look] : exercise.view.looks) {
     json["view"]["looks"][id] = nameOf(kTissueLookNames, look);

@@ -6,6 +6,7 @@
 namespace trephine::code {
 
 inline constexpr Code kBadTool{"BAD_TOOL"};
+inline constexpr Code kContradiction{"CONTRADICTION"};
 inline constexpr Code kTooManyArms{"TOO_MANY_ARMS"};
 inline constexpr Code kTooManyTools{"TOO_MANY_TOOLS"};
 

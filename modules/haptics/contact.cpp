@@ -11,10 +11,11 @@ constexpr double kMostAlongBody = 128.0;  // points on the axis of a part of the
 
 }  // namespace
 
-ToolContact::ToolContact(const Tool& tool, const GridGeometry& geometry)
+ToolContact::ToolContact(const Tool& tool, const GridGeometry& geometry, std::uint32_t by_points)
     : classes_(tool.points_m.size(), -1),
       voxels_(tool.points_m.size(), -1),
-      patient_to_voxel_(geometry.patientToVoxel()) {
+      patient_to_voxel_(geometry.patientToVoxel()),
+      by_points_(by_points) {
   for (const Vec3& p : tool.points_m) points_mm_.push_back(1000.0 * p);
   low_mm_ = high_mm_ = points_mm_[0];
   for (const Vec3& p : points_mm_) {
@@ -41,10 +42,11 @@ bool ToolContact::wouldTouch(const TissueField& tissue, const Pose& pose_mm) con
   const Mat3 to_voxel = Mat3(patient_to_voxel_) * glm::mat3_cast(pose_mm.orientation);
   const auto inTissue = [&](const Vec3& point_mm) {
     const Vec3 place = tip + to_voxel * point_mm;
-    return tissue.mayHold(place, place) && tissue.classAt(place) >= 0;
+    return tissue.mayHold(place, place) && touches(tissue.classAt(place));
   };
+  if (isOutside(tissue, tip)) return false;
   return std::any_of(points_mm_.begin(), points_mm_.end(), inTissue) ||
-         std::any_of(body_mm_.begin(), body_mm_.end(), inTissue);
+         (by_points_ == 0 && std::any_of(body_mm_.begin(), body_mm_.end(), inTissue));
 }
 
 // Each place differs from the point along one axis alone, so its voxel is a step in memory away.
@@ -90,7 +92,7 @@ const Contact& ToolContact::update(const TissueField& tissue, const Pose& pose_m
   const Vec3 half = 0.5 * (high_mm_ - low_mm_);
   const Vec3 extent = glm::abs(to_voxel[0]) * half.x + glm::abs(to_voxel[1]) * half.y +
                       glm::abs(to_voxel[2]) * half.z + reach_ + 1.0;
-  if (!tissue.mayHold(middle - extent, middle + extent)) {
+  if (isOutside(tissue, tip) || !tissue.mayHold(middle - extent, middle + extent)) {
     forget();
     return contact_;
   }
@@ -103,7 +105,9 @@ const Contact& ToolContact::update(const TissueField& tissue, const Pose& pose_m
   }
   for (std::size_t i = 0; i < points_mm_.size(); ++i) {
     int found = voxels_[i] < 0 ? -1 : tissue.classAt(std::size_t(voxels_[i]));
-    if (found < 0) {
+    if (by_points_ != 0) {
+      if (!touches(found)) found = -1;
+    } else if (found < 0) {
       // Points in air between points in air take turns to look beyond the surface.
       const bool among_air = i > 0 && classes_[i] < 0 && classes_[i - 1] < 0 &&
                              (i + 1 == classes_.size() || classes_[i + 1] < 0);

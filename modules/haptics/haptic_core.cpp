@@ -16,7 +16,7 @@ constexpr std::size_t kMaxEventsPerTick = 64;
 HapticCore::ArmTool::ArmTool(const Tool& tool, const HapticParameters& all,
                              const GridGeometry& geometry)
     : made(tool),
-      contact(tool, geometry),
+      contact(tool, geometry, all.touch_by_points),
       removal(tool, geometry, all.removal, all.period_s),
       points(all.force_at == ForceAt::tip ? 1 : tool.points_m.size()) {
   for (LawKind kind : all.laws) laws.push_back(makeLaw(kind, points.size(), tool, geometry));

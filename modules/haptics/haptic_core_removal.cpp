@@ -48,6 +48,10 @@ void HapticCore::sweepTool(Arm& arm, const ArmRecord& moved) {
   const GridGeometry& geometry = writer_.grid().geometry();
   Pose front_mm{moved.proxy_position_mm, moved.proxy_orientation};
   ArmTool& tool = arm.tool();
+  if (parameters_.touch_by_points != 0) {
+    const ToolContact& of = tool.contact;
+    return tool.removal.takeTouched(tissue_, of.voxels(), of.classes(), arm.removed);
+  }
   const bool held = tool.proxy && tool.proxy->held();
   if (held) {
     const Vec3& s = geometry.spacing_mm;

@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::string_view kStateKind = "core";
 // Goes up with every change of what any visitState() below the core names, or of its order.
-constexpr std::uint32_t kStateVersion = 6;
+constexpr std::uint32_t kStateVersion = 7;
 
 Error badState(const std::string& what) {
   return {code::kBadState, what, tr("the state `{}`", kStateKind),
@@ -32,6 +32,7 @@ void HapticCore::visitParameters(Archive& archive) const {
   archive.same(parameters_.stroke_gap_s);
   archive.same(parameters_.force_at);
   archive.same(parameters_.removal);
+  archive.same(parameters_.touch_by_points);
   archive.same(parameters_.laws.size());
   for (LawKind law : parameters_.laws) archive.same(law);
   archive.same(arms_.size());

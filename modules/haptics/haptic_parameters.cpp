@@ -34,6 +34,29 @@ Status validate(const WorkspaceMap& map, const std::string& of) {
                of + ": rotation_wxyz", tr("Correct it")};
 }
 
+std::string contradictsTouchByPoints(const std::vector<LawKind>& laws, ForceAt force_at,
+                                     RemovalKind removal) {
+  for (LawKind law : laws) {
+    if (law == LawKind::viscous) continue;
+    return tr("A tool that touches by its points alone feels no other law than `viscous`, and here "
+              "is `{}`",
+              wordsOf(law).id);
+  }
+  if (force_at != ForceAt::tip) {
+    return tr("A tool that touches by its points alone has its force at the `tip`, and here it is "
+              "`distributed`");
+  }
+  if (removal != RemovalKind::instant) {
+    return tr("A tool that touches by its points alone removes what it touches in an `instant`, and "
+              "here it is by `work`");
+  }
+  return {};
+}
+
+std::string besideTouchByPoints() {
+  return tr("Set that as it has to be, or take `touch_by_points` out");
+}
+
 Status validate(const HapticParameters& parameters) {
   if (Status s = checkNumber(kPeriod, parameters.period_s, tr("the loop")); !s) return s;
   if (parameters.arms.size() > std::size_t(kMaxArms)) {
@@ -57,6 +80,19 @@ Status validate(const HapticParameters& parameters) {
                    tr("An arm has {} tools, and at most {} are kept ready",
                       1 + arm.other_tools.size(), kMostTools),
                    of, tr("Take the others out")};
+    }
+  }
+  if (parameters.touch_by_points != 0) {
+    const std::string what = contradictsTouchByPoints(parameters.laws, parameters.force_at,
+                                                      parameters.removal);
+    if (!what.empty()) {
+      return Error{code::kContradiction, what, "touch_by_points", besideTouchByPoints()};
+    }
+    if (parameters.touch_by_points >> parameters.tissues.count != 0) {
+      return Error{code::kContradiction,
+                   tr("A tool is to touch a tissue that is none of the {} that there are",
+                      parameters.tissues.count),
+                   "touch_by_points", tr("Name tissues of the set")};
     }
   }
   for (int c = 0; c < parameters.tissues.count; ++c) {

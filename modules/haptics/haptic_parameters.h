@@ -3,6 +3,7 @@
 // checks it again.
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -36,6 +37,9 @@ struct HapticParameters {
   std::vector<LawKind> laws;
   ForceAt force_at = ForceAt::tip;                      // law_input.h
   RemovalKind removal = RemovalKind::work;              // removal.h
+  // Not 0: the seed paper's rule of touch, by points alone (contact.h), and its removal: the voxel of
+  // each point that touches goes at once. A bit for each class of tissue that is touched.
+  std::uint32_t touch_by_points = 0;
   ControllerKind controller = ControllerKind::bounded;  // controllers.h
   TissueTable tissues;
   // Of the journal of cuts (volume/carve_journal.h), by which they are undone: in memory, 8 bytes
@@ -54,8 +58,15 @@ struct HapticParameters {
   int touch_version = kTouchVersion;
 };
 
+// What of these is not as the seed paper's rule of touch has it, in a sentence; empty where all is.
+std::string contradictsTouchByPoints(const std::vector<LawKind>& laws, ForceAt force_at,
+                                     RemovalKind removal);
+// What can be done then.
+std::string besideTouchByPoints();
+
 // Errors: IMPOSSIBLE_NUMBER of an arm's dynamics, map or max_force_N, of the period, or of a
-// tissue; TOO_MANY_ARMS (kMaxArms, base/limits.h), TOO_MANY_TOOLS. The tools' own numbers (tool.h)
+// tissue; TOO_MANY_ARMS (kMaxArms, base/limits.h), TOO_MANY_TOOLS;
+// CONTRADICTION of what does not go with touch_by_points. The tools' own numbers (tool.h)
 // and those of the journal are not looked at.
 Status validate(const HapticParameters& parameters);
 

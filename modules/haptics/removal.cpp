@@ -139,6 +139,17 @@ void Removal::take(const TissueField& tissue, const Index3& voxel, int tissue_cl
   removed.push_back({voxel, tissue_class, price_J});
 }
 
+void Removal::takeTouched(const TissueField& tissue, std::span<const std::int64_t> voxels,
+                          std::span<const std::int8_t> classes,
+                          std::vector<RemovedVoxel>& removed) {
+  for (std::size_t i = 0; i < tool_.cutting_points; ++i) {
+    const int c = classes[i];
+    if (c < 0 || !tissue.ofClass(c).cuttable) continue;
+    if (i > 0 && voxels[i] == voxels[i - 1]) continue;  // taken already
+    take(tissue, geometry_.indicesOf(std::size_t(voxels[i])), c, removed);
+  }
+}
+
 bool Removal::mayMeetTissue(const TissueField& tissue, const Capsule& now) const {
   const Vec3 low = glm::min(glm::min(clear_.from, clear_.to), glm::min(now.from, now.to));
   const Vec3 high = glm::max(glm::max(clear_.from, clear_.to), glm::max(now.from, now.to));

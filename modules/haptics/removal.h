@@ -61,6 +61,9 @@ class Removal {
   // Takes this one voxel, which holds the tool back, if the credit pays for it.
   void take(const TissueField& tissue, const Index3& voxel, int tissue_class,
             std::vector<RemovedVoxel>& removed);
+  // By points alone (contact.h): the voxels of the points that touch, where the tool cuts.
+  void takeTouched(const TissueField& tissue, std::span<const std::int64_t> voxels,
+                   std::span<const std::int8_t> classes, std::vector<RemovedVoxel>& removed);
   // Work that was paid for a voxel, which was shared with another tool or could not be removed.
   void returnWork(double work_J) { spend(-work_J); }
   // Tissue came back, or another is meant by a HU: nothing is known to be clear.

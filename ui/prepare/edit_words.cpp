@@ -38,6 +38,7 @@ constexpr std::pair<const char*, const char*> kEditWords[] = {
     {"controller", QT_TRANSLATE_NOOP("trephine::EditWords", "the controller")},
     {"force_at", QT_TRANSLATE_NOOP("trephine::EditWords", "where the force acts")},
     {"removal", QT_TRANSLATE_NOOP("trephine::EditWords", "how tissue is removed")},
+    {"touch_by_points", QT_TRANSLATE_NOOP("trephine::EditWords", "what is touched by points")},
     {"rate_hz", QT_TRANSLATE_NOOP("trephine::EditWords", "the rate")},
     {"exercise name", QT_TRANSLATE_NOOP("trephine::EditWords", "the name of the exercise")},
     {"exercise anatomy", QT_TRANSLATE_NOOP("trephine::EditWords", "the part of the body")},

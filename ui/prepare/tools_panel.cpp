@@ -319,6 +319,12 @@ void ToolsPanel::buildLaws() {
       exercise.rate_hz = other.rate_hz;
     });
   };
+  points_ = of_laws_->addFields<Exercise>(kPointsFields, "scene:");
+  points_->entered = [this](const Exercise& other, const char* key) {
+    of_laws_->edit(key, [&](Exercise& exercise) {
+      exercise.touch_by_points = other.touch_by_points;
+    });
+  };
   describeCosts();
   const auto trade = [&](const char* name) {
     auto* view = new TradeView(name, fields);
@@ -366,6 +372,11 @@ void ToolsPanel::describeCosts() {
 
 void ToolsPanel::showLaws() {
   laws_->show(exercise_);
+  FieldEditor::Offers tissues;
+  for (const Tissue& of : exercise_.tissues.tissues) tissues.emplace_back(toQt(of.name), of.id);
+  (*points_)["touch_by_points"].offer(tissues);
+  points_->show(exercise_);
+  points_->setVisible(!exercise_.touch_by_points.empty());
   describeCosts();
   showTrades();
 }

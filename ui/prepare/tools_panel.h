@@ -93,7 +93,7 @@ class ToolsPanel : public QWidget {
   std::unique_ptr<FieldRows<WorkspaceMap>> fixed_;
   std::unique_ptr<FieldRows<MapTurn>> fixed_turn_;
   MapTurn turned_;  // as it was entered: other angles are the same rotation
-  std::unique_ptr<FieldRows<Exercise>> laws_;
+  std::unique_ptr<FieldRows<Exercise>> laws_, points_;
   QToolButton* measure_;
   Costs costs_;
   std::vector<TradeRow> trades_;

@@ -250,7 +250,7 @@ Result<Json> explainExercise(Exercise exercise, const std::vector<RecommendedSet
     const auto add = [&](const std::string& part, const std::function<void()>& call) {
       cost.push_back({{"part", part}, {"arm", arm.name}, {"ns_per_tick", time(part, call)}});
     };
-    ToolContact contact(tool, grid.geometry());
+    ToolContact contact(tool, grid.geometry(), parameters.touch_by_points);
     const TissueField tissue(grid, parameters.tissues);
     add("contact", [&] { contact.update(tissue, Pose{}); });
     std::vector<TouchPoint> points(exercise.force_at == ForceAt::tip ? 1 : tool.points_m.size());
@@ -370,6 +370,7 @@ Result<Json> explainExercise(Exercise exercise, const std::vector<RecommendedSet
               {"journal_mb", journal_mb},
               {"cost", cost},
               {"tick_ns", tick_ns}};
+  if (!exercise.touch_by_points.empty()) answer["touch_by_points"] = exercise.touch_by_points;
   const Json settings = settingsOf(exercise, recommended);
   if (!settings.is_null()) answer["settings"] = settings;
   return answer;
@@ -401,6 +402,9 @@ std::string explanationText(const Json& explained) {
   text += tr("  laws: {}\n  tissues: {}\n", list("laws"), list("tissues"));
   for (const Json& item : explained.at("numbers")) {
     text += "    " + word(item, "tissue") + ": " + word(item, "text") + "\n";
+  }
+  if (explained.contains("touch_by_points")) {
+    text += tr("  touched by points alone: {}\n", list("touch_by_points"));
   }
   text += "  " + word(explained, "barrier") + "\n";
   for (const Json& arm : explained.at("arms")) {

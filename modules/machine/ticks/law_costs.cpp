@@ -42,6 +42,7 @@ HapticParameters costParameters(const Exercise& exercise, const Tissue& firmest)
   alone.shell.reset();
   alone.cuttable = false;
   parameters.tissues = tissueTable({"", {alone}});
+  if (parameters.touch_by_points != 0) parameters.touch_by_points = 1;
   parameters.arms.resize(1);
   parameters.arms[0].map = WorkspaceMap{};
   parameters.arms[0].other_tools.clear();

@@ -360,6 +360,31 @@ class ExerciseGuiTest : public test::WindowTest {
     QCOMPARE(exercise().rate_hz, 2000.0);
   }
 
+  void whatIsTouchedByPointsIsShownOnlyWhereAnExerciseNamesIt() {
+    showTab(PrepareWorkspace::kToolTab);
+    auto* tissues = find<QListWidget>("scene:touch_by_points");
+    QVERIFY(!tissues->isVisible());
+    const Status named = workstation().edit("touch_by_points", [](Exercise& of) {
+      of.laws = {LawKind::viscous};
+      of.force_at = ForceAt::tip;
+      of.removal = RemovalKind::instant;
+      of.touch_by_points = {"bone"};
+    });
+    QVERIFY2(named.ok(), named ? "" : named.error().sentence().c_str());
+    rest();
+    QVERIFY(tissues->isVisible());
+    tick("scene:touch_by_points", "Scalp", true);
+    QVERIFY(names(exercise().touch_by_points, "scalp"));
+    find<QCheckBox>("scene:laws:elastic")->click();
+    QCOMPARE(exercise().laws, std::vector<LawKind>{LawKind::viscous});
+    QVERIFY(find<QLabel>("lawProblem")->text().contains("touch_by_points"));
+    tick("scene:touch_by_points", "Bone", false);
+    tick("scene:touch_by_points", "Scalp", false);
+    rest();
+    QVERIFY(exercise().touch_by_points.empty());
+    QVERIFY(!tissues->isVisible());
+  }
+
   void anArmIsFixedInThePatientAndGoesBackToItsLandmark() {
     showTab(PrepareWorkspace::kToolTab);
     choose("armChoice", QString("left"));

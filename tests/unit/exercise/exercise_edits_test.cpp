@@ -186,6 +186,25 @@ TEST(WithTissues, ALandmarkWhoseTissueIsGoneTakesASolidOneAndThatIsSaid) {
   EXPECT_TRUE(withTissues(exercise, exercise.tissues).notes.empty());
 }
 
+TEST(WithTissues, WhatWasTouchedByPointsAndIsGoneIsSaid) {
+  const auto file = resourceFolder() / "scenes" / "research" / "seed-liver.json";
+  Exercise exercise = *readExercise(file);
+  const auto without = [](const Exercise& of, const std::string& id) {
+    TissueSet set = of.tissues;
+    std::erase_if(set.tissues, [&](const Tissue& tissue) { return tissue.id == id; });
+    return withTissues(of, set);
+  };
+  const NewTissues fewer = without(exercise, "capsule");
+  EXPECT_EQ(fewer.exercise.touch_by_points, std::vector<std::string>{"liver"});
+  EXPECT_EQ(std::ranges::count(fewer.notes, "Tools touch fewer tissues by their points now"), 1);
+  EXPECT_TRUE(checkEdited(fewer.exercise).ok());
+  const NewTissues none = without(fewer.exercise, "liver");
+  EXPECT_TRUE(none.exercise.touch_by_points.empty());
+  EXPECT_EQ(std::ranges::count(none.notes,
+                               "Tools touch all tissues now, and not by their points alone"), 1);
+  EXPECT_TRUE(withTissues(exercise, exercise.tissues).notes.empty());
+}
+
 TEST(WithTissues, WhatLayInsideOfATissueThatIsGoneIsSaid) {
   const Exercise exercise = cranium();
   const TissueSet& set = exercise.tissues;

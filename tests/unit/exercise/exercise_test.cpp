@@ -212,6 +212,71 @@ TEST(Exercise, NamesFileFieldAndValueOfWhatIsWrong) {
   }
 }
 
+// --- The seed paper's rule of touch ---
+
+std::filesystem::path seedFile(const char* name) {
+  return resourceFolder() / "scenes" / "research" / name;
+}
+
+TEST(TouchByPoints, IsReadWrittenAndHandedToTheCoreByTheTissuesThatItNames) {
+  const Exercise exercise = *readExercise(seedFile("seed-liver.json"));
+  EXPECT_EQ(exercise.touch_by_points, (std::vector<std::string>{"liver", "capsule"}));
+  const Json written = *parseJson(toJson(exercise).dump(), "copy");
+  EXPECT_EQ(written["touch_by_points"], Json::array({"liver", "capsule"}));
+  const Result<Exercise> copy = parseExercise(written, "copy");
+  ASSERT_TRUE(copy.ok()) << copy.error().sentence();
+  EXPECT_EQ(copy->touch_by_points, exercise.touch_by_points);
+  EXPECT_TRUE(checkEdited(exercise).ok());
+  for (const Exercise& of : {exercise, *copy}) {
+    const HapticParameters parameters = hapticParameters(of);
+    EXPECT_EQ(parameters.touch_by_points, 0b11u);
+    EXPECT_TRUE(validate(parameters).ok());
+  }
+  Exercise elsewhere = exercise;
+  elsewhere.tissues = *exercise.tissues_elsewhere;
+  EXPECT_EQ(hapticParameters(elsewhere).touch_by_points, 0b10100u) << "liver and capsule there";
+}
+
+TEST(TouchByPoints, IsInNoExerciseThatDoesNotNameIt) {
+  const Exercise exercise = *readExercise(shippedFile());
+  EXPECT_TRUE(exercise.touch_by_points.empty());
+  EXPECT_FALSE(toJson(exercise).contains("touch_by_points"));
+  EXPECT_EQ(hapticParameters(exercise).touch_by_points, 0u);
+}
+
+TEST(TouchByPoints, IsRefusedByFileFieldAndValueWithWhatToDo) {
+  const Bad cases[] = {
+      {"unknown tissue", [](Json& s) { s["touch_by_points"][1] = "cheese"; }, "cheese", "ids"},
+      {"a tissue twice", [](Json& s) { s["touch_by_points"][1] = "liver"; }, "'liver'", "each"},
+      {"no tissue", [](Json& s) { s["touch_by_points"] = Json::array(); }, "[]", "take"},
+      {"no list", [](Json& s) { s["touch_by_points"] = "liver"; }, "liver", "schema"},
+      {"no text", [](Json& s) { s["touch_by_points"][0] = 7; }, "7", "schema"},
+      {"the set for elsewhere lacks it",
+       [](Json& s) {
+         s["tissues_elsewhere"] = *readJsonFile(resourceFolder() / "tissues" / "abdomen.json");
+         s["tissues_elsewhere"]["tissues"][4]["id"] = "skin-of-it";
+       },
+       "'capsule'", "both sets"},
+      {"another law", [](Json& s) { s["laws"].push_back("elastic"); }, "`elastic`", "take"},
+      {"distributed", [](Json& s) { s["force_at"] = "distributed"; }, "`distributed`", "take"},
+      {"by work", [](Json& s) { s["removal"] = "work"; }, "`work`", "take"},
+      {"by work unless said", [](Json& s) { s.erase("removal"); }, "`work`", "take"},
+  };
+  for (const Bad& bad : cases) {
+    Json json = *readJsonFile(seedFile("seed-liver.json"));
+    json["tissues"] = toJson(*readTissueSet(resourceFolder() / "tissues" / "abdomen-labels.json"));
+    ASSERT_TRUE(parseExercise(json, seedFile("seed-liver.json")).ok());
+    bad.change(json);
+    const Result<Exercise> exercise = parseExercise(json, seedFile("seed-liver.json"));
+    ASSERT_FALSE(exercise.ok()) << bad.name;
+    const Error& error = exercise.error();
+    EXPECT_NE(error.where.find("seed-liver.json: touch_by_points"), std::string::npos)
+        << bad.name << ": " << error.sentence();
+    EXPECT_NE(error.what.find(bad.field), std::string::npos) << bad.name << ": " << error.sentence();
+    EXPECT_NE(error.next.find(bad.value), std::string::npos) << bad.name << ": " << error.sentence();
+  }
+}
+
 // Longer than the system lets names be: asking about it is an error of its own.
 TEST(Exercise, AFileNameThatCannotBeIsAnErrorLikeAMissingFile) {
   const std::string name = std::string(300, 'x') + ".json";

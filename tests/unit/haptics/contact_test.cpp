@@ -11,8 +11,9 @@ using test::boneSlab;
 using test::boneTable;
 
 struct Probe {
-  explicit Probe(const Tool& tool, Volume volume = boneSlab(), const TissueTable& tissues = boneTable())
-      : grid(std::move(volume)), tissue(grid, tissues), contact(tool, grid.geometry()) {}
+  explicit Probe(const Tool& tool, Volume volume = boneSlab(),
+                 const TissueTable& tissues = boneTable(), std::uint32_t by_points = 0)
+      : grid(std::move(volume)), tissue(grid, tissues), contact(tool, grid.geometry(), by_points) {}
   // As it is after a few ticks there.
   const Contact& touch(const Vec3& tip_mm, const Quat& orientation = Quat(1, 0, 0, 0)) {
     for (int n = 0; n < 3; ++n) look(tip_mm, orientation);
@@ -81,6 +82,39 @@ TEST(Contact, TheFirmestTissueTouchedCounts) {
   Probe probe(makeBlade(0.008, 9), std::move(volume), table);
   EXPECT_EQ(probe.touch({0, 0, -12}).points, 9);
   EXPECT_EQ(probe.contact.contact().tissue_class, 0);
+}
+
+// The seed paper's rule, in the slab whose bone ends at z = -0.5.
+constexpr std::uint32_t kBoneAlone = 1u << 0;
+
+TEST(Contact, ByPointsAloneOnlyTheVoxelThatAPointLiesInCounts) {
+  Probe probe(makeBlade(0.010, 11), boneSlab(), boneTable(), kBoneAlone);
+  EXPECT_FALSE(probe.touch({0, 0, -0.4}).touching());
+  EXPECT_EQ(probe.touch({0, 0, -0.6}).points, 1);
+  EXPECT_EQ(probe.touch({0, 0, -5.25}).points, 5);
+  EXPECT_FALSE(probe.contact.wouldTouch(probe.tissue, {Vec3(0, 0, -0.4), Quat(1, 0, 0, 0)}));
+  EXPECT_TRUE(probe.contact.wouldTouch(probe.tissue, {Vec3(0, 0, -0.6), Quat(1, 0, 0, 0)}));
+}
+
+TEST(Contact, ByPointsAloneNoOtherTissueIsTouched) {
+  Volume volume = boneSlab();
+  for (std::size_t i = 0; i < 32 * 32 * 8; ++i) volume.hu[i] = 40;  // soft below z = -8.5
+  TissueTable table = boneTable();
+  table.count = 2;
+  table.classes[1] = {{50.0, 10.0, 0.1, 0.0, 0.0}, 0, 80, 1, 0};
+  Probe probe(makeBlade(0.008, 9), std::move(volume), table, kBoneAlone);
+  EXPECT_EQ(probe.touch({0, 0, -12}).points, 5);
+  EXPECT_EQ(probe.contact.classes()[0], -1) << "its tip is in soft tissue";
+  EXPECT_EQ(probe.contact.classes()[8], 0);
+}
+
+TEST(Contact, ByPointsAloneNothingTouchesWhileTheTipIsOutsideOfTheVolume) {
+  Probe probe(makeBlade(0.010, 11), boneSlab(), boneTable(), kBoneAlone);
+  EXPECT_EQ(probe.touch({0, 0, -16.4}).points, 11);
+  const Pose outside{Vec3(0, 0, -16.6), Quat(1, 0, 0, 0)};
+  EXPECT_FALSE(probe.touch(outside.position).touching());
+  EXPECT_EQ(probe.contact.classes()[5], -1);
+  EXPECT_FALSE(probe.contact.wouldTouch(probe.tissue, outside));
 }
 
 TEST(TissueLookup, AnswersAsClassifyDoesForEveryHu) {

@@ -158,11 +158,13 @@ struct HandArm {
 };
 
 // Two arms, whatever their tools, laws, controllers and commands. Of three scripts one is calm,
-// with hands that press, and one has trouble: arms that fail and ticks that come late.
+// with hands that press, and one has trouble: arms that fail and ticks that come late. From the
+// thirteenth on tools touch by their points alone.
 struct Script {
   Script(unsigned seed, std::size_t count)
       : random(seed), calm(seed % 3 == 1), trouble(seed % 3 == 2) {
     make();
+    if (seed > 12) touchByPoints();
     Core at(parameters, volume());
     for (std::size_t n = 0; n < count; ++n) tick(at);
   }
@@ -213,6 +215,14 @@ struct Script {
     other.classes[1].hu_max = 350;
     uncut = tissues();
     uncut.classes[2].cuttable = 0;
+  }
+
+  // The seed paper's rule, of bone and liver.
+  void touchByPoints() {
+    parameters.laws = {LawKind::viscous};
+    parameters.force_at = ForceAt::tip;
+    parameters.removal = RemovalKind::instant;
+    parameters.touch_by_points = 0b101;
   }
 
   void tick(Core& at) {
@@ -405,8 +415,8 @@ TEST_P(CoreState, GoesOnBitForBitFromAnyTick) {
   });
   EXPECT_GT(looks, 50);
 }
-// Three that are soon run, and all of them.
-INSTANTIATE_TEST_SUITE_P(Some, CoreState, testing::Values(4u, 5u, 10u));
+// Some that are soon run, one by points alone among them, and the others.
+INSTANTIATE_TEST_SUITE_P(Some, CoreState, testing::Values(4u, 5u, 10u, 14u));
 INSTANTIATE_TEST_SUITE_P(All, CoreState, testing::Range(1u, 13u));
 
 TEST(CoreStateValue, IsTheSameAfterItWasLoadedAndAfterTheSameTicks) {
@@ -575,6 +585,7 @@ TEST(CoreStateValue, RefusesWhatIsNotItsOwnAndStaysAsItWas) {
   constexpr Change kChanges[] = {
       [](HapticParameters& p) { p.period_s *= 2.0; },
       [](HapticParameters& p) { p.stroke_gap_s *= 2.0; },
+      [](HapticParameters& p) { p.touch_by_points = 1; },
       [](HapticParameters& p) { p.arms[0].max_force_N *= 0.5; },
       [](HapticParameters& p) { p.arms[0].map.motion_scale *= 2.0; },
       [](HapticParameters& p) { p.arms[0].map.force_scale *= 0.5; },

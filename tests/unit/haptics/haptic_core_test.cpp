@@ -7,6 +7,7 @@ namespace trephine {
 namespace {
 
 using test::Bench;
+using test::boneSlab;
 using test::oneArm;
 
 std::string hashOf(const Grid& grid) { return volumeSha256(grid.snapshot()); }
@@ -358,6 +359,78 @@ TEST(HapticCore, TheTickAllocatesNothing) {
       input.arms[0].position_m = Vec3(0.005 * i - 5, 0, -0.004 * i) / 1000.0;
       const bool command = i % 500 == 400;
       bench.core.tick(input, commands.data(), command ? commands.size() : 0, bench.record);
+    }
+  }
+  EXPECT_EQ(rt::guardedAllocations(), before);
+  EXPECT_GT(bench.core.journal().entryCount(), 0u);
+}
+
+// --- By points alone: the seed paper's rule of touch ---
+
+HapticParameters byPoints() {
+  HapticParameters p = oneArm();
+  p.arms[0].tool = makeBlade(0.010, 11);
+  p.laws = {LawKind::viscous};
+  p.touch_by_points = 1;
+  return p;
+}
+
+TEST(HapticCoreByPoints, TheVoxelOfEachPointThatTouchesGoesAndUndoBringsItBack) {
+  Bench bench(byPoints());
+  const std::string whole = hashOf(bench.grid);
+  bench.push({0.45, 0, 2}, {0.45, 0, -3.2}, 520);
+  Volume expected = boneSlab();
+  const GridGeometry& g = expected.geometry;
+  for (int k : {13, 14, 15}) expected.hu[g.indexOf(16, 16, k)] = kAirHu;
+  EXPECT_EQ(hashOf(bench.grid), volumeSha256(expected)) << "three below each other: what the tool's solid meets beside them stays";
+  // Aslant all of its points are in bone, in voxels of their own.
+  TickInput input;
+  input.tick = bench.tick++;
+  input.arms[0].position_m = Vec3(-0.005, 0.004, -0.008);
+  input.arms[0].orientation = glm::angleAxis(glm::radians(90.0), Vec3(0, 1, 0));
+  bench.core.tick(input, nullptr, 0, bench.record);
+  EXPECT_EQ(bench.record.arms[0].points_in_tissue, 11);
+  EXPECT_EQ(bench.record.arms[0].removed_voxels, 11);
+  for (int n = 0; n < 400; ++n) bench.at({0, 0, 10});
+  bench.at({0, 0, 10}, {{CommandKind::undo, 0, {}}});
+  bench.settle();
+  EXPECT_EQ(hashOf(bench.grid), whole);
+}
+
+TEST(HapticCoreByPoints, ItsForceIsMinusBTimesV) {
+  Bench bench(byPoints());
+  for (int n = 0; n < 200; ++n) bench.at({0, 0, 0.5 - 0.005 * n});
+  const ArmRecord& record = bench.at({0.003, 0, 0.5 - 0.005 * 199 - 0.004});
+  EXPECT_EQ(record.tissue_class, -1) << "what it touched is gone";
+  EXPECT_EQ(record.demanded_N, Vec3(0.0));
+  bench.at({0, 0, -1.0});
+  const ArmRecord& deeper = bench.at({0, 0, -1.6});
+  EXPECT_EQ(deeper.points_in_tissue, 1);
+  EXPECT_NEAR(deeper.demanded_N.z, 10.0 * 0.6, 1e-9);
+}
+
+TEST(HapticCoreByPoints, WhatMayNotBeCutPushesAndStays) {
+  HapticParameters p = byPoints();
+  p.tissues.classes[0].cuttable = 0;
+  Bench bench(p);
+  const std::string whole = hashOf(bench.grid);
+  bench.push({0, 0, 2}, {0, 0, -6}, 800);
+  EXPECT_EQ(bench.record.arms[0].points_in_tissue, 6);
+  EXPECT_EQ(hashOf(bench.grid), whole);
+}
+
+TEST(HapticCoreByPoints, TheTickAllocatesNothing) {
+  HapticParameters p = byPoints();
+  p.arms[0].tool = makeBlade(0.010, 100);
+  Bench bench(p);
+  TickInput input;
+  const std::uint64_t before = rt::guardedAllocations();
+  {
+    rt::NoAllocation guard;
+    for (int i = 0; i < 2000; ++i) {
+      input.tick = bench.tick++;
+      input.arms[0].position_m = Vec3(0.005 * i - 5, 0, 2.0 - 0.004 * i) / 1000.0;
+      bench.core.tick(input, nullptr, 0, bench.record);
     }
   }
   EXPECT_EQ(rt::guardedAllocations(), before);

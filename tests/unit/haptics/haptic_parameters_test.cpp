@@ -44,6 +44,36 @@ TEST(HapticParameters, ThatAreImpossibleAreRefusedByNameAndValue) {
   }
 }
 
+TEST(HapticParameters, ThatContradictTouchByPointsAreRefused) {
+  HapticParameters good = test::oneArm();
+  good.laws = {LawKind::viscous};
+  good.touch_by_points = 1;
+  ASSERT_TRUE(validate(good).ok());
+  struct Wrong {
+    std::function<void(HapticParameters&)> change;
+    const char* value;
+  };
+  const Wrong cases[] = {
+      {[](auto& p) { p.laws.push_back(LawKind::elastic); }, "`elastic`"},
+      {[](auto& p) { p.laws = {LawKind::coulomb}; }, "`coulomb`"},
+      {[](auto& p) { p.force_at = ForceAt::distributed; }, "`distributed`"},
+      {[](auto& p) { p.removal = RemovalKind::work; }, "`work`"},
+      {[](auto& p) { p.touch_by_points = 2; }, "none of the 1"},
+  };
+  for (const Wrong& wrong : cases) {
+    HapticParameters parameters = good;
+    wrong.change(parameters);
+    const Status status = validate(parameters);
+    ASSERT_FALSE(status.ok()) << wrong.value;
+    EXPECT_EQ(status.error().code.str(), "CONTRADICTION");
+    EXPECT_EQ(status.error().where, "touch_by_points");
+    EXPECT_NE(status.error().what.find(wrong.value), std::string::npos)
+        << status.error().sentence();
+    parameters.touch_by_points = 0;
+    EXPECT_TRUE(validate(parameters).ok()) << wrong.value << " by the other rule";
+  }
+}
+
 TEST(HapticParameters, ThatAreImpossibleStartNoLoop) {
   HapticParameters parameters = test::oneArm();
   parameters.arms[0].map.motion_scale = 1e6;

@@ -23,6 +23,7 @@ TEST(EditWords, AreThereForEachFieldOfAnExercise) {
   expectOwnWords("view ", kViewFields);
   expectOwnWords("outline ", kOutlineFields);
   expectOwnWords("", kTouchFields);
+  expectOwnWords("", kPointsFields);
   expectOwnWords("", kLockFields);
 }
 
