@@ -334,8 +334,10 @@ Pose SoftHold::moved(const TissueField& tissue, const Pose& tool, bool stopped) 
     const int c = softAt(tissue, place), before = class_;
     class_ = c;
     if (passing_ >= 0) {
-      away_mm_ = c == passing_ ? 0.0 : away_mm_ + length_mm / steps;
-      if (c == passing_ && hole_ >= 0) holes_[std::size_t(hole_)].to_mm = tip_mm;
+      // In the channel that it cuts itself the tissue is before it.
+      const bool in_it = c == passing_ || ahead_ == passing_;
+      away_mm_ = in_it ? 0.0 : away_mm_ + length_mm / steps;
+      if (in_it && hole_ >= 0) holes_[std::size_t(hole_)].to_mm = tip_mm;
       if (away_mm_ > std::max(kAway_mm, voxel_mm_)) passing_ = -1;
     }
     const bool entered = c >= 0 && c != before && c != passing_ && isMembrane(tissue.ofClass(c));

@@ -379,7 +379,8 @@ class Explain(LabTest):
         self.assertEqual([arm["name"] for arm in answer["arms"]], ["left", "right"])
         self.assertEqual([arm["other_tools"] for arm in answer["arms"]], [["blade"], ["needle"]])
         parts = {cost["part"] for cost in answer["cost"]}
-        self.assertEqual(parts, {"proxy", "contact", "law viscous", "law coulomb", "law elastic", "law rupture",
+        self.assertEqual(parts, {"proxy", "contact", "law viscous", "law friction", "law elastic", "law membrane", "law cutting",
+                                 "law relaxation",
                                  "controller bounded", "clamp and gate", "removal sweep",
                                  "removal of one voxel"})
         self.assertTrue(all(cost["ns_per_tick"] > 0 for cost in answer["cost"]))

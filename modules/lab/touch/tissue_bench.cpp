@@ -17,7 +17,7 @@ constexpr std::int16_t kAbove = -1000;
 constexpr double kAboveMm = 4.0;     // of air in the grid
 constexpr double kLeastDeep_mm = 12.0;
 
-Volume blockOf(const TissueStroke& stroke) {
+Volume layeredVolume(const TissueStroke& stroke) {
   double thick_mm = 0.0;
   for (const TissueLayer& layer : stroke.layers) thick_mm += layer.thick_mm;
   const double s = stroke.spacing_mm;
@@ -148,7 +148,7 @@ Result<TissueTrace> runStroke(const TissueStroke& stroke) {
   p.journal_voxels = 1u << 20;
   p.journal_strokes = 64;
 
-  Grid grid(blockOf(stroke));
+  Grid grid(layeredVolume(stroke));
   HapticCore core(p, *grid.takeWriter());
   std::vector<LoopDevice> devices;
   devices.push_back({*std::move(device), {0}});

@@ -236,12 +236,14 @@ TEST(Membrane, IsWholeAfterATipThatDrewBack) {
 
 TEST(Membrane, HasAPeakWhereATipComesOutOfAThickOne) {
   const Tissue skin = shipped("abdomen", "skin");
-  const auto drops =
-      dropsAlong({{skin, 16.0}}, needle(0.9), {{0.1, 0.1, 1.0}, {0.1, 0.1, -26.0}});
-  ASSERT_GE(drops.size(), 2u);
-  EXPECT_LT(drops.front().tip_from_mm, 0.3);
-  EXPECT_NEAR(drops.back().tip_from_mm, -15.0, 1.5);
-  EXPECT_GT(drops.back().size_N, 1.0);
+  std::vector<Drop> peaks;
+  for (const Drop& drop :
+       dropsAlong({{skin, 16.0}}, needle(0.9), {{0.1, 0.1, 1.0}, {0.1, 0.1, -26.0}})) {
+    if (drop.size_N > 0.8) peaks.push_back(drop);  // more than an edge slips by
+  }
+  ASSERT_EQ(peaks.size(), 2u);
+  EXPECT_NEAR(peaks[0].tip_from_mm, 0.0, 0.3);
+  EXPECT_NEAR(peaks[1].tip_from_mm, -15.0, 1.5);
 }
 
 TEST(Relaxation, TakesItsShareOfAHeldForceWhereTheLawIsNamed) {

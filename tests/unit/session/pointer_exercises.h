@@ -52,7 +52,7 @@ inline std::vector<Pointed> otherSide(std::vector<Pointed> path) {
 }
 inline const PointerTask kWindow{"cranium", {kLeftHalf, otherSide(kLeftHalf)}};
 inline const std::vector<Pointed> kSlice{
-    {0, 8, -60, 0},      {0.5, 8, -42, 0},   {1.0, 8, -42, 2.5}, {5.0, 8, -42, 0.2},
+    {0, 8, -60, 0},      {0.5, 8, -42, 0},   {1.0, 8, -42, 1.0}, {2.2, 8, -42, 0.2},
     {9.0, 40, -42, 0.2}, {10.0, 40, -42, 0}, {11.5, 40, -60, 0}};
 inline const PointerTask kLiverOneArm{"liver-one-arm", {kSlice}};
 inline const PointerTask kLiver{"liver",
@@ -124,10 +124,11 @@ inline std::vector<std::string> missing(const PointerTask& task, const Cut& cut)
   } else if (task.name == "cranium") {
     needWindow(15.0, 10.0);
   } else {
-    need(cut.of("liver") > 500.0, "the slice");
+    // As wide as a voxel, some 3 cm long and about 1 cm deep: deeper than that a hand cannot draw it.
+    need(cut.of("liver") + cut.of("capsule") > 150.0, "the slice");
     need(cut.of("bone") == 0.0, "whole bone");
-    need(cut.deepest_mm.back() < -30.0, "the blade's depth");
-    need(cut.deepest_mm.front() < -30.0, "the needle's target");
+    need(cut.deepest_mm.back() < -5.0, "the blade's depth");
+    if (cut.deepest_mm.size() > 1) need(cut.deepest_mm[0] < -30.0, "the needle's target");
   }
   return words;
 }
