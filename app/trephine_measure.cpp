@@ -54,8 +54,8 @@ int run(int argc, char** argv) {
   auto* haptics_command = with_json(app.add_subcommand(
       "haptics", "What a tick costs, and how true the push of elastic tissue is"));
   haptics_command->add_option("--out", out, "Folder for the table")->required();
-  auto* tissue_command = with_json(app.add_subcommand(
-      "tissue", "The laws and numbers of tissue beside published measurements"));
+  auto* tissue_command = with_json(
+      app.add_subcommand("tissue", "The laws and numbers of tissue beside published measurements"));
   tissue_command->add_option("--out", out, "Folder for tables and plots")->required();
   auto* render_command = with_json(app.add_subcommand(
       "render", "What a picture costs and how true it is, beside VTK's own ray caster"));

@@ -143,7 +143,8 @@ HapticParameters hapticParameters(const Exercise& exercise, const Rig& rig) {
   parameters.controller = exercise.controller;
   parameters.tissues = tissueTable(exercise.tissues);
   for (std::size_t c = 0; c < exercise.tissues.tissues.size(); ++c) {
-    const bool pushes = std::ranges::count(exercise.touch_by_points, exercise.tissues.tissues[c].id);
+    const bool pushes =
+        std::ranges::count(exercise.touch_by_points, exercise.tissues.tissues[c].id);
     parameters.touch_by_points |= std::uint32_t(pushes) << c;
   }
   for (std::size_t i = 0; i < exercise.arms.size(); ++i) {

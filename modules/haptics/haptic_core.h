@@ -132,7 +132,7 @@ class HapticCore {
     bool as_exercise = false;        // the map, wherever the arm is
     WorkspaceMap exercise_map;
     HandWork work;
-    double cut_J = 0.0;  // work that parted soft tissue and of motors, by the law of cutting
+    double cut_J = 0.0;         // work that parted soft tissue and of motors, by the law of cutting
     Vec3 last_model_N{0.0};     // demanded in the tick before, patient axes
     Vec3 last_elastic_Nm{0.0};  // of the rendered springs in the tick before, patient axes
     bool cuts = false;           // may remove in this tick

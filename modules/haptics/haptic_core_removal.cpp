@@ -58,7 +58,8 @@ void HapticCore::sweepTool(Arm& arm, const ArmRecord& moved) {
     front_mm = tool.proxy->ahead_mm(std::max({0.5 * s.x, 0.5 * s.y, 0.5 * s.z, kLeastAhead_mm}));
   }
   if (tool.soft) tool.removal.spareAhead(tool.soft->wholeBefore(tissue_.tissues()));
-  if (tool.soft && tool.soft->gaveWay()) tool.removal.goOnFrom(Pose{tool.soft->gaveWay_mm(), front_mm.orientation});
+  if (tool.soft && tool.soft->gaveWay())
+    tool.removal.goOnFrom(Pose{tool.soft->gaveWay_mm(), front_mm.orientation});
   tool.removal.sweep(tissue_, front_mm, arm.removed);
   if (!held || !arm.removed.empty()) return;
   for (const Proxy::Blocker& blocker : tool.proxy->blockers()) {

@@ -38,17 +38,20 @@ std::string contradictsTouchByPoints(const std::vector<LawKind>& laws, ForceAt f
                                      RemovalKind removal) {
   for (LawKind law : laws) {
     if (law == LawKind::viscous) continue;
-    return tr("A tool that touches by its points alone feels no other law than `viscous`, and here "
-              "is `{}`",
-              wordsOf(law).id);
+    return tr(
+        "A tool that touches by its points alone feels no other law than `viscous`, and here "
+        "is `{}`",
+        wordsOf(law).id);
   }
   if (force_at != ForceAt::tip) {
-    return tr("A tool that touches by its points alone has its force at the `tip`, and here it is "
-              "`distributed`");
+    return tr(
+        "A tool that touches by its points alone has its force at the `tip`, and here it is "
+        "`distributed`");
   }
   if (removal != RemovalKind::instant) {
-    return tr("A tool that touches by its points alone removes what it touches in an `instant`, and "
-              "here it is by `work`");
+    return tr(
+        "A tool that touches by its points alone removes what it touches in an `instant`, and "
+        "here it is by `work`");
   }
   return {};
 }
@@ -83,8 +86,8 @@ Status validate(const HapticParameters& parameters) {
     }
   }
   if (parameters.touch_by_points != 0) {
-    const std::string what = contradictsTouchByPoints(parameters.laws, parameters.force_at,
-                                                      parameters.removal);
+    const std::string what =
+        contradictsTouchByPoints(parameters.laws, parameters.force_at, parameters.removal);
     if (!what.empty()) {
       return Error{code::kContradiction, what, "touch_by_points", besideTouchByPoints()};
     }

@@ -37,8 +37,8 @@ struct HapticParameters {
   std::vector<LawKind> laws;
   ForceAt force_at = ForceAt::tip;                      // law_input.h
   RemovalKind removal = RemovalKind::work;              // removal.h
-  // Not 0: the seed paper's rule of touch, by points alone (contact.h), and its removal: the voxel of
-  // each point that touches goes at once. A bit for each class of tissue that is touched.
+  // Not 0: the seed paper's rule of touch, by points alone (contact.h), and its removal: the voxel
+  // of each point that touches goes at once. A bit for each class of tissue that is touched.
   std::uint32_t touch_by_points = 0;
   ControllerKind controller = ControllerKind::bounded;  // controllers.h
   TissueTable tissues;

@@ -57,16 +57,7 @@ using AllLaws = LawList<ViscousLaw, CoulombLaw, ElasticLaw, RuptureLaw, Membrane
 
 // A law's place in the list. Those that are spoken of elsewhere have a name here; that of any is
 // kLawKind.
-enum class LawKind {
-  viscous,
-  coulomb,
-  elastic,
-  rupture,
-  membrane,
-  cutting,
-  friction,
-  relaxation
-};
+enum class LawKind { viscous, coulomb, elastic, rupture, membrane, cutting, friction, relaxation };
 
 inline bool names(const std::vector<LawKind>& laws, LawKind law) {
   return std::find(laws.begin(), laws.end(), law) != laws.end();

@@ -150,10 +150,11 @@ class Removal {
   GridGeometry geometry_;
   Mat4 patient_to_voxel_;
   RemovalKind kind_;
-  double voxel_m2_;   // new surface that a voxel of a slot stands for
+  double voxel_m2_;  // new surface that a voxel of a slot stands for
   std::uint32_t spared_ = 0;
-  bool went_on_ = false;       // the pass to come is of a way that goOnFrom() began
-  Vec3 tip_{0.0}, ahead_{0.0};  // of the tool in this sweep: voxels, and the way that it points there
+  bool went_on_ = false;  // the pass to come is of a way that goOnFrom() began
+  Vec3 tip_{0.0},
+      ahead_{0.0};    // of the tool in this sweep: voxels, and the way that it points there
   Vec3 per_spacing_;  // 1 / mm
   Vec3
       spacing_mm_;  // as the sweep sees it: at most the tool's diameter, so that none slips between

@@ -14,18 +14,18 @@ constexpr double kStickSlip = 0.15;
 // Work of an edge above that of new surface alone; tuned here, uncited.
 constexpr double kDull = 1.1;
 
-constexpr std::size_t kTurns = 16;      // ticks from one look at a part of the shaft to the next
-constexpr std::size_t kEdgeTurns = 4;   // of the edge
-constexpr double kPart_mm = 0.5;        // of shaft and edge, but
-constexpr double kMostParts = 128.0;    // parts at most
-constexpr double kStepOfVoxel = 0.25;   // along the way of the tip
-constexpr double kMostSteps = 64.0;     // a tick
-constexpr double kAhead = 0.75;         // voxels beyond the slot: what is before it, is whole
-constexpr double kLeash_mm = 0.5;       // over which the way of the tip is taken
-constexpr double kForwards = 0.5;       // cosine: a tip meets a membrane along its tool
-constexpr int kSheet = 7;               // voxels of 27: fewer are a speckle
-constexpr double kAway_mm = 1.0;        // from a membrane: it may be met again
-constexpr double kWithin_mm = 1.0;      // on in a thick one: it has another side
+constexpr std::size_t kTurns = 16;     // ticks from one look at a part of the shaft to the next
+constexpr std::size_t kEdgeTurns = 4;  // of the edge
+constexpr double kPart_mm = 0.5;       // of shaft and edge, but
+constexpr double kMostParts = 128.0;   // parts at most
+constexpr double kStepOfVoxel = 0.25;  // along the way of the tip
+constexpr double kMostSteps = 64.0;    // a tick
+constexpr double kAhead = 0.75;        // voxels beyond the slot: what is before it, is whole
+constexpr double kLeash_mm = 0.5;      // over which the way of the tip is taken
+constexpr double kForwards = 0.5;      // cosine: a tip meets a membrane along its tool
+constexpr int kSheet = 7;              // voxels of 27: fewer are a speckle
+constexpr double kAway_mm = 1.0;       // from a membrane: it may be met again
+constexpr double kWithin_mm = 1.0;     // on in a thick one: it has another side
 constexpr double kTiny_mm = 1e-9;
 
 }  // namespace

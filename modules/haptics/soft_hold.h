@@ -118,40 +118,40 @@ class SoftHold {
   Mat4 patient_to_voxel_;
   Mat3 turn_to_voxel_;
   double period_s_;
-  double width_mm_;     // of the tool
-  double slot_mm_;      // half the width of what it cuts of this grid
-  double part_mm_;      // of the shaft
-  double edge_part_mm_ = 0.0;  // of the edge
-  double voxel_mm_;     // its longest edge
-  double step_mm_;      // between two looks along the way of the tip
-  bool parts_tissue_;   // it is sharp
-  Vec3 reach_{0.0};     // voxels, from the axis to half a voxel beyond the slot
+  double width_mm_;                 // of the tool
+  double slot_mm_;                  // half the width of what it cuts of this grid
+  double part_mm_;                  // of the shaft
+  double edge_part_mm_ = 0.0;       // of the edge
+  double voxel_mm_;                 // its longest edge
+  double step_mm_;                  // between two looks along the way of the tip
+  bool parts_tissue_;               // it is sharp
+  Vec3 reach_{0.0};                 // voxels, from the axis to half a voxel beyond the slot
   std::vector<std::int8_t> shaft_;  // the tissue at each part of the shaft, from the tip on
   std::vector<std::int8_t> edge_;   // the tissue before each part of the edge
   std::array<std::int32_t, kMaxTissues> parts_{};  // of the shaft in each tissue
   std::int32_t in_tissue_ = 0;                     // parts of it in any
   std::uint32_t turn_ = 0;
 
-  Pose last_;                    // where the tool would be by soft tissue
-  Vec3 arm_mm_{0.0};             // the arm's tip, in this tick
-  Vec3 stretch_mm_{0.0};         // from the tool's tip towards its arm's
-  Vec3 crept_mm_{0.0};           // of that, what no longer pulls
-  double cutting_share_ = 0.0;   // of the force of that
-  Vec3 tip_mm_{0.0};             // the tool's tip
-  Vec3 behind_mm_{0.0};          // is drawn along by the tip
-  bool fresh_ = true;            // the tip was placed, and its tissue is not known
-  std::int32_t class_ = -1;      // at the tip
-  std::int32_t ahead_ = -1;      // before the slot that it has cut
-  bool enclosed_ = false;        // and there is tissue beside the tip
-  std::int32_t held_ = -1;       // of the membrane that holds the tip; -1: none does
-  Vec3 from_mm_{0.0};            // where the arm was when the tip met it
-  Vec3 kept_mm_{0.0};            // and the place that the tool follows meanwhile
-  Vec3 inwards_{0.0};            // how the tip moved
+  Pose last_;                   // where the tool would be by soft tissue
+  Vec3 arm_mm_{0.0};            // the arm's tip, in this tick
+  Vec3 stretch_mm_{0.0};        // from the tool's tip towards its arm's
+  Vec3 crept_mm_{0.0};          // of that, what no longer pulls
+  double cutting_share_ = 0.0;  // of the force of that
+  Vec3 tip_mm_{0.0};            // the tool's tip
+  Vec3 behind_mm_{0.0};         // is drawn along by the tip
+  bool fresh_ = true;           // the tip was placed, and its tissue is not known
+  std::int32_t class_ = -1;     // at the tip
+  std::int32_t ahead_ = -1;     // before the slot that it has cut
+  bool enclosed_ = false;       // and there is tissue beside the tip
+  std::int32_t held_ = -1;      // of the membrane that holds the tip; -1: none does
+  Vec3 from_mm_{0.0};           // where the arm was when the tip met it
+  Vec3 kept_mm_{0.0};           // and the place that the tool follows meanwhile
+  Vec3 inwards_{0.0};           // how the tip moved
   double crept_travel_mm_ = 0.0;
-  std::int32_t passing_ = -1;    // of the membrane that the tip has gone into
-  double away_mm_ = 0.0;         // way since the tip was in that tissue
-  double within_mm_ = 0.0;       // way on in it since it gave way
-  std::int32_t hole_ = -1;       // that the tip is in, -1: none; and the next to be written
+  std::int32_t passing_ = -1;  // of the membrane that the tip has gone into
+  double away_mm_ = 0.0;       // way since the tip was in that tissue
+  double within_mm_ = 0.0;     // way on in it since it gave way
+  std::int32_t hole_ = -1;     // that the tip is in, -1: none; and the next to be written
   std::int32_t next_hole_ = 0;
   std::array<Hole, kHoles> holes_{};
 

@@ -13,7 +13,9 @@ const double kWhole = std::exp(kRise) - 1.0;
 
 }  // namespace
 
-bool isMembrane(const TissueClass& t) { return t.rupture_N > 0.0 && t.rupture_mm > 0.0; }
+bool isMembrane(const TissueClass& t) {
+  return t.rupture_N > 0.0 && t.rupture_mm > 0.0;
+}
 
 double ruptureForce_N(const TissueClass& t, double width_mm) {
   return t.rupture_N * width_mm / kStatedWidth_mm;
@@ -30,13 +32,11 @@ double membraneStiffness_N_per_m(const TissueClass& t, double travel_mm) {
 
 double membraneEnergy_J(const TissueClass& t, double travel_mm) {
   const double x = travel_mm / t.rupture_mm;
-  return 0.001 * t.rupture_N * t.rupture_mm * ((std::exp(kRise * x) - 1.0) / kRise - x) /
-         kWhole;
+  return 0.001 * t.rupture_N * t.rupture_mm * ((std::exp(kRise * x) - 1.0) / kRise - x) / kWhole;
 }
 
 double toughness_J_per_m2(const TissueClass& t, double width_mm) {
-  return t.toughness_J_per_m2 > 0.0 ? t.toughness_J_per_m2
-                                    : 1e6 * t.cutting_J_per_mm3 * width_mm;
+  return t.toughness_J_per_m2 > 0.0 ? t.toughness_J_per_m2 : 1e6 * t.cutting_J_per_mm3 * width_mm;
 }
 
 double ruptureTravel_mm(const TissueClass& t, double width_mm) {

@@ -27,11 +27,12 @@ bool sameVoxels(const Tissue& a, const Tissue& b) {
 Status checkTogether(const std::string& file, const std::string& field, const Tissue& t) {
   const auto valueOf = [](const std::optional<SourcedNumber>& n) { return n ? n->value : 0.0; };
   if (t.cutting_J_per_mm3 && t.toughness_J_per_m2) {
-    return bad(file, field + ".toughness_J_per_m2",
-               tr("Cutting '{}' costs {} J/m\u00b2 by area and {} J/mm\u00b3 by volume: one contradicts "
-                  "the other",
-                  t.id, exactNumber(t.toughness_J_per_m2->value), exactNumber(t.cutting_J_per_mm3->value)),
-               tr("Give toughness_J_per_m2 for soft tissue, or cutting_J_per_mm3"));
+    return bad(
+        file, field + ".toughness_J_per_m2",
+        tr("Cutting '{}' costs {} J/m\u00b2 by area and {} J/mm\u00b3 by volume: one contradicts "
+           "the other",
+           t.id, exactNumber(t.toughness_J_per_m2->value), exactNumber(t.cutting_J_per_mm3->value)),
+        tr("Give toughness_J_per_m2 for soft tissue, or cutting_J_per_mm3"));
   }
   if (!t.cutting_J_per_mm3 && !t.toughness_J_per_m2) {
     return bad(file, field + ".cutting_J_per_mm3", tr("Nothing says what cutting '{}' costs", t.id),
@@ -53,8 +54,8 @@ Status checkTogether(const std::string& file, const std::string& field, const Ti
   const double relaxes = valueOf(t.relaxation_share), within_s = valueOf(t.relaxation_s);
   if ((relaxes > 0.0) != (within_s > 0.0)) {
     return bad(file, field + (relaxes > 0.0 ? ".relaxation_share" : ".relaxation_s"),
-               tr("'{}' relaxes by {} within {} s: one of the two is missing", t.id, exactNumber(relaxes),
-                  exactNumber(within_s)),
+               tr("'{}' relaxes by {} within {} s: one of the two is missing", t.id,
+                  exactNumber(relaxes), exactNumber(within_s)),
                tr("Give both, relaxation_share and relaxation_s, or none"));
   }
   return {};

@@ -321,9 +321,8 @@ void ToolsPanel::buildLaws() {
   };
   points_ = of_laws_->addFields<Exercise>(kPointsFields, "scene:");
   points_->entered = [this](const Exercise& other, const char* key) {
-    of_laws_->edit(key, [&](Exercise& exercise) {
-      exercise.touch_by_points = other.touch_by_points;
-    });
+    of_laws_->edit(key,
+                   [&](Exercise& exercise) { exercise.touch_by_points = other.touch_by_points; });
   };
   describeCosts();
   const auto trade = [&](const char* name) {

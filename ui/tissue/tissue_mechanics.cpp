@@ -117,7 +117,8 @@ void TissueMechanics::update(const Tissue& tissue, const Tissue& declared) {
   // Of the two that say what cutting costs, the one that was not entered has changed as well.
   for (const Number& n : numbers_) {
     const double value = n.row->valueOf(tissue);
-    if (n.row->isCutting() && value != n.row->valueOf(before)) n.box->show(value * n.row->shown_per);
+    if (n.row->isCutting() && value != n.row->valueOf(before))
+      n.box->show(value * n.row->shown_per);
   }
   showOutcome();
 }
@@ -202,8 +203,8 @@ void TissueMechanics::entered(const Number& n) {
   const TissueNumber& row = *n.row;
   // Half a digit: what is shown rounded is not another number.
   const double half = 0.5 * std::pow(10.0, -row.decimals);
-  const Tissue other = withNumber(tissue_, row, n.box->wanted() / row.shown_per,
-                                  half / row.shown_per, declared_);
+  const Tissue other =
+      withNumber(tissue_, row, n.box->wanted() / row.shown_per, half / row.shown_per, declared_);
   if (wanted && wanted(other, row.key)) n.box->take();
 }
 

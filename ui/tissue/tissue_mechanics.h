@@ -1,5 +1,5 @@
-// What a tissue does to a hand: each number with its unit, its range, its source, what was published
-// of it and what the arms can show of it, and whether it can be cut and stops a tool.
+// What a tissue does to a hand: each number with its unit, its range, its source, what was
+// published of it and what the arms can show of it, and whether it can be cut and stops a tool.
 #pragma once
 
 #include <QComboBox>

@@ -36,9 +36,7 @@ struct CuttingLaw {
   static Impedance impedance(const TissueClass& tissue) {
     return {0.0, tissue.solid ? 0.0 : kCling_N_per_m};
   }
-  void add(const LawInput& in, ContactForce& out) const {
-    addSoftSpring(in, in.soft.cutting, out);
-  }
+  void add(const LawInput& in, ContactForce& out) const { addSoftSpring(in, in.soft.cutting, out); }
   void forget() {}
 };
 

@@ -9,10 +9,10 @@
 
 namespace trephine {
 
-// In soft tissue: so much force per millimetre of shaft that lies in it, against any motion, however
-// many points the tool has. On solid tissue: Coulomb's, mu times the force with which the tool is
-// pressed on it, in the pull between tool and arm (proxy.h).
-// Members as every law has them: haptics/laws.h. Patient axes, SI; the haptic thread.
+// In soft tissue: so much force per millimetre of shaft that lies in it, against any motion,
+// however many points the tool has. On solid tissue: Coulomb's, mu times the force with which the
+// tool is pressed on it, in the pull between tool and arm (proxy.h). Members as every law has them:
+// haptics/laws.h. Patient axes, SI; the haptic thread.
 struct FrictionLaw {
   static constexpr LawWords kWords{
       "friction", trLater("Friction"),

@@ -12,9 +12,9 @@ namespace trephine {
 
 namespace {
 
-constexpr int kFirstHu = 100;        // of the first layer's tissue; the next has the next
+constexpr int kFirstHu = 100;  // of the first layer's tissue; the next has the next
 constexpr std::int16_t kAbove = -1000;
-constexpr double kAboveMm = 4.0;     // of air in the grid
+constexpr double kAboveMm = 4.0;  // of air in the grid
 constexpr double kLeastDeep_mm = 12.0;
 
 Volume layeredVolume(const TissueStroke& stroke) {
@@ -165,7 +165,8 @@ Result<TissueTrace> runStroke(const TissueStroke& stroke) {
                                r.removed_voxels});
     }
     for (CarveRecord carve; loop.carves().pop(carve);) trace.carves.push_back(carve);
-    for (Event event; loop.events().pop(event);) {}
+    for (Event event; loop.events().pop(event);) {
+    }
   }
   loop.stopDevices();
   trace.removed_mm3 = double(trace.carves.size()) * grid.geometry().voxelVolume_mm3();

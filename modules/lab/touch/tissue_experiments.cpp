@@ -17,7 +17,9 @@ const std::vector<LawKind> kBoneLaws{LawKind::viscous, LawKind::coulomb, LawKind
 
 constexpr const char* kEstimated = "estimate of the comparison";
 
-Tissue tissueOf(const TissueSet& set, const char* id) { return *set.find(id); }
+Tissue tissueOf(const TissueSet& set, const char* id) {
+  return *set.find(id);
+}
 
 Tool needleOf(double width_mm, int points = 1) {
   return *makeTool({ToolKind::needle, 60.0, points, 0.5 * width_mm});
@@ -28,7 +30,9 @@ Tool bladeOf(double edge_mm) {
 }
 
 // Against the way down: what a hand that pushes in feels.
-double upwards_N(const TissueSample& s) { return s.demanded_N.z; }
+double upwards_N(const TissueSample& s) {
+  return s.demanded_N.z;
+}
 
 struct Fit {
   double slope = 0.0, r2 = 0.0;
@@ -120,16 +124,16 @@ TissueStroke needleStroke(std::vector<TissueLayer> layers, const Tool& tool,
 
 Result<Shipped> readShipped() {
   Shipped shipped;
-  for (const auto& [name, set] : {std::pair("abdomen", &shipped.abdomen),
-                                  std::pair("cranium", &shipped.cranium)}) {
+  for (const auto& [name, set] :
+       {std::pair("abdomen", &shipped.abdomen), std::pair("cranium", &shipped.cranium)}) {
     Result<TissueSet> read =
         readTissueSet(resourceFolder() / "tissues" / (std::string(name) + ".json"));
     if (!read) return read.error();
     *set = *std::move(read);
   }
   for (const auto& [set, ids] :
-       {std::pair(&shipped.abdomen, std::vector{"fat", "skin", "liver", "muscle", "capsule",
-                                                "kidney"}),
+       {std::pair(&shipped.abdomen,
+                  std::vector{"fat", "skin", "liver", "muscle", "capsule", "kidney"}),
         std::pair(&shipped.cranium, std::vector{"brain", "dura", "bone"})}) {
     for (const char* id : ids) {
       if (set->find(id)) continue;
@@ -162,8 +166,8 @@ Status liverPuncture(const Shipped& shipped, TissueMeasurement& out) {
     }
     return 0.0;
   }();
-  const double half_N = meanForce(in, 0.5 * (first_mm + peak_mm) - 0.02,
-                                  0.5 * (first_mm + peak_mm) + 0.02);
+  const double half_N =
+      meanForce(in, 0.5 * (first_mm + peak_mm) - 0.02, 0.5 * (first_mm + peak_mm) + 0.02);
   double after_N = peak_N;
   for (const TissueSample& s : in) {
     const double on_mm = -s.arm_mm.z - peak_mm;
@@ -183,16 +187,15 @@ Status liverPuncture(const Shipped& shipped, TissueMeasurement& out) {
   };
   A1("force at half the travel, of the peak", "", half_N / peak_N, {}, 0.35, NumberUse::fitted);
   A1("peak", "N", peak_N, 0.3, 2.0, NumberUse::fitted);
-  A1("drop within 1 mm, of the peak", "", (peak_N - after_N) / peak_N, 0.2, 0.7,
-     NumberUse::fitted);
+  A1("drop within 1 mm, of the peak", "", (peak_N - after_N) / peak_N, 0.2, 0.7, NumberUse::fitted);
   A1("straightness after the drop, R2", "", fit.r2, 0.9, {}, NumberUse::predicted);
   A1("slope after the drop", "mN/mm", 1000.0 * fit.slope, 5.0, 40.0, NumberUse::fitted);
   out.curves.push_back({"A1", "A needle 1.2 mm wide into liver, 5 mm/s", "travel", "mm",
                         overDepth(in), 0.3, 2.0, "peak, estimated"});
 
   // A2: the same hole again.
-  const double again_N = upwards_N(peakOf(part(
-      *trace, 2.0 * leg_s, 2.0 * leg_s + (above_mm + peak_mm + 2.0) / kSpeed_mm_s)));
+  const double again_N = upwards_N(
+      peakOf(part(*trace, 2.0 * leg_s, 2.0 * leg_s + (above_mm + peak_mm + 2.0) / kSpeed_mm_s)));
   out.rows.push_back(row("A2", "peak in the old hole, of the first", "", again_N / peak_N, {}, 0.3,
                          BandKind::estimate, NumberUse::predicted, kEstimated, "estimate"));
   const double area_m2 = 1.2e-3 * 0.001 * depth_mm;
@@ -237,8 +240,8 @@ Status liverPuncture(const Shipped& shipped, TissueMeasurement& out) {
     most_N = std::max(most_N, other_N);
     sum_N += other_N;
     if (mm_per_s > 5.0) {
-      out.curves.push_back({"A5", "The same at 10 mm/s", "travel", "mm",
-                            overDepth(other->samples), {}, {}, ""});
+      out.curves.push_back(
+          {"A5", "The same at 10 mm/s", "travel", "mm", overDepth(other->samples), {}, {}, ""});
     }
   }
   out.rows.push_back(row("A5", "change of the peak from 1 to 10 mm/s", "%",
@@ -253,10 +256,12 @@ Status liverPuncture(const Shipped& shipped, TissueMeasurement& out) {
 Status skinToKidney(const Shipped& shipped, TissueMeasurement& out) {
   const TissueSet& set = shipped.abdomen;
   const double path_mm = 60.0;
-  Result<TissueTrace> trace = runStroke(needleStroke(
-      {{tissueOf(set, "skin"), 4.0}, {tissueOf(set, "fat"), 18.0}, {tissueOf(set, "muscle"), 26.0},
-       {tissueOf(set, "kidney"), 20.0}},
-      needleOf(1.27), {Vec3(0.1, 0.1, 2.0), Vec3(0.1, 0.1, -path_mm)}, kSpeed_mm_s));
+  Result<TissueTrace> trace = runStroke(
+      needleStroke({{tissueOf(set, "skin"), 4.0},
+                    {tissueOf(set, "fat"), 18.0},
+                    {tissueOf(set, "muscle"), 26.0},
+                    {tissueOf(set, "kidney"), 20.0}},
+                   needleOf(1.27), {Vec3(0.1, 0.1, 2.0), Vec3(0.1, 0.1, -path_mm)}, kSpeed_mm_s));
   if (!trace) return trace.error();
   const TissueSample& peak = peakOf(part(*trace, 0.0, 14.0 / kSpeed_mm_s));
   std::vector<std::pair<double, double>> path;
@@ -276,9 +281,9 @@ Status skinToKidney(const Shipped& shipped, TissueMeasurement& out) {
 
 Status duraPuncture(const Shipped& shipped, TissueMeasurement& out) {
   const TissueSet& set = shipped.cranium;
-  Result<TissueTrace> trace = runStroke(needleStroke(
-      {{tissueOf(set, "dura"), 0.5}, {tissueOf(set, "brain"), 20.0}}, needleOf(0.9),
-      {Vec3(0.1, 0.1, 1.0), Vec3(0.1, 0.1, -10.0)}, 3.3));
+  Result<TissueTrace> trace =
+      runStroke(needleStroke({{tissueOf(set, "dura"), 0.5}, {tissueOf(set, "brain"), 20.0}},
+                             needleOf(0.9), {Vec3(0.1, 0.1, 1.0), Vec3(0.1, 0.1, -10.0)}, 3.3));
   if (!trace) return trace.error();
   double first_mm = 0.0;
   for (const TissueSample& s : trace->samples) {
@@ -296,8 +301,14 @@ Status duraPuncture(const Shipped& shipped, TissueMeasurement& out) {
                          "estimate of the comparison after PLOS ONE 2021 "
                          "(10.1371/journal.pone.0247346)",
                          "derived"));
-  out.curves.push_back({"A6", "A spinal needle 0.9 mm wide through dura of 0.5 mm", "travel", "mm",
-                        overDepth(trace->samples), {}, {}, ""});
+  out.curves.push_back({"A6",
+                        "A spinal needle 0.9 mm wide through dura of 0.5 mm",
+                        "travel",
+                        "mm",
+                        overDepth(trace->samples),
+                        {},
+                        {},
+                        ""});
   return {};
 }
 
@@ -319,12 +330,12 @@ Status brainStrokes(const Shipped& shipped, TissueMeasurement& out) {
     sum_N += glm::length(s.demanded_N);
     ++count;
   }
-  out.rows.push_back(row("A7", "stroke of a blade over 10 mm, mean", "N", sum_N / count, 0.02,
-                         0.15, BandKind::published, NumberUse::fitted, kSource, "measured"));
+  out.rows.push_back(row("A7", "stroke of a blade over 10 mm, mean", "N", sum_N / count, 0.02, 0.15,
+                         BandKind::published, NumberUse::fitted, kSource, "measured"));
   out.curves.push_back({"A7", "A blade through brain, 5 mm deep", "travel", "mm", along, 0.02, 0.15,
                         "carrying incision, measured"});
-  Result<TissueTrace> stab = runStroke(
-      needleStroke(brain, needleOf(1.2), {{0.1, 0.1, 0}, {0.1, 0.1, -5}}, kSpeed_mm_s));
+  Result<TissueTrace> stab =
+      runStroke(needleStroke(brain, needleOf(1.2), {{0.1, 0.1, 0}, {0.1, 0.1, -5}}, kSpeed_mm_s));
   if (!stab) return stab.error();
   std::vector<double> forces_N;
   for (const TissueSample& s : stab->samples) forces_N.push_back(upwards_N(s));
@@ -333,9 +344,9 @@ Status brainStrokes(const Shipped& shipped, TissueMeasurement& out) {
   out.rows.push_back(row("A7", "a stab of 5 mm, 1.2 mm wide, median", "N",
                          forces_N[forces_N.size() / 2], 0.0, 0.02, BandKind::published,
                          NumberUse::predicted, kSource, "measured"));
-  TissueStroke press = needleStroke(brain, *makeTool({ToolKind::burr, 30.0, 32, 3.0, 8}),
-                                    {{0.1, 0.1, 1}, {0.1, 0.1, -3}, {0.1, 0.1, -3.0001}},
-                                    kSpeed_mm_s);
+  TissueStroke press =
+      needleStroke(brain, *makeTool({ToolKind::burr, 30.0, 32, 3.0, 8}),
+                   {{0.1, 0.1, 1}, {0.1, 0.1, -3}, {0.1, 0.1, -3.0001}}, kSpeed_mm_s);
   press.wide_mm = 36.0;
   Result<TissueTrace> pressed = runStroke(press);
   if (!pressed) return pressed.error();
@@ -432,8 +443,8 @@ Status burrByPush(const Shipped& shipped, TissueMeasurement& out) {
                          {}, BandKind::estimate, NumberUse::predicted, kEstimated, "estimate"));
   out.rows.push_back(row("A9", "rate at 5 N", "mm3/s", rates[2], 3.0, 30.0, BandKind::estimate,
                          NumberUse::predicted, kEstimated, "estimate"));
-  out.curves.push_back({"A9", "Rate of a burr by push", "push", "N", curve, 3.0, 30.0,
-                        "rate at 5 N, estimated"});
+  out.curves.push_back(
+      {"A9", "Rate of a burr by push", "push", "N", curve, 3.0, 30.0, "rate at 5 N, estimated"});
   return {};
 }
 
@@ -464,8 +475,8 @@ Status energyOfBurr(const Shipped& shipped, TissueMeasurement& out) {
     out.rows.push_back(row("A10", quantity.c_str(), "", ours, 0.9, 1.1, BandKind::estimate,
                            NumberUse::predicted, kEstimated, "estimate"));
   }
-  out.curves.push_back({"A10", "Energy by volume on three grids", "voxel", "mm", curve, 0.9, 1.1,
-                        "10 %"});
+  out.curves.push_back(
+      {"A10", "Energy by volume on three grids", "voxel", "mm", curve, 0.9, 1.1, "10 %"});
   return {};
 }
 
@@ -491,8 +502,14 @@ Status burrThroughVault(const Shipped& shipped, TissueMeasurement& out) {
   A11("thrust in the diploe, of that in the outer table", diploe_N / outer_N, 0.5);
   A11("thrust in the inner table, of that in the outer one", inner_N / outer_N, 1.0);
   A11("thrust a radius after breakthrough, of that in the outer table", through_N / outer_N, 0.1);
-  out.curves.push_back({"A11", "A burr through the vault at 1 mm/s", "travel", "mm",
-                        overDepth(trace->samples), {}, {}, ""});
+  out.curves.push_back({"A11",
+                        "A burr through the vault at 1 mm/s",
+                        "travel",
+                        "mm",
+                        overDepth(trace->samples),
+                        {},
+                        {},
+                        ""});
   return {};
 }
 
@@ -514,8 +531,9 @@ Status burrHoleByHand(const Shipped& shipped, TissueMeasurement& out) {
     most_N = std::max(most_N, force_N);
     ++count;
   }
-  constexpr const char* kSource = "Investigation of variable factors in drilling bone (J Oral Surg "
-                                  "1977, as remembered); 20 operators, animal bone";
+  constexpr const char* kSource =
+      "Investigation of variable factors in drilling bone (J Oral Surg "
+      "1977, as remembered); 20 operators, animal bone";
   out.rows.push_back(row("A12", "hand on the burr, mean", "N", count > 0 ? sum_N / count : 0.0, 4.0,
                          19.0, BandKind::published, NumberUse::predicted, kSource, "measured"));
   out.rows.push_back(row("A12", "hand on the burr, peak", "N", most_N, 6.0, 24.0,

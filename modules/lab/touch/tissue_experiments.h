@@ -14,14 +14,14 @@ struct Shipped {
 Result<Shipped> readShipped();
 
 // Adds its rows and curves.
-Status liverPuncture(const Shipped& shipped, TissueMeasurement& out);    // A1, A2, A3, A5
-Status skinToKidney(const Shipped& shipped, TissueMeasurement& out);     // A4
-Status duraPuncture(const Shipped& shipped, TissueMeasurement& out);     // A6
-Status brainStrokes(const Shipped& shipped, TissueMeasurement& out);     // A7
-Status liverCut(const Shipped& shipped, TissueMeasurement& out);         // A8
-Status burrByPush(const Shipped& shipped, TissueMeasurement& out);       // A9
-Status energyOfBurr(const Shipped& shipped, TissueMeasurement& out);     // A10
-Status burrThroughVault(const Shipped& shipped, TissueMeasurement& out); // A11
-Status burrHoleByHand(const Shipped& shipped, TissueMeasurement& out);   // A12
+Status liverPuncture(const Shipped& shipped, TissueMeasurement& out);     // A1, A2, A3, A5
+Status skinToKidney(const Shipped& shipped, TissueMeasurement& out);      // A4
+Status duraPuncture(const Shipped& shipped, TissueMeasurement& out);      // A6
+Status brainStrokes(const Shipped& shipped, TissueMeasurement& out);      // A7
+Status liverCut(const Shipped& shipped, TissueMeasurement& out);          // A8
+Status burrByPush(const Shipped& shipped, TissueMeasurement& out);        // A9
+Status energyOfBurr(const Shipped& shipped, TissueMeasurement& out);      // A10
+Status burrThroughVault(const Shipped& shipped, TissueMeasurement& out);  // A11
+Status burrHoleByHand(const Shipped& shipped, TissueMeasurement& out);    // A12
 
 }  // namespace trephine::tissue_experiments

@@ -14,9 +14,13 @@ namespace {
 const char* nameOfKind(BandKind kind) {
   return kind == BandKind::published ? "published" : "estimate";
 }
-const char* nameOfUse(NumberUse use) { return use == NumberUse::fitted ? "fitted" : "predicted"; }
+const char* nameOfUse(NumberUse use) {
+  return use == NumberUse::fitted ? "fitted" : "predicted";
+}
 
-Json endOf(const std::optional<double>& end) { return end ? Json(*end) : Json(nullptr); }
+Json endOf(const std::optional<double>& end) {
+  return end ? Json(*end) : Json(nullptr);
+}
 
 std::string bandText(const TissueRow& row) {
   char text[64];
@@ -43,8 +47,8 @@ Result<TissueMeasurement> measureTissue(const Progress& progress) {
   if (!shipped) return shipped.error();
   TissueMeasurement out;
   using Experiment = Status (*)(const Shipped&, TissueMeasurement&);
-  const Experiment experiments[] = {liverPuncture, skinToKidney, duraPuncture,
-                                    brainStrokes,  liverCut,     burrByPush,
+  const Experiment experiments[] = {liverPuncture, skinToKidney,     duraPuncture,
+                                    brainStrokes,  liverCut,         burrByPush,
                                     energyOfBurr,  burrThroughVault, burrHoleByHand};
   double done = 0.0;
   for (Experiment experiment : experiments) {
@@ -100,8 +104,7 @@ std::string toText(const TissueMeasurement& measured) {
     Tally& tally = row.kind == BandKind::published ? published : estimated;
     ++tally.all;
     tally.inside += row.inside();
-    predicted += row.inside() && row.kind == BandKind::published &&
-                 row.use == NumberUse::predicted;
+    predicted += row.inside() && row.kind == BandKind::published && row.use == NumberUse::predicted;
   }
   std::snprintf(line, sizeof(line),
                 "%d of %d rows of published bands inside, %d of %d of estimated ones; %d predicted "

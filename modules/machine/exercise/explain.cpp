@@ -161,9 +161,9 @@ bool isUsed(const TissueNumber& number, const Tissue& tissue, const Exercise& ex
 // "Friction 0.3 N, from: a paper; published 0.2 to 0.4 N (measured)"
 std::string numberWords(const TissueNumber& row, const SourcedNumber& number) {
   const std::string unit = row.shown_unit ? row.shown_unit : row.unit;
-  const std::string words = tr("{} {}{}, from: {}", tr(row.label),
-                               plainNumber(number.value * row.shown_per),
-                               (unit.empty() ? "" : " ") + unit, number.source);
+  const std::string words =
+      tr("{} {}{}, from: {}", tr(row.label), plainNumber(number.value * row.shown_per),
+         (unit.empty() ? "" : " ") + unit, number.source);
   const std::string known = provenanceWords(number, unit, row.shown_per);
   return known.empty() ? words : words + "; " + known;
 }

@@ -200,8 +200,9 @@ TEST(WithTissues, WhatWasTouchedByPointsAndIsGoneIsSaid) {
   EXPECT_TRUE(checkEdited(fewer.exercise).ok());
   const NewTissues none = without(fewer.exercise, "liver");
   EXPECT_TRUE(none.exercise.touch_by_points.empty());
-  EXPECT_EQ(std::ranges::count(none.notes,
-                               "Tools touch all tissues now, and not by their points alone"), 1);
+  EXPECT_EQ(
+      std::ranges::count(none.notes, "Tools touch all tissues now, and not by their points alone"),
+      1);
   EXPECT_TRUE(withTissues(exercise, exercise.tissues).notes.empty());
 }
 

@@ -272,8 +272,10 @@ TEST(TouchByPoints, IsRefusedByFileFieldAndValueWithWhatToDo) {
     const Error& error = exercise.error();
     EXPECT_NE(error.where.find("seed-liver.json: touch_by_points"), std::string::npos)
         << bad.name << ": " << error.sentence();
-    EXPECT_NE(error.what.find(bad.field), std::string::npos) << bad.name << ": " << error.sentence();
-    EXPECT_NE(error.next.find(bad.value), std::string::npos) << bad.name << ": " << error.sentence();
+    EXPECT_NE(error.what.find(bad.field), std::string::npos)
+        << bad.name << ": " << error.sentence();
+    EXPECT_NE(error.next.find(bad.value), std::string::npos)
+        << bad.name << ": " << error.sentence();
   }
 }
 

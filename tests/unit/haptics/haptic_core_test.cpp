@@ -382,7 +382,8 @@ TEST(HapticCoreByPoints, TheVoxelOfEachPointThatTouchesGoesAndUndoBringsItBack) 
   Volume expected = boneSlab();
   const GridGeometry& g = expected.geometry;
   for (int k : {13, 14, 15}) expected.hu[g.indexOf(16, 16, k)] = kAirHu;
-  EXPECT_EQ(hashOf(bench.grid), volumeSha256(expected)) << "three below each other: what the tool's solid meets beside them stays";
+  EXPECT_EQ(hashOf(bench.grid), volumeSha256(expected))
+      << "three below each other: what the tool's solid meets beside them stays";
   // Aslant all of its points are in bone, in voxels of their own.
   TickInput input;
   input.tick = bench.tick++;

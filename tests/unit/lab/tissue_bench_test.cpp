@@ -48,8 +48,8 @@ std::vector<Drop> dropsOf(const std::vector<TissueSample>& samples, double first
   for (std::size_t i = 1; i < samples.size(); ++i) {
     const double before = samples[i - 1].demanded_N.z, now = samples[i].demanded_N.z;
     if (before - now < 0.1) continue;
-    drops.push_back({before, before - now, first_mm - samples[i].arm_mm.z,
-                     samples[i - 1].tool_mm.z, samples[i].tool_mm.z});
+    drops.push_back({before, before - now, first_mm - samples[i].arm_mm.z, samples[i - 1].tool_mm.z,
+                     samples[i].tool_mm.z});
   }
   return drops;
 }
@@ -100,9 +100,8 @@ TEST(Needle, FeelsTheSameWhateverTheNumberOfItsPoints) {
   std::vector<TissueSample> reference;
   for (int points : {1, 8, 31, 120}) {
     SCOPED_TRACE(points);
-    auto trace =
-        runStroke(strokeOf({{capsule, 1.0}, {liver, 40.0}}, needle(1.2, points),
-                           {{0.1, 0.1, 1}, {0.1, 0.1, -30}, {0.1, 0.1, 1}}, 5.0));
+    auto trace = runStroke(strokeOf({{capsule, 1.0}, {liver, 40.0}}, needle(1.2, points),
+                                    {{0.1, 0.1, 1}, {0.1, 0.1, -30}, {0.1, 0.1, 1}}, 5.0));
     ASSERT_TRUE(trace);
     if (reference.empty()) reference = trace->samples;
     double sum = 0.0, difference = 0.0;
@@ -123,8 +122,8 @@ TEST(Blade, CutsTheSameWithEveryArmGridAndRate) {
   };
   for (const Case& c : {Case{0.25, 1000, 3.3}, Case{0.5, 1000, 3.3}, Case{0.25, 1000, 5.0},
                         Case{0.25, 1000, 20.0}, Case{0.25, 500, 3.3}, Case{0.25, 4000, 3.3}}) {
-    SCOPED_TRACE(testing::Message() << c.spacing_mm << " mm, " << c.rate_hz << " Hz, " << c.peak_N
-                                    << " N");
+    SCOPED_TRACE(testing::Message()
+                 << c.spacing_mm << " mm, " << c.rate_hz << " Hz, " << c.peak_N << " N");
     TissueStroke stroke = strokeOf({{liver, 20.0}}, blade,
                                    {{-8, 0.1, 1}, {-8, 0.1, -8}, {8, 0.1, -8}, {8, 0.1, 1}}, 8.0);
     stroke.wide_mm = 36.0;
@@ -184,8 +183,8 @@ TEST(SoftTissue, TakesTheWorkThatItsCutsCostAndGivesNoneOut) {
     for (std::size_t i = 1; i < trace->samples.size(); ++i) {
       const TissueSample& s = trace->samples[i];
       // The force of a tick acts until the next.
-      in_J -= 0.001 * glm::dot(trace->samples[i - 1].demanded_N,
-                               s.arm_mm - trace->samples[i - 1].arm_mm);
+      in_J -= 0.001 *
+              glm::dot(trace->samples[i - 1].demanded_N, s.arm_mm - trace->samples[i - 1].arm_mm);
       for (; carve < trace->carves.size() && trace->carves[carve].tick <= i; ++carve) {
         const auto layer = std::size_t(trace->carves[carve].tissue_class);
         cut_J += voxel_m2 * stroke.layers[layer].tissue.toughness_J_per_m2->value;
@@ -272,8 +271,8 @@ TEST(Shaft, IsHeldAgainstEveryMotionAndNeverPushedOut) {
     SCOPED_TRACE(cut);
     Tissue parted = liver;
     parted.cuttable = cut;
-    auto trace = runStroke(
-        strokeOf({{capsule, 1.0}, {parted, 40.0}}, needle(1.2), {top, bottom, top}, 5.0));
+    auto trace =
+        runStroke(strokeOf({{capsule, 1.0}, {parted, 40.0}}, needle(1.2), {top, bottom, top}, 5.0));
     ASSERT_TRUE(trace);
     const std::size_t leg = trace->samples.size() / 2;
     // After the spring has turned round.

@@ -124,7 +124,8 @@ inline std::vector<std::string> missing(const PointerTask& task, const Cut& cut)
   } else if (task.name == "cranium") {
     needWindow(15.0, 10.0);
   } else {
-    // As wide as a voxel, some 3 cm long and about 1 cm deep: deeper than that a hand cannot draw it.
+    // As wide as a voxel, some 3 cm long and about 1 cm deep: deeper than that a hand cannot draw
+    // it.
     need(cut.of("liver") + cut.of("capsule") > 150.0, "the slice");
     need(cut.of("bone") == 0.0, "whole bone");
     need(cut.deepest_mm.back() < -5.0, "the blade's depth");

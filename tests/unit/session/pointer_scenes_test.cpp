@@ -162,9 +162,9 @@ double goneWhereTheBladeWas(const SessionReader& recording, const Session& sessi
   return double(gone.size()) / double(crossed.size());
 }
 
-// 32 mm within a fifth of a second, some 10 mm deep. On a grid as fine as the blade what it swept is a
-// slit. On a coarser one a cut is as thick as a voxel, the work of the hand does not pay for all of
-// that (removed volume is work / cutting energy), and what is left is told here.
+// 32 mm within a fifth of a second, some 10 mm deep. On a grid as fine as the blade what it swept
+// is a slit. On a coarser one a cut is as thick as a voxel, the work of the hand does not pay for
+// all of that (removed volume is work / cutting energy), and what is left is told here.
 TEST(PointerExercises, AFastStrokeLeavesASlitAndNoDots) {
   const Exercise exercise = *readExercise(resourceFolder() / "scenes" / "liver-one-arm.json");
   const std::map<double, double> least{{1.0, 0.95}, {2.0, 0.8}, {3.0, 0.6}};

@@ -122,9 +122,8 @@ Counts compare(PaperPatient& paper, const Exercise& exercise, const SessionReade
     for (std::size_t arm = 0; arm < exercise.arms.size(); ++arm) {
       const ArmRecord& now = ticks[n].arms[arm];
       const Touch touch = paper.touch(arm, now, ticks[n > 0 ? n - 1 : 0].arms[arm]);
-      const Tissue* felt = now.tissue_class < 0
-                               ? nullptr
-                               : &exercise.tissues.tissues[std::size_t(now.tissue_class)];
+      const Tissue* felt =
+          now.tissue_class < 0 ? nullptr : &exercise.tissues.tissues[std::size_t(now.tissue_class)];
       out.touching[arm] += touch.points > 0;
       same_touch = same_touch && felt == touch.firmest && now.points_in_tissue == touch.points;
       const double rounding_N = 1e-12 * (1.0 + glm::length(touch.force_N));
@@ -153,7 +152,8 @@ TEST_P(SeedTouch, IsThePapersOwnTickByTickAndSoIsItsReplay) {
   const Exercise exercise = *readExercise(file);
   const Placement placed = *place(exercise, *readCase(exercise.case_source));
   ASSERT_FALSE(placed.error) << placed.error->sentence();
-  const SessionOptions options{folder / "s.h5", *readOperatorScript(exercise.operator_file, exercise)};
+  const SessionOptions options{folder / "s.h5",
+                               *readOperatorScript(exercise.operator_file, exercise)};
   auto session = Session::create(placed, options);
   ASSERT_TRUE(session.ok()) << session.error().sentence();
   ASSERT_TRUE((*session)->freewheel(kTicks / exercise.rate_hz).ok());
@@ -165,9 +165,8 @@ TEST_P(SeedTouch, IsThePapersOwnTickByTickAndSoIsItsReplay) {
   PaperPatient paper(*placed.patient.volume, placed.labels.get(), run);
   const Counts counts = compare(paper, run, *recording);
   for (std::size_t arm = 0; arm < run.arms.size(); ++arm) {
-    std::printf("%s, %s: touches in %llu of %llu ticks\n", name.c_str(),
-                run.arms[arm].name.c_str(), (unsigned long long)counts.touching[arm],
-                (unsigned long long)kTicks);
+    std::printf("%s, %s: touches in %llu of %llu ticks\n", name.c_str(), run.arms[arm].name.c_str(),
+                (unsigned long long)counts.touching[arm], (unsigned long long)kTicks);
     EXPECT_GT(counts.touching[arm], 20u) << run.arms[arm].name;
   }
   std::printf("%s: %llu voxels erased\n", name.c_str(), (unsigned long long)counts.erased);

@@ -325,9 +325,9 @@ TEST(TissueFile, NeedsEveryFieldButLabelAndCuttable) {
   }
   for (const TissueNumber& m : kTissueNumbers) {
     for (const char* key : {"value", "source"}) {
-      EXPECT_EQ(
-          parseErrorAfter([&](Json& j) { j["tissues"][1]["mechanics"][m.key].erase(key); }, m).where,
-          std::string("t.json: tissues[1].mechanics.") + m.key + "." + key);
+      EXPECT_EQ(parseErrorAfter([&](Json& j) { j["tissues"][1]["mechanics"][m.key].erase(key); }, m)
+                    .where,
+                std::string("t.json: tissues[1].mechanics.") + m.key + "." + key);
     }
   }
   Json json = toJson(head());

@@ -292,8 +292,8 @@ class KnownNumbersTest : public TissuePanelTest {
   KnownNumbersTest() {
     TissueSet set = twoTissues();
     Tissue& bone = set.tissues[1];
-    bone.friction_N = {2.5, "a paper", {{2.2, 3.3}}, Confidence::measured,
-                       "human cadaver, access needle"};
+    bone.friction_N = {
+        2.5, "a paper", {{2.2, 3.3}}, Confidence::measured, "human cadaver, access needle"};
     bone.relaxation_share = SourcedNumber{0.5, "a book", {{0.4, 0.6}}, Confidence::derived};
     bone.relaxation_s = SourcedNumber{2.0, "a book"};
     panel_.setTissues(set);
@@ -310,7 +310,8 @@ TEST_F(KnownNumbersTest, WhatWasPublishedStandsBelowTheNumberAndInItsTip) {
   const QString words = "published 2.2 to 3.3 N (measured; human cadaver, access needle)";
   EXPECT_EQ(known("friction").text(), words);
   EXPECT_FALSE(known("friction").isHidden());
-  EXPECT_TRUE(tip("friction").contains("Source: a paper\n" + words)) << tip("friction").toStdString();
+  EXPECT_TRUE(tip("friction").contains("Source: a paper\n" + words))
+      << tip("friction").toStdString();
   EXPECT_EQ(known("relaxes by").text(), "published 40 to 60 % (derived)") << "in the shown unit";
   EXPECT_TRUE(known("stiffness").isHidden()) << "nothing is known but its source";
 }
