@@ -71,8 +71,7 @@ void HapticCore::followArm(ArmTick& now) {
   const bool stopped = still || (tool.proxy && tool.proxy->held());
   Pose to = arm_mm;
   if (tool.soft) {
-    const bool motor = tool.cutting == Cutting::driven && !motorIsOff(arm, now.out.buttons);
-    to = tool.soft->follow(tissue_, arm_mm, stopped, motor);
+    to = tool.soft->follow(tissue_, arm_mm, stopped, motorRuns(arm, now.out.buttons));
   }
   if (tool.proxy) {
     followBy(now, to, still);
@@ -89,7 +88,7 @@ void HapticCore::followBy(ArmTick& now, const Pose& wanted_mm, bool still) {
   const bool may_cut = !still && !journal_.busy();
   const Cutting cutting = may_cut ? tool.cutting : Cutting::nothing;
   // What a motor cuts rubs on the arm, and holds the tool by what is left to be cut alone.
-  const bool runs = cutting == Cutting::driven && !motorIsOff(arm, now.out.buttons);
+  const bool runs = may_cut && motorRuns(arm, now.out.buttons);
   now.drags = !runs && parameters_.touch_version > 9 && names(parameters_.laws, LawKind::coulomb);
   const bool by_push = !runs && names(parameters_.laws, LawKind::friction);
   tool.proxy->follow(tissue_, wanted_mm, cutting, now.drags ? tool.rubs_N : 0.0, by_push);

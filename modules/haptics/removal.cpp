@@ -32,6 +32,7 @@ Removal::Removal(const Tool& tool, const GridGeometry& geometry, RemovalKind kin
     : tool_(tool),
       geometry_(geometry),
       patient_to_voxel_(geometry.patientToVoxel()),
+      normal_to_voxel_(glm::transpose(glm::inverse(Mat3(patient_to_voxel_)))),
       kind_(kind),
       fading_(1.0 / (1.0 + period_s / kKept_s)) {
   radius_mm_ = 1000.0 * tool.radius_m;
@@ -168,8 +169,7 @@ void Removal::sweep(const TissueField& tissue, const Pose& pose_mm,
   if (spared_ != 0) {
     // The plane across the tool at its tip: a way that is ahead of it is so in voxels, too.
     tip_ = Vec3(patient_to_voxel_ * glm::dvec4(pose_mm.position, 1.0));
-    const Mat3 to_patient = glm::inverse(Mat3(patient_to_voxel_));
-    ahead_ = glm::transpose(to_patient) * (pose_mm.orientation * Vec3(0.0, 0.0, -1.0));
+    ahead_ = normal_to_voxel_ * (pose_mm.orientation * Vec3(0.0, 0.0, -1.0));
   }
   // Work ran short and the tool went on: it must not take later what it has left.
   if (passing_ && !paid_ && moved(goal_, now) > layer_mm_) end(now);

@@ -102,19 +102,19 @@ Pose SoftHold::follow(const TissueField& tissue, const Pose& arm, bool stopped, 
   last_.orientation = arm.orientation;
   lookAlong(tissue);
   double let_go_J = -1.0;
-  if (held_ >= 0 && !pressesOn(tissue, arm_mm_)) let_go_J = letGo_J(tissue, arm_mm_);
+  if (held_ >= 0 && !pressesOn(tissue)) let_go_J = letGo_J(tissue);
   const Vec3 target_mm = held_ >= 0 ? kept_mm_ : arm_mm_;
   if (held_ < 0 && (!stopped || let_go_J > 0.0)) slip(tissue, target_mm, driven, let_go_J);
   creep(tissue);
   last_.position = target_mm - stretch_mm_;
-  tell(tissue, arm_mm_);
+  tell(tissue);
   return last_;
 }
 
 // False where the arm has drawn back from the membrane, or presses as much as it bears.
-bool SoftHold::pressesOn(const TissueField& tissue, const Vec3& arm_mm) {
+bool SoftHold::pressesOn(const TissueField& tissue) const {
   const TissueClass& t = tissue.ofClass(held_);
-  const Vec3 pressed_mm = arm_mm - from_mm_;
+  const Vec3 pressed_mm = arm_mm_ - from_mm_;
   if (!isMembrane(t) || glm::dot(pressed_mm, inwards_) < 0.0) return false;
   const double travel_mm = glm::length(pressed_mm);
   return membraneForce_N(t, travel_mm - crept_travel_mm_) < ruptureForce_N(t, width_mm_);
@@ -122,11 +122,11 @@ bool SoftHold::pressesOn(const TissueField& tissue, const Vec3& arm_mm) {
 
 // The membrane no longer holds the tip. Returns the energy that it had stored where it gave way;
 // -1 where the arm drew back and it is whole.
-double SoftHold::letGo_J(const TissueField& tissue, const Vec3& arm_mm) {
+double SoftHold::letGo_J(const TissueField& tissue) {
   const TissueClass& t = tissue.ofClass(held_);
   const int c = held_;
   held_ = -1;
-  const Vec3 pressed_mm = arm_mm - from_mm_;
+  const Vec3 pressed_mm = arm_mm_ - from_mm_;
   if (!isMembrane(t) || glm::dot(pressed_mm, inwards_) < 0.0) return -1.0;
   gave_way_ = true;
   passing_ = c;
@@ -150,8 +150,7 @@ void SoftHold::slip(const TissueField& tissue, const Vec3& target_mm, bool drive
   const Vec3 way = pulls_mm / length_mm;
   int ahead = enclosed_ ? ahead_ : -1;
   if (let_go_J >= 0.0) {
-    const Vec3 forwards = last_.orientation * Vec3(0.0, 0.0, -1.0);
-    ahead = softAt(tissue, placeOf(target_mm) + beyond(forwards));
+    ahead = softAt(tissue, placeOf(target_mm) + beyond(forwards()));
   }
   lookBefore(tissue, way);
   const Cost cost = costOf(tissue, way, ahead, driven);
@@ -192,9 +191,9 @@ SoftHold::Cost SoftHold::costOf(const TissueField& tissue, const Vec3& way, int 
   const auto per_mm = [&](int c) {
     return kDull * 0.001 * toughness_J_per_m2(tissue.ofClass(c), width_mm_);
   };
-  const double forwards = glm::dot(way, last_.orientation * Vec3(0.0, 0.0, -1.0));
-  const double across = std::sqrt(std::max(0.0, 1.0 - forwards * forwards));
-  if (ahead >= 0 && forwards > 0.0) cost.cutting_N += per_mm(ahead) * width_mm_ * forwards;
+  const double along = glm::dot(way, forwards());
+  const double across = std::sqrt(std::max(0.0, 1.0 - along * along));
+  if (ahead >= 0 && along > 0.0) cost.cutting_N += per_mm(ahead) * width_mm_ * along;
   for (std::int8_t c : edge_) {
     if (c >= 0) cost.cutting_N += per_mm(c) * edge_part_mm_ * across;
   }
@@ -283,7 +282,7 @@ void SoftHold::creep(const TissueField& tissue) {
   if (glm::dot(left_mm, stretch_mm_ - crept_mm_) > 0.0) crept_mm_ += rate(at) * left_mm;
 }
 
-void SoftHold::tell(const TissueField& tissue, const Vec3& arm_mm) {
+void SoftHold::tell(const TissueField& tissue) {
   pull_ = {};
   pull_.parts = laws_.cutting && parts_tissue_;
   const Vec3 pulls_mm = stretch_mm_ - crept_mm_;
@@ -295,7 +294,7 @@ void SoftHold::tell(const TissueField& tissue, const Vec3& arm_mm) {
   }
   if (held_ < 0) return;
   const TissueClass& t = tissue.ofClass(held_);
-  const Vec3 pressed_mm = arm_mm - from_mm_;
+  const Vec3 pressed_mm = arm_mm_ - from_mm_;
   const double length_mm = glm::length(pressed_mm);
   const double travel_mm = std::max(0.0, length_mm - crept_travel_mm_);
   pull_.membrane_stiffness = membraneStiffness_N_per_m(t, travel_mm);
@@ -309,7 +308,7 @@ void SoftHold::tell(const TissueField& tissue, const Vec3& arm_mm) {
 Vec3 SoftHold::wayOfTip(const Vec3& tip_mm) const {
   const Vec3 way = tip_mm - behind_mm_;
   const double length_mm = glm::length(way);
-  return length_mm > kTiny_mm ? way / length_mm : last_.orientation * Vec3(0.0, 0.0, -1.0);
+  return length_mm > kTiny_mm ? way / length_mm : forwards();
 }
 
 // Whether there is tissue beside the tip: before that the slot's front is not in it.
@@ -375,9 +374,9 @@ Pose SoftHold::moved(const TissueField& tissue, const Pose& tool, bool stopped) 
   return at;
 }
 
-bool SoftHold::meets(const TissueField& tissue, const Vec3& tip_mm, const Vec3& place, int c) {
-  const Vec3 forwards = last_.orientation * Vec3(0.0, 0.0, -1.0);
-  return glm::dot(wayOfTip(tip_mm), forwards) >= kForwards && holeAt(tip_mm, c) < 0 &&
+bool SoftHold::meets(const TissueField& tissue, const Vec3& tip_mm, const Vec3& place,
+                     int c) const {
+  return glm::dot(wayOfTip(tip_mm), forwards()) >= kForwards && holeAt(tip_mm, c) < 0 &&
          isSheet(tissue, place, c);
 }
 

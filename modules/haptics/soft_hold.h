@@ -47,7 +47,6 @@ class SoftHold {
   void restored(const TissueField& tissue);
 
   const SoftPull& pull() const { return pull_; }
-  bool heldByMembrane() const { return held_ >= 0; }
   // A membrane gave way in this tick.
   bool gaveWay() const { return gave_way_; }
   const Vec3& gaveWay_mm() const { return holes_[std::size_t(hole_)].from_mm; }
@@ -95,8 +94,10 @@ class SoftHold {
   Vec3 placeOf(const Vec3& patient_mm) const {
     return Vec3(patient_to_voxel_ * glm::dvec4(patient_mm, 1.0));
   }
-  bool pressesOn(const TissueField& tissue, const Vec3& arm_mm);
-  double letGo_J(const TissueField& tissue, const Vec3& arm_mm);
+  // The way that the tool points.
+  Vec3 forwards() const { return last_.orientation * Vec3(0.0, 0.0, -1.0); }
+  bool pressesOn(const TissueField& tissue) const;
+  double letGo_J(const TissueField& tissue);
   void slip(const TissueField& tissue, const Vec3& target_mm, bool driven, double let_go_J);
   Cost costOf(const TissueField& tissue, const Vec3& way, int ahead, bool driven) const;
   void lookAlong(const TissueField& tissue);
@@ -105,8 +106,8 @@ class SoftHold {
   int softAt(const TissueField& tissue, const Vec3& place) const;
   Vec3 beyond(const Vec3& way) const;
   void creep(const TissueField& tissue);
-  void tell(const TissueField& tissue, const Vec3& arm_mm);
-  bool meets(const TissueField& tissue, const Vec3& tip_mm, const Vec3& place, int c);
+  void tell(const TissueField& tissue);
+  bool meets(const TissueField& tissue, const Vec3& tip_mm, const Vec3& place, int c) const;
   bool isEnclosed(const TissueField& tissue, const Pose& at) const;
   bool isSheet(const TissueField& tissue, const Vec3& place, int c) const;
   std::int32_t holeAt(const Vec3& tip_mm, int c) const;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "base/math.h"
+#include "haptics/contact_force.h"
 #include "tissue/tissue_set.h"
 
 namespace trephine {
@@ -36,6 +37,16 @@ struct SoftPull {
   Vec3 membrane_N{0.0};
   double membrane_stiffness = 0.0;  // N/m, at this travel; 0: there is none
   double membrane_J = 0.0;          // stored
+
+  // Adds the part `of` that one spring, as the arm is shown `share` of its stiffness.
+  void addSpring(double share, double of, ContactForce& out) const {
+    if (!(stiffness > 0.0) || !(of > 0.0)) return;
+    const double k = share * of * stiffness;
+    const Vec3 stretch_m = force_N / stiffness;
+    out.elastic_N += k * stretch_m;
+    out.stiffness += k;
+    out.stored_J += 0.5 * k * glm::dot(stretch_m, stretch_m);
+  }
 };
 
 }  // namespace trephine

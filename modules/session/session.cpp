@@ -19,7 +19,6 @@
 #include "session/arm_devices.h"
 #include "session/codes.h"
 #include "session/session_engine.h"
-#include "tissue/tissue_edits.h"
 #include "volume/case_memory.h"
 
 namespace trephine {
@@ -52,10 +51,8 @@ void warnOfAbsentLabels(const TissueSet& tissues, const LabelMap* labels) {
 // Nothing of it can be paid for, and it is felt as it is: a sharp tool parts what could be cut.
 TissueSet tooToughToCut(TissueSet tissues) {
   for (Tissue& tissue : tissues.tissues) {
-    const std::string source =
-        tissue.cutting_J_per_mm3 ? tissue.cutting_J_per_mm3->source : kOwnSource;
     tissue.toughness_J_per_m2.reset();
-    tissue.cutting_J_per_mm3 = SourcedNumber{kMechanicsRange.high, source};
+    tissue.cutting_J_per_mm3 = SourcedNumber{kMechanicsRange.high, kOwnSource};
   }
   return tissues;
 }

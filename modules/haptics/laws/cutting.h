@@ -8,16 +8,6 @@
 
 namespace trephine {
 
-// The share `of` the spring between a tool in soft tissue and its arm.
-inline void addSoftSpring(const LawInput& in, double of, ContactForce& out) {
-  if (!(in.soft.stiffness > 0.0) || !(of > 0.0)) return;
-  const double k = in.share.stiffness * of * in.soft.stiffness;
-  const Vec3 stretch_m = in.soft.force_N / in.soft.stiffness;
-  out.elastic_N += k * stretch_m;
-  out.stiffness += k;
-  out.stored_J += 0.5 * k * glm::dot(stretch_m, stretch_m);
-}
-
 // A tip or an edge that goes on through whole tissue feels its toughness J_c times the width that
 // is engaged, against its motion, one way; less where an edge slides along itself: of a way with
 // the share c across the edge, J_c w c (Atkins, Xu and Jeronimidis 2004: by the work per new
@@ -36,7 +26,9 @@ struct CuttingLaw {
   static Impedance impedance(const TissueClass& tissue) {
     return {0.0, tissue.solid ? 0.0 : kCling_N_per_m};
   }
-  void add(const LawInput& in, ContactForce& out) const { addSoftSpring(in, in.soft.cutting, out); }
+  void add(const LawInput& in, ContactForce& out) const {
+    in.soft.addSpring(in.share.stiffness, in.soft.cutting, out);
+  }
   void forget() {}
 };
 

@@ -5,7 +5,6 @@
 #include "base/tr.h"
 #include "haptics/contact_force.h"
 #include "haptics/law_input.h"
-#include "haptics/laws/cutting.h"
 
 namespace trephine {
 
@@ -27,7 +26,7 @@ struct FrictionLaw {
     return {0.0, !tissue.solid && tissue.shaft_N_per_mm > 0.0 ? kCling_N_per_m : 0.0};
   }
   void add(const LawInput& in, ContactForce& out) const {
-    addSoftSpring(in, in.soft.friction, out);
+    in.soft.addSpring(in.share.stiffness, in.soft.friction, out);
   }
   void forget() {}
 };

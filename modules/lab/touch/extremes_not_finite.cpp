@@ -92,12 +92,12 @@ Outcome refusedTools() {
 }
 
 Outcome refusedCapabilities() {
-  if (Status usual = tryToOpen(armCapabilities()); !usual) return {usual.error().sentence(), false};
+  if (Status usual = tryToOpen(omniCapabilities()); !usual) return {usual.error().sentence(), false};
   Refusals refusals;
   for (double value : kNotFinite) {
     for (auto field : {&TrephineCapabilities::peak_force_N, &TrephineCapabilities::apparent_mass_kg,
                        &TrephineCapabilities::encoder_step_m, &TrephineCapabilities::rate_hz}) {
-      TrephineCapabilities capabilities = armCapabilities();
+      TrephineCapabilities capabilities = omniCapabilities();
       capabilities.*field = value;
       refusals.add(tryToOpen(capabilities));
     }

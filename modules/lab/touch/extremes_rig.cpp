@@ -151,10 +151,6 @@ void ScriptedClock::sleepUntil(std::int64_t until_ns) {
   if (sleeps % 2) time_ns += jitter_ns;
 }
 
-TrephineCapabilities armCapabilities() {
-  return omniCapabilities();
-}
-
 Status tryToOpen(const TrephineCapabilities& capabilities) {
   ScriptedArm arm(stroke, capabilities, 0);
   if (auto device = arm.open(); !device) return device.error();
@@ -163,7 +159,7 @@ Status tryToOpen(const TrephineCapabilities& capabilities) {
 
 Run run(const Setup& setup) {
   Run run;
-  ScriptedArm arm(setup.script, armCapabilities(), kTicks);
+  ScriptedArm arm(setup.script, omniCapabilities(), kTicks);
   auto device = arm.open();
   if (!device) {
     run.broken = device.error().sentence();

@@ -95,8 +95,7 @@ struct ScriptedClock : LoopClock {
   void sleepUntil(std::int64_t until_ns) override;
 };
 
-// The scripted arm's own capabilities, an Omni's; and whether an arm with others can be opened.
-TrephineCapabilities armCapabilities();
+// Whether a scripted arm with these can be opened; its own are an Omni's.
 Status tryToOpen(const TrephineCapabilities& capabilities);
 
 }  // namespace trephine::extremes

@@ -79,8 +79,6 @@ TissueTable tableOf(const TissueStroke& stroke) {
   return tissueTable(set);
 }
 
-}  // namespace
-
 std::function<Vec3(double)> wayThrough(std::vector<Vec3> places_mm, double mm_per_s) {
   return [places = std::move(places_mm), mm_per_s](double t_s) {
     double left_mm = std::max(0.0, t_s) * mm_per_s;
@@ -100,6 +98,37 @@ double secondsThrough(const std::vector<Vec3>& places_mm, double mm_per_s) {
     length_mm += glm::length(places_mm[n + 1] - places_mm[n]);
   }
   return length_mm / mm_per_s;
+}
+
+}  // namespace
+
+void goThrough(TissueStroke& stroke, const std::vector<Vec3>& places_mm, double mm_per_s) {
+  stroke.way = wayThrough(places_mm, mm_per_s);
+  stroke.seconds = secondsThrough(places_mm, mm_per_s);
+}
+
+TissueStroke softStroke(std::vector<TissueLayer> layers, const Tool& tool,
+                        const std::vector<Vec3>& places_mm, double mm_per_s) {
+  TissueStroke stroke;
+  stroke.layers = std::move(layers);
+  stroke.tool = tool;
+  stroke.laws = {LawKind::viscous, LawKind::friction, LawKind::elastic, LawKind::membrane,
+                 LawKind::cutting};
+  stroke.wide_mm = 16.0;
+  stroke.peak_force_N = 20.0;
+  goThrough(stroke, places_mm, mm_per_s);
+  return stroke;
+}
+
+Tool needleOf(double width_mm, int points) {
+  return *makeTool({ToolKind::needle, 60.0, points, 0.5 * width_mm});
+}
+
+double firstTouch_mm(const std::vector<TissueSample>& samples) {
+  for (const TissueSample& s : samples) {
+    if (s.demanded_N.z > 0.0) return s.arm_mm.z;
+  }
+  return 0.0;
 }
 
 Result<TissueTrace> runStroke(const TissueStroke& stroke) {

@@ -65,8 +65,13 @@ struct TissueTrace {
 // Errors: BAD_ARGUMENT; those of the loop.
 Result<TissueTrace> runStroke(const TissueStroke& stroke);
 
-// Through these places at a steady speed.
-std::function<Vec3(double)> wayThrough(std::vector<Vec3> places_mm, double mm_per_s);
-double secondsThrough(const std::vector<Vec3>& places_mm, double mm_per_s);
+// The stroke goes through these places at a steady speed.
+void goThrough(TissueStroke& stroke, const std::vector<Vec3>& places_mm, double mm_per_s);
+// So, by the laws of soft tissue, through a block 16 mm wide on an arm of 20 N.
+TissueStroke softStroke(std::vector<TissueLayer> layers, const Tool& tool,
+                        const std::vector<Vec3>& places_mm, double mm_per_s);
+Tool needleOf(double width_mm, int points = 1);  // 60 mm long
+// How high the arm is when it is first pushed up, patient z; 0 where it never is.
+double firstTouch_mm(const std::vector<TissueSample>& samples);
 
 }  // namespace trephine

@@ -35,12 +35,7 @@ Result<std::vector<std::filesystem::path>> drawTissue(const TissueMeasurement& m
     plot.x = {curve.x_title, curve.x_unit};
     plot.x.low = low_x;
     plot.x.high = high_x;
-    plot.y = {curve.x_title == "push"    ? "rate"
-              : curve.x_title == "voxel" ? "energy by volume, of u"
-                                         : "force",
-              curve.x_title == "push"    ? "mm3/s"
-              : curve.x_title == "voxel" ? ""
-                                         : "N"};
+    plot.y = {curve.y_title, curve.y_unit};
     plot.y.low = low_y - margin;
     plot.y.high = high_y + margin;
     plot.lines.push_back(std::move(line));

@@ -14,28 +14,8 @@
 namespace trephine {
 namespace {
 
-const std::vector<LawKind> kLaws{LawKind::viscous, LawKind::friction, LawKind::elastic,
-                                 LawKind::membrane, LawKind::cutting};
-
 Tissue shipped(const char* set, const char* id) {
   return *readTissueSet(resourceFolder() / "tissues" / (std::string(set) + ".json"))->find(id);
-}
-
-Tool needle(double width_mm, int points = 1) {
-  return *makeTool({ToolKind::needle, 60.0, points, 0.5 * width_mm});
-}
-
-TissueStroke strokeOf(std::vector<TissueLayer> layers, const Tool& tool,
-                      const std::vector<Vec3>& places, double mm_per_s) {
-  TissueStroke stroke;
-  stroke.layers = std::move(layers);
-  stroke.tool = tool;
-  stroke.laws = kLaws;
-  stroke.wide_mm = 16.0;
-  stroke.peak_force_N = 20.0;
-  stroke.way = wayThrough(places, mm_per_s);
-  stroke.seconds = secondsThrough(places, mm_per_s);
-  return stroke;
 }
 
 struct Drop {
@@ -54,13 +34,6 @@ std::vector<Drop> dropsOf(const std::vector<TissueSample>& samples, double first
   return drops;
 }
 
-double firstTouch_mm(const std::vector<TissueSample>& samples) {
-  for (const TissueSample& s : samples) {
-    if (s.demanded_N.z > 0.0) return s.arm_mm.z;
-  }
-  return 0.0;
-}
-
 TEST(Dura, GivesWayOnceToEachNeedleInTheTickInWhichItsTipGoesThrough) {
   const Tissue dura = shipped("cranium", "dura"), brain = shipped("cranium", "brain");
   for (double thick_mm : {0.5, 1.0, 2.0}) {
@@ -70,7 +43,7 @@ TEST(Dura, GivesWayOnceToEachNeedleInTheTickInWhichItsTipGoesThrough) {
         SCOPED_TRACE(testing::Message() << thick_mm << " mm thick, " << width_mm << " mm wide, "
                                         << mm_per_s << " mm/s");
         const Vec3 top(0.13, 0.07, 1.0), bottom(0.13, 0.07, -12.0);
-        auto trace = runStroke(strokeOf({{dura, thick_mm}, {brain, 20.0}}, needle(width_mm),
+        auto trace = runStroke(softStroke({{dura, thick_mm}, {brain, 20.0}}, needleOf(width_mm),
                                         {top, bottom, top, bottom}, mm_per_s));
         ASSERT_TRUE(trace) << trace.error().sentence();
         const std::size_t leg = std::size_t(1000.0 * 13.0 / mm_per_s);
@@ -100,7 +73,7 @@ TEST(Needle, FeelsTheSameWhateverTheNumberOfItsPoints) {
   std::vector<TissueSample> reference;
   for (int points : {1, 8, 31, 120}) {
     SCOPED_TRACE(points);
-    auto trace = runStroke(strokeOf({{capsule, 1.0}, {liver, 40.0}}, needle(1.2, points),
+    auto trace = runStroke(softStroke({{capsule, 1.0}, {liver, 40.0}}, needleOf(1.2, points),
                                     {{0.1, 0.1, 1}, {0.1, 0.1, -30}, {0.1, 0.1, 1}}, 5.0));
     ASSERT_TRUE(trace);
     if (reference.empty()) reference = trace->samples;
@@ -124,7 +97,7 @@ TEST(Blade, CutsTheSameWithEveryArmGridAndRate) {
                         Case{0.25, 1000, 20.0}, Case{0.25, 500, 3.3}, Case{0.25, 4000, 3.3}}) {
     SCOPED_TRACE(testing::Message()
                  << c.spacing_mm << " mm, " << c.rate_hz << " Hz, " << c.peak_N << " N");
-    TissueStroke stroke = strokeOf({{liver, 20.0}}, blade,
+    TissueStroke stroke = softStroke({{liver, 20.0}}, blade,
                                    {{-8, 0.1, 1}, {-8, 0.1, -8}, {8, 0.1, -8}, {8, 0.1, 1}}, 8.0);
     stroke.wide_mm = 36.0;
     stroke.spacing_mm = c.spacing_mm;
@@ -169,9 +142,9 @@ TEST(SoftTissue, TakesTheWorkThatItsCutsCostAndGivesNoneOut) {
   double most_cut_J = 0.0;
   for (int run = 0; run < 16; ++run) {
     SCOPED_TRACE(run);
-    const Tool tool = run % 2 ? needle(1.2) : *makeTool({ToolKind::blade, 16.0, 16, 0.6});
+    const Tool tool = run % 2 ? needleOf(1.2) : *makeTool({ToolKind::blade, 16.0, 16, 0.6});
     TissueStroke stroke =
-        strokeOf({{capsule, 1.0}, {liver, 7.0}, {vessel, 4.0}, {liver, 10.0}}, tool, {{}, {}}, 1.0);
+        softStroke({{capsule, 1.0}, {liver, 7.0}, {vessel, 4.0}, {liver, 10.0}}, tool, {{}, {}}, 1.0);
     stroke.laws.push_back(LawKind::relaxation);
     stroke.way = wander(random, stroke.seconds);
     stroke.wide_mm = 30.0;
@@ -200,7 +173,7 @@ TEST(SoftTissue, TakesTheWorkThatItsCutsCostAndGivesNoneOut) {
 // The force along z at the n-th fall by more than a tenth of a newton.
 std::vector<Drop> dropsAlong(const std::vector<TissueLayer>& layers, const Tool& tool,
                              const std::vector<Vec3>& places, double mm_per_s = 5.0) {
-  auto trace = runStroke(strokeOf(layers, tool, places, mm_per_s));
+  auto trace = runStroke(softStroke(layers, tool, places, mm_per_s));
   return trace ? dropsOf(trace->samples, firstTouch_mm(trace->samples)) : std::vector<Drop>();
 }
 
@@ -210,7 +183,7 @@ TEST(Membrane, GivesWayAgainBesideItsHoleAndNotInIt) {
   const Vec3 down(0, 0, -11);
   const auto twice = [&](const Vec3& second) {
     const Vec3 first(0.1, 0.1, 1.0);
-    return dropsAlong(layers, needle(0.9), {first, first + down, first, second, second + down});
+    return dropsAlong(layers, needleOf(0.9), {first, first + down, first, second, second + down});
   };
   EXPECT_EQ(twice({0.1, 0.1, 1.0}).size(), 1u);
   EXPECT_EQ(twice({0.4, 0.1, 1.0}).size(), 1u);
@@ -220,7 +193,7 @@ TEST(Membrane, GivesWayAgainBesideItsHoleAndNotInIt) {
 TEST(Membrane, OfAnotherPieceBehindTheFirstGivesWayOnItsOwn) {
   const Tissue dura = shipped("cranium", "dura"), brain = shipped("cranium", "brain");
   const auto drops = dropsAlong({{dura, 1.0}, {brain, 8.0}, {dura, 1.0}, {brain, 12.0}},
-                                needle(0.9), {{0.1, 0.1, 1.0}, {0.1, 0.1, -19.0}});
+                                needleOf(0.9), {{0.1, 0.1, 1.0}, {0.1, 0.1, -19.0}});
   EXPECT_EQ(drops.size(), 2u);
 }
 
@@ -228,7 +201,7 @@ TEST(Membrane, IsWholeAfterATipThatDrewBack) {
   const Tissue dura = shipped("cranium", "dura"), brain = shipped("cranium", "brain");
   const Vec3 top(0.1, 0.1, 1.0), pressed(0.1, 0.1, -2.0), through(0.1, 0.1, -9.0);
   const auto drops =
-      dropsAlong({{dura, 1.0}, {brain, 20.0}}, needle(0.9), {top, pressed, top, through});
+      dropsAlong({{dura, 1.0}, {brain, 20.0}}, needleOf(0.9), {top, pressed, top, through});
   ASSERT_EQ(drops.size(), 1u);
   EXPECT_GT(drops[0].peak_N, 0.5);
 }
@@ -237,7 +210,7 @@ TEST(Membrane, HasAPeakWhereATipComesOutOfAThickOne) {
   const Tissue skin = shipped("abdomen", "skin");
   std::vector<Drop> peaks;
   for (const Drop& drop :
-       dropsAlong({{skin, 16.0}}, needle(0.9), {{0.1, 0.1, 1.0}, {0.1, 0.1, -26.0}})) {
+       dropsAlong({{skin, 16.0}}, needleOf(0.9), {{0.1, 0.1, 1.0}, {0.1, 0.1, -26.0}})) {
     if (drop.size_N > 0.8) peaks.push_back(drop);  // more than an edge slips by
   }
   ASSERT_EQ(peaks.size(), 2u);
@@ -249,7 +222,7 @@ TEST(Relaxation, TakesItsShareOfAHeldForceWhereTheLawIsNamed) {
   Tissue dura = shipped("cranium", "dura");
   dura.relaxation_share = SourcedNumber{0.4, "of this test"};
   dura.relaxation_s = SourcedNumber{0.5, "of this test"};
-  TissueStroke stroke = strokeOf({{dura, 3.0}}, needle(0.9), {{}, {}}, 1.0);
+  TissueStroke stroke = softStroke({{dura, 3.0}}, needleOf(0.9), {{}, {}}, 1.0);
   stroke.way = [](double t_s) { return Vec3(0.1, 0.1, std::max(-2.0, 1.0 - 5.0 * t_s)); };
   stroke.seconds = 4.0;
   const auto heldAndLater = [&] {
@@ -272,7 +245,7 @@ TEST(Shaft, IsHeldAgainstEveryMotionAndNeverPushedOut) {
     Tissue parted = liver;
     parted.cuttable = cut;
     auto trace =
-        runStroke(strokeOf({{capsule, 1.0}, {parted, 40.0}}, needle(1.2), {top, bottom, top}, 5.0));
+        runStroke(softStroke({{capsule, 1.0}, {parted, 40.0}}, needleOf(1.2), {top, bottom, top}, 5.0));
     ASSERT_TRUE(trace);
     const std::size_t leg = trace->samples.size() / 2;
     // After the spring has turned round.
