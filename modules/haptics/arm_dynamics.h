@@ -20,6 +20,8 @@ struct ArmDynamics {
   // itself (device_rules.h).
   double continuous_force_N = 3.3;
   double thermal_s = 0.0;
+  // Its own, dry: no part of the tick goes by it, but it hides what is weaker. 0: not known.
+  double friction_N = 0.0;
   bool operator==(const ArmDynamics&) const = default;
 };
 
@@ -42,6 +44,9 @@ inline constexpr FieldOf<ArmDynamics> kArmDynamicsFields[] = {
     {{"thermal_s", kThermal_s, Given::may_be,
       trLater("the time constant with which its motors warm; 0: it looks after itself")},
      &ArmDynamics::thermal_s},
+    {{"friction_N", kDryFriction_N, Given::may_be,
+      trLater("what it takes to move it by hand; 0: not known")},
+     &ArmDynamics::friction_N},
 };
 inline constexpr FieldRow kArmPeakForce{"peak_force_N", kPeakForce_N, Given::always,
                                         trLater("no more is sent")};

@@ -50,6 +50,8 @@ class HandWork {
   void forget() { started_ = false; }
 
   double done_J() const { return done_J_; }
+  double taken_J() const { return taken_J_; }
+  double motor_J() const { return motor_J_; }
   double stored_J() const { return stored_J_; }
 
   template <class Self, class Archive>

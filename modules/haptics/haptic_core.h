@@ -190,6 +190,7 @@ class HapticCore {
   void send(ArmTick& now);
   void giveWork(ArmTick& now);
   void record(ArmTick& now);
+  static void recordWork(const Arm& arm, ArmRecord& out);
 
   // Parts of sample (haptic_core_clutch.cpp).
   void engageArm(ArmTick& now, const Pose& device_m);
@@ -213,6 +214,9 @@ class HapticCore {
   bool paysByCutting() const { return names(parameters_.laws, LawKind::cutting); }
   bool atWork(const Arm& arm) const;
   static bool motorIsOff(const Arm& arm, std::uint32_t buttons);
+  static bool motorRuns(const Arm& arm, std::uint32_t buttons) {
+    return arm.tool().cutting == Cutting::driven && !motorIsOff(arm, buttons);
+  }
 
   // Removal, once all arms have moved (haptic_core_removal.cpp).
   void removeVoxels(std::uint64_t tick, TickRecord& record);

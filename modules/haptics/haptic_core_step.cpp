@@ -114,8 +114,7 @@ bool HapticCore::sample(ArmTick& now) {
     arm.limiter.zero();
     arm.tool().contact.forget();
     arm.last_pose.reset();
-    out.energy_out_J = arm.energy_out_J;
-    out.cutting_credit_J = arm.tool().removal.credit_J();
+    recordWork(arm, out);
     out.faults = arm.faults;
     return false;
   }
@@ -290,11 +289,21 @@ void HapticCore::record(ArmTick& now) {
   if (arm.warmth.limits()) out.tool_state |= kToolArmWarm;
   if (out.flags & TREPHINE_ARM_NO_HAND) out.tool_state |= kToolNoHand;
   if (motorIsOff(arm, out.buttons)) out.tool_state |= kToolOff;
+  recordWork(arm, out);
+  out.faults = arm.faults;
+}
+
+// As it is before this tick removes anything.
+void HapticCore::recordWork(const Arm& arm, ArmRecord& out) {
+  const Removal& removal = arm.tool().removal;
   out.energy_out_J = arm.energy_out_J;
   out.hand_work_J = arm.work.done_J();
+  out.model_work_J = arm.work.taken_J();
+  out.motor_work_J = arm.work.motor_J();
   out.stored_J = arm.work.stored_J();
-  out.cutting_credit_J = arm.tool().removal.credit_J();
-  out.faults = arm.faults;
+  out.cutting_credit_J = removal.credit_J();
+  out.removal_work_J = removal.spent_J();
+  out.heat_J = arm.work.lost_J() - removal.spent_J() - removal.credit_J();
 }
 
 }  // namespace trephine

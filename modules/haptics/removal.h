@@ -82,6 +82,7 @@ class Removal {
   }
 
   double credit_J() const { return credit_J_; }
+  double spent_J() const { return spent_J_; }  // on voxels so far, less what was returned
   // After an undo the credit before the stroke, after a redo no more than before the undo. It fades
   // from there as if just given.
   void setCredit(double credit_J) {
@@ -149,12 +150,13 @@ class Removal {
   Tool tool_;
   GridGeometry geometry_;
   Mat4 patient_to_voxel_;
+  Mat3 normal_to_voxel_;  // of planes
   RemovalKind kind_;
   double voxel_m2_;  // new surface that a voxel of a slot stands for
   std::uint32_t spared_ = 0;
   bool went_on_ = false;  // the pass to come is of a way that goOnFrom() began
-  Vec3 tip_{0.0},
-      ahead_{0.0};    // of the tool in this sweep: voxels, and the way that it points there
+  // Of the tool in this sweep, voxels: its tip, and the way that it points.
+  Vec3 tip_{0.0}, ahead_{0.0};
   Vec3 per_spacing_;  // 1 / mm
   Vec3
       spacing_mm_;  // as the sweep sees it: at most the tool's diameter, so that none slips between

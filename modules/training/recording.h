@@ -12,7 +12,7 @@
 namespace trephine {
 
 // A recording replays by the touch of its version (HapticParameters::touch_version).
-constexpr int kRecordingVersion = 11, kOldestRecording = 8;  // those between are read
+constexpr int kRecordingVersion = 12, kOldestRecording = 8;  // those between are read
 
 struct RecordingHeader {
   Json exercise;                 // toJson(RecordedExercise) with fixed maps and the controller at the start

@@ -13,6 +13,8 @@ using Type = RecordField::Type;
 
 #define FIELD(Record, member, type, count) {#member, offsetof(Record, member), Type::type, count}
 
+constexpr int kWork = 12;  // the first version that says where the work went
+
 constexpr RecordField kArmFields[] = {
     FIELD(ArmRecord, device_position_m, f64, 3),
     {"device_orientation_xyzw", offsetof(ArmRecord, device_orientation), Type::f64, 4},
@@ -35,6 +37,10 @@ constexpr RecordField kArmFields[] = {
     FIELD(ArmRecord, hand_work_J, f64, 1),
     FIELD(ArmRecord, stored_J, f64, 1),
     FIELD(ArmRecord, cutting_credit_J, f64, 1),
+    {"model_work_J", offsetof(ArmRecord, model_work_J), Type::f64, 1, kWork},
+    {"motor_work_J", offsetof(ArmRecord, motor_work_J), Type::f64, 1, kWork},
+    {"removal_work_J", offsetof(ArmRecord, removal_work_J), Type::f64, 1, kWork},
+    {"heat_J", offsetof(ArmRecord, heat_J), Type::f64, 1, kWork},
     FIELD(ArmRecord, controller_parts, u32, 1),
     FIELD(ArmRecord, tissue_class, i32, 1),
     FIELD(ArmRecord, points_in_tissue, i32, 1),

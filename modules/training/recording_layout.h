@@ -18,6 +18,7 @@ struct RecordField {
   std::size_t offset;
   Type type;
   std::size_t count;  // elements; more than 1 is an array
+  int since = 0;      // the version of recordings that has it first; 0: all that are read have it
 
   std::size_t bytes() const;
 };
@@ -29,6 +30,7 @@ struct TickRow {
   std::uint32_t journal = 0;
 };
 
+// A field that a recording is too old for is read as it is by default.
 std::span<const RecordField> armFields();    // ArmRecord
 std::span<const RecordField> tickFields();   // TickRow
 std::span<const RecordField> carveFields();  // CarveRecord

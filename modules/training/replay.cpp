@@ -42,12 +42,15 @@ Json fieldJson(const RecordField& field, const void* record) {
   return field.count == 1 ? values[0] : values;
 }
 
+// Of the fields that a recording of this version has.
 template <class Record>
 std::optional<ReplayDifference> compare(std::span<const RecordField> fields, const Record& recorded,
-                                        const Record& replayed, std::uint64_t tick, int arm) {
+                                        const Record& replayed, std::uint64_t tick, int arm,
+                                        int version = kRecordingVersion) {
   const auto* a = reinterpret_cast<const unsigned char*>(&recorded);
   const auto* b = reinterpret_cast<const unsigned char*>(&replayed);
   for (const RecordField& field : fields) {
+    if (field.since > version) continue;
     if (std::memcmp(a + field.offset, b + field.offset, field.bytes()) != 0) {
       return ReplayDifference{tick, arm, field.name, fieldJson(field, &recorded),
                               fieldJson(field, &replayed)};
@@ -239,7 +242,8 @@ TickInput ReplayedSession::Run::inputOf(const TickRecord& recorded) {
 void ReplayedSession::Run::compareTick(const TickRecord& recorded, std::size_t first_event) {
   auto& difference = first_difference;
   for (std::size_t i = 0; !difference && i < recording.armCount(); ++i) {
-    difference = compare(armFields(), recorded.arms[i], replayed.arms[i], recorded.tick, int(i));
+    difference = compare(armFields(), recorded.arms[i], replayed.arms[i], recorded.tick, int(i),
+                         recording.header().version);
   }
   if (!difference) difference = compareCarves(carves, next_carve, core.carves(), recorded.tick);
   if (!difference) {

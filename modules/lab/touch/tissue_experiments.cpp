@@ -11,18 +11,12 @@ namespace trephine::tissue_experiments {
 namespace {
 
 constexpr double kSpeed_mm_s = 5.0;
-const std::vector<LawKind> kSoftLaws{LawKind::viscous, LawKind::friction, LawKind::elastic,
-                                     LawKind::membrane, LawKind::cutting};
 const std::vector<LawKind> kBoneLaws{LawKind::viscous, LawKind::coulomb, LawKind::elastic};
 
 constexpr const char* kEstimated = "estimate of the comparison";
 
 Tissue tissueOf(const TissueSet& set, const char* id) {
   return *set.find(id);
-}
-
-Tool needleOf(double width_mm, int points = 1) {
-  return *makeTool({ToolKind::needle, 60.0, points, 0.5 * width_mm});
 }
 
 Tool bladeOf(double edge_mm) {
@@ -47,7 +41,7 @@ Fit line(const std::vector<std::pair<double, double>>& points) {
   return {dxy / dx, dxy * dxy / (dx * dy)};
 }
 
-// Ticks in which the arm moved the way that is asked for, of the n-th time that it did.
+// The ticks of a time.
 std::vector<TissueSample> part(const TissueTrace& trace, double from_s, double to_s) {
   std::vector<TissueSample> out;
   for (const TissueSample& s : trace.samples) {
@@ -107,19 +101,6 @@ TissueRow row(const char* experiment, const char* quantity, const char* unit, do
   return {experiment, quantity, unit, ours, low, high, kind, use, source, confidence};
 }
 
-TissueStroke needleStroke(std::vector<TissueLayer> layers, const Tool& tool,
-                          const std::vector<Vec3>& places_mm, double mm_per_s) {
-  TissueStroke stroke;
-  stroke.layers = std::move(layers);
-  stroke.tool = tool;
-  stroke.laws = kSoftLaws;
-  stroke.wide_mm = 16.0;
-  stroke.peak_force_N = 20.0;
-  stroke.way = wayThrough(places_mm, mm_per_s);
-  stroke.seconds = secondsThrough(places_mm, mm_per_s);
-  return stroke;
-}
-
 }  // namespace
 
 Result<Shipped> readShipped() {
@@ -144,6 +125,20 @@ Result<Shipped> readShipped() {
   return shipped;
 }
 
+std::vector<ScaledForce> scaledNumbers(const Shipped& shipped) {
+  std::vector<ScaledForce> scaled;
+  for (const TissueSet* set : {&shipped.abdomen, &shipped.cranium}) {
+    for (const Tissue& tissue : set->tissues) {
+      for (const TissueNumber& row : kTissueNumbers) {
+        const SourcedNumber* number = row.of(tissue);
+        if (!number || !number->isOutOfRange()) continue;
+        scaled.push_back({tissue.id, row.key, row.unit, number->nearestPublished(), number->value});
+      }
+    }
+  }
+  return scaled;
+}
+
 Status liverPuncture(const Shipped& shipped, TissueMeasurement& out) {
   const std::vector<TissueLayer> liver{{tissueOf(shipped.abdomen, "capsule"), 1.0},
                                        {tissueOf(shipped.abdomen, "liver"), 50.0}};
@@ -151,7 +146,7 @@ Status liverPuncture(const Shipped& shipped, TissueMeasurement& out) {
   const double depth_mm = 40.0, above_mm = 2.0;
   const Vec3 top(0.1, 0.1, above_mm), bottom(0.1, 0.1, -depth_mm);
   const std::vector<Vec3> twice{top, bottom, top, bottom, top};
-  Result<TissueTrace> trace = runStroke(needleStroke(liver, needle, twice, kSpeed_mm_s));
+  Result<TissueTrace> trace = runStroke(softStroke(liver, needle, twice, kSpeed_mm_s));
   if (!trace) return trace.error();
   const double leg_s = (depth_mm + above_mm) / kSpeed_mm_s;
   const auto in = part(*trace, 0.0, leg_s), back = part(*trace, leg_s, 2.0 * leg_s),
@@ -160,12 +155,7 @@ Status liverPuncture(const Shipped& shipped, TissueMeasurement& out) {
   // A1: rise, drop, straight line.
   const TissueSample& peak = peakOf(part(*trace, 0.0, (above_mm + 6.0) / kSpeed_mm_s));
   const double peak_N = upwards_N(peak), peak_mm = -peak.arm_mm.z;
-  const double first_mm = [&] {
-    for (const TissueSample& s : in) {
-      if (upwards_N(s) > 0.0) return -s.arm_mm.z;
-    }
-    return 0.0;
-  }();
+  const double first_mm = -firstTouch_mm(in);
   const double half_N =
       meanForce(in, 0.5 * (first_mm + peak_mm) - 0.02, 0.5 * (first_mm + peak_mm) + 0.02);
   double after_N = peak_N;
@@ -205,7 +195,7 @@ Status liverPuncture(const Shipped& shipped, TissueMeasurement& out) {
                          "Gokgol 2012 (10.1016/j.medengphy.2011.09.030); Liu 2022 "
                          "(10.1186/s10033-022-00767-4), table 2",
                          "measured; the range second-hand"));
-  out.curves.push_back({"A2", "The same hole again", "travel", "mm", overDepth(again), {}, {}, ""});
+  out.curves.push_back({"A2", "The same hole again", "travel", "mm", overDepth(again)});
 
   // A3: out of it.
   int opposed = 0, moving = 0;
@@ -227,13 +217,13 @@ Status liverPuncture(const Shipped& shipped, TissueMeasurement& out) {
   A3("share of the way out against which it pulls", "", double(opposed) / moving, 1.0, 1.0);
   A3("pull, of the friction of the way in", "", out_N / rubs_N, 0.8, 1.2);
   A3("force at exit", "N", left_N, 0.0, 0.0);
-  out.curves.push_back({"A3", "Withdrawal", "travel", "mm", overDepth(back), {}, {}, ""});
+  out.curves.push_back({"A3", "Withdrawal", "travel", "mm", overDepth(back)});
 
   // A5: the speed.
   double least_N = peak_N, most_N = peak_N, sum_N = peak_N;
   for (double mm_per_s : {1.0, 10.0}) {
     Result<TissueTrace> other =
-        runStroke(needleStroke(liver, needle, {top, Vec3(0.1, 0.1, -6.0)}, mm_per_s));
+        runStroke(softStroke(liver, needle, {top, Vec3(0.1, 0.1, -6.0)}, mm_per_s));
     if (!other) return other.error();
     const double other_N = upwards_N(peakOf(other->samples));
     least_N = std::min(least_N, other_N);
@@ -241,7 +231,7 @@ Status liverPuncture(const Shipped& shipped, TissueMeasurement& out) {
     sum_N += other_N;
     if (mm_per_s > 5.0) {
       out.curves.push_back(
-          {"A5", "The same at 10 mm/s", "travel", "mm", overDepth(other->samples), {}, {}, ""});
+          {"A5", "The same at 10 mm/s", "travel", "mm", overDepth(other->samples)});
     }
   }
   out.rows.push_back(row("A5", "change of the peak from 1 to 10 mm/s", "%",
@@ -257,7 +247,7 @@ Status skinToKidney(const Shipped& shipped, TissueMeasurement& out) {
   const TissueSet& set = shipped.abdomen;
   const double path_mm = 60.0;
   Result<TissueTrace> trace = runStroke(
-      needleStroke({{tissueOf(set, "skin"), 4.0},
+      softStroke({{tissueOf(set, "skin"), 4.0},
                     {tissueOf(set, "fat"), 18.0},
                     {tissueOf(set, "muscle"), 26.0},
                     {tissueOf(set, "kidney"), 20.0}},
@@ -282,16 +272,10 @@ Status skinToKidney(const Shipped& shipped, TissueMeasurement& out) {
 Status duraPuncture(const Shipped& shipped, TissueMeasurement& out) {
   const TissueSet& set = shipped.cranium;
   Result<TissueTrace> trace =
-      runStroke(needleStroke({{tissueOf(set, "dura"), 0.5}, {tissueOf(set, "brain"), 20.0}},
+      runStroke(softStroke({{tissueOf(set, "dura"), 0.5}, {tissueOf(set, "brain"), 20.0}},
                              needleOf(0.9), {Vec3(0.1, 0.1, 1.0), Vec3(0.1, 0.1, -10.0)}, 3.3));
   if (!trace) return trace.error();
-  double first_mm = 0.0;
-  for (const TissueSample& s : trace->samples) {
-    if (upwards_N(s) > 0.0) {
-      first_mm = -s.arm_mm.z;
-      break;
-    }
-  }
+  const double first_mm = -firstTouch_mm(trace->samples);
   const TissueSample& peak = peakOf(trace->samples);
   out.rows.push_back(row("A6", "travel until the dura gives way", "mm", -peak.arm_mm.z - first_mm,
                          2.0, 6.0, BandKind::published, NumberUse::fitted,
@@ -305,10 +289,7 @@ Status duraPuncture(const Shipped& shipped, TissueMeasurement& out) {
                         "A spinal needle 0.9 mm wide through dura of 0.5 mm",
                         "travel",
                         "mm",
-                        overDepth(trace->samples),
-                        {},
-                        {},
-                        ""});
+                        overDepth(trace->samples)});
   return {};
 }
 
@@ -316,7 +297,7 @@ Status brainStrokes(const Shipped& shipped, TissueMeasurement& out) {
   const std::vector<TissueLayer> brain{{tissueOf(shipped.cranium, "brain"), 20.0}};
   constexpr const char* kSource = "Marcus 2014 (10.1002/rcs.1568), cadaver, medians";
   const std::vector<Vec3> places{{-6, 0.1, 1}, {-6, 0.1, -5}, {4, 0.1, -5}};
-  TissueStroke stroke = needleStroke(brain, bladeOf(16.0), places, kSpeed_mm_s);
+  TissueStroke stroke = softStroke(brain, bladeOf(16.0), places, kSpeed_mm_s);
   stroke.wide_mm = 36.0;
   Result<TissueTrace> cut = runStroke(stroke);
   if (!cut) return cut.error();
@@ -335,7 +316,7 @@ Status brainStrokes(const Shipped& shipped, TissueMeasurement& out) {
   out.curves.push_back({"A7", "A blade through brain, 5 mm deep", "travel", "mm", along, 0.02, 0.15,
                         "carrying incision, measured"});
   Result<TissueTrace> stab =
-      runStroke(needleStroke(brain, needleOf(1.2), {{0.1, 0.1, 0}, {0.1, 0.1, -5}}, kSpeed_mm_s));
+      runStroke(softStroke(brain, needleOf(1.2), {{0.1, 0.1, 0}, {0.1, 0.1, -5}}, kSpeed_mm_s));
   if (!stab) return stab.error();
   std::vector<double> forces_N;
   for (const TissueSample& s : stab->samples) forces_N.push_back(upwards_N(s));
@@ -345,7 +326,7 @@ Status brainStrokes(const Shipped& shipped, TissueMeasurement& out) {
                          forces_N[forces_N.size() / 2], 0.0, 0.02, BandKind::published,
                          NumberUse::predicted, kSource, "measured"));
   TissueStroke press =
-      needleStroke(brain, *makeTool({ToolKind::burr, 30.0, 32, 3.0, 8}),
+      softStroke(brain, *makeTool({ToolKind::burr, 30.0, 32, 3.0, 8}),
                    {{0.1, 0.1, 1}, {0.1, 0.1, -3}, {0.1, 0.1, -3.0001}}, kSpeed_mm_s);
   press.wide_mm = 36.0;
   Result<TissueTrace> pressed = runStroke(press);
@@ -360,7 +341,7 @@ Status liverCut(const Shipped& shipped, TissueMeasurement& out) {
   const Tissue liver = tissueOf(shipped.abdomen, "liver");
   const double edge_mm = 10.0;
   const std::vector<Vec3> places{{-12, 0.1, 1}, {-12, 0.1, -edge_mm}, {12, 0.1, -edge_mm}};
-  TissueStroke stroke = needleStroke({{liver, 30.0}}, bladeOf(16.0), places, kSpeed_mm_s);
+  TissueStroke stroke = softStroke({{liver, 30.0}}, bladeOf(16.0), places, kSpeed_mm_s);
   stroke.wide_mm = 44.0;
   Result<TissueTrace> cut = runStroke(stroke);
   if (!cut) return cut.error();
@@ -444,7 +425,7 @@ Status burrByPush(const Shipped& shipped, TissueMeasurement& out) {
   out.rows.push_back(row("A9", "rate at 5 N", "mm3/s", rates[2], 3.0, 30.0, BandKind::estimate,
                          NumberUse::predicted, kEstimated, "estimate"));
   out.curves.push_back(
-      {"A9", "Rate of a burr by push", "push", "N", curve, 3.0, 30.0, "rate at 5 N, estimated"});
+      {"A9", "Rate of a burr by push", "push", "N", curve, 3.0, 30.0, "rate at 5 N, estimated", "rate", "mm3/s"});
   return {};
 }
 
@@ -456,9 +437,7 @@ Status energyOfBurr(const Shipped& shipped, TissueMeasurement& out) {
     TissueStroke stroke = burrStroke(bone, motor_W, 14.0);
     stroke.spacing_mm = spacing_mm;
     stroke.wide_mm = 24.0;
-    const std::vector<Vec3> places{{0.1, 0.1, 0.2}, {0.1, 0.1, -8.0}};
-    stroke.way = wayThrough(places, 2.0);
-    stroke.seconds = secondsThrough(places, 2.0);
+    goThrough(stroke, {{0.1, 0.1, 0.2}, {0.1, 0.1, -8.0}}, 2.0);
     Result<TissueTrace> trace = runStroke(stroke);
     if (!trace) return trace.error();
     double first_s = stroke.seconds;
@@ -476,7 +455,7 @@ Status energyOfBurr(const Shipped& shipped, TissueMeasurement& out) {
                            NumberUse::predicted, kEstimated, "estimate"));
   }
   out.curves.push_back(
-      {"A10", "Energy by volume on three grids", "voxel", "mm", curve, 0.9, 1.1, "10 %"});
+      {"A10", "Energy by volume on three grids", "voxel", "mm", curve, 0.9, 1.1, "10 %", "energy by volume / u", ""});
   return {};
 }
 
@@ -485,9 +464,7 @@ Status burrThroughVault(const Shipped& shipped, TissueMeasurement& out) {
   const Tissue bone = tissueOf(shipped.cranium, "bone");
   TissueStroke stroke = burrStroke(bone, 4.0, 2.0);
   stroke.layers = {{bone, 2.0}, {bone, 3.0}, {bone, 2.0}};
-  const std::vector<Vec3> places{{0.1, 0.1, 0.5}, {0.1, 0.1, -12.0}};
-  stroke.way = wayThrough(places, 1.0);
-  stroke.seconds = secondsThrough(places, 1.0);
+  goThrough(stroke, {{0.1, 0.1, 0.5}, {0.1, 0.1, -12.0}}, 1.0);
   Result<TissueTrace> trace = runStroke(stroke);
   if (!trace) return trace.error();
   // The ball's foremost point in each table.
@@ -506,10 +483,7 @@ Status burrThroughVault(const Shipped& shipped, TissueMeasurement& out) {
                         "A burr through the vault at 1 mm/s",
                         "travel",
                         "mm",
-                        overDepth(trace->samples),
-                        {},
-                        {},
-                        ""});
+                        overDepth(trace->samples)});
   return {};
 }
 
@@ -517,9 +491,7 @@ Status burrHoleByHand(const Shipped& shipped, TissueMeasurement& out) {
   const Tissue bone = tissueOf(shipped.cranium, "bone");
   TissueStroke stroke = burrStroke(bone, 4.0, 7.0);
   stroke.hand = TissueHand{};
-  const std::vector<Vec3> places{{0.1, 0.1, 1.0}, {0.1, 0.1, -12.0}};
-  stroke.way = wayThrough(places, 3.0);
-  stroke.seconds = secondsThrough(places, 3.0);
+  goThrough(stroke, {{0.1, 0.1, 1.0}, {0.1, 0.1, -12.0}}, 3.0);
   Result<TissueTrace> trace = runStroke(stroke);
   if (!trace) return trace.error();
   double sum_N = 0.0, most_N = 0.0;

@@ -6,12 +6,14 @@
 
 namespace trephine::tissue_experiments {
 
-// What they are done on: the shipped tissues and tools.
+// What they are done on: the shipped tissues.
 struct Shipped {
   TissueSet abdomen, cranium;
-  Tool needle, blade, burr;
 };
 Result<Shipped> readShipped();
+
+// The shipped numbers that lie outside of their published range, with its nearest end.
+std::vector<ScaledForce> scaledNumbers(const Shipped& shipped);
 
 // Adds its rows and curves.
 Status liverPuncture(const Shipped& shipped, TissueMeasurement& out);     // A1, A2, A3, A5

@@ -34,7 +34,7 @@ std::string bandText(const TissueRow& row) {
   return text;
 }
 
-// How many of the experiments lie inside as a whole, and of the rows how many of each kind.
+// Of the rows of a kind.
 struct Tally {
   int inside = 0, all = 0;
 };
@@ -46,6 +46,7 @@ Result<TissueMeasurement> measureTissue(const Progress& progress) {
   Result<Shipped> shipped = readShipped();
   if (!shipped) return shipped.error();
   TissueMeasurement out;
+  out.scaled = scaledNumbers(*shipped);
   using Experiment = Status (*)(const Shipped&, TissueMeasurement&);
   const Experiment experiments[] = {liverPuncture, skinToKidney,     duraPuncture,
                                     brainStrokes,  liverCut,         burrByPush,
@@ -132,7 +133,8 @@ Status writeTissueTables(const TissueMeasurement& measured, const std::filesyste
   }
   if (Status written = writeTextFile(out / "tissue.csv", table); !written) return written;
   for (const TissueCurve& curve : measured.curves) {
-    std::string csv = curve.x_title + '_' + curve.x_unit + ",force_N\n";
+    std::string csv =
+        curve.x_title + '_' + curve.x_unit + ',' + curve.y_title + '_' + curve.y_unit + '\n';
     for (const auto& [x, y] : curve.points) csv += plainNumber(x) + ',' + plainNumber(y) + '\n';
     if (Status written = writeTextFile(out / (curve.experiment + ".csv"), csv); !written) {
       return written;

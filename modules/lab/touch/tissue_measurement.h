@@ -30,20 +30,22 @@ struct TissueRow {
   bool inside() const { return !(low && ours < *low) && !(high && ours > *high); }
 };
 
-// What an arm is shown less of than it is, and by which factor.
+// A number that is shipped as another than the published one, which an arm could not show, and by
+// which factor.
 struct ScaledForce {
   std::string tissue, quantity, unit;
   double published = 0.0, shipped = 0.0;
 };
 
-// The trace of an experiment: force along the way over the arm's travel, and the band that was
-// published for it.
+// What an experiment is drawn as, mostly the force along the way over the arm's travel, and the band
+// that was published for it.
 struct TissueCurve {
   std::string experiment, title;
   std::string x_title = "travel", x_unit = "mm";
   std::vector<std::pair<double, double>> points;
-  std::optional<double> low, high;
-  std::string band;  // what the band is
+  std::optional<double> low{}, high{};
+  std::string band{};  // what the band is
+  std::string y_title = "force", y_unit = "N";
 };
 
 struct TissueMeasurement {
@@ -52,7 +54,7 @@ struct TissueMeasurement {
   std::vector<TissueCurve> curves;
 };
 
-// Errors: those of the shipped tissues and tools; CANCELLED.
+// Errors: those of the shipped tissues; CANCELLED.
 Result<TissueMeasurement> measureTissue(const Progress& progress);
 
 // The rows' table and a CSV of each curve, in this folder.

@@ -124,7 +124,23 @@ struct Seen {
   int differs = 0, unflagged = 0;  // ticks whose sent force is not the demanded one; of these
   int silent = 0, silent_other = 0;  // ticks in which no part acted; of these not equal to the bit
   std::map<std::string, std::pair<double, int>> sent_N;  // by tissue: sum and ticks
+  // Of the work: the most by which its parts do not add up, in any tick; the most by which heat
+  // fell below what it had been; and at the last tick what all voxels before it cost, with what
+  // the arms together say that they cost.
+  double unbalanced_J = 0.0, cooled_J = 0.0, voxels_J = 0.0, removal_J = 0.0, heat_J = 0.0;
 };
+
+// What a voxel costs the tool that takes it (recording.md).
+double voxelCost_J(const Recorded& run, const HapticParameters& p, const CarveRecord& carve) {
+  if (p.removal == RemovalKind::instant) return 0.0;
+  const TissueClass& t = p.tissues.classes[std::size_t(carve.tissue_class)];
+  if (!(t.toughness_J_per_m2 > 0.0)) {
+    return t.cutting_J_per_mm3 * run.before.geometry.voxelVolume_mm3();
+  }
+  const double wide_mm = 2000.0 * p.arms[std::size_t(carve.arm)].tool.radius_m;
+  const Vec3 thick_mm = glm::min(run.before.geometry.spacing_mm, Vec3(wide_mm));
+  return t.toughness_J_per_m2 * 1e-6 * thick_mm.x * thick_mm.y * thick_mm.z / wide_mm;
+}
 
 std::vector<Seen> see(const Recorded& run) {
   constexpr double kWorthAFlag_N = 0.02;
@@ -133,6 +149,16 @@ std::vector<Seen> see(const Recorded& run) {
   Volume volume = run.before;
   std::size_t next = 0;
   std::vector<EnergyWatch> watches(seen.size());
+  double voxels_J = 0.0;
+  for (const CarveRecord& carve : run.carves) {
+    if (carve.tick < run.ticks.back().tick) voxels_J += voxelCost_J(run, p, carve);
+  }
+  for (Seen& of : seen) {
+    of.voxels_J = voxels_J;
+    for (std::size_t i = 0; i < seen.size(); ++i) {
+      of.removal_J += run.ticks.back().arms[i].removal_work_J;
+    }
+  }
   for (const TickRecord& tick : run.ticks) {
     for (; next < run.carves.size() && run.carves[next].tick <= tick.tick; ++next) {
       volume.hu[run.carves[next].voxel] = kAirHu;
@@ -146,6 +172,12 @@ std::vector<Seen> see(const Recorded& run) {
         if (tissue == "liver") of.liver_mm3 = mm3;
       }
       of.touched += arm.tissue_class >= 0;
+      const double in_J = std::min(arm.hand_work_J, arm.model_work_J) + arm.motor_work_J;
+      of.unbalanced_J = std::max(
+          of.unbalanced_J, std::abs(in_J - arm.stored_J - arm.removal_work_J -
+                                    arm.cutting_credit_J - arm.heat_J));
+      of.heat_J = std::max(of.heat_J, arm.heat_J);
+      of.cooled_J = std::max(of.cooled_J, of.heat_J - arm.heat_J);
       const double apart_N = glm::length(arm.sent_N - arm.demanded_N);
       const bool flagged = (arm.controller_parts & ~std::uint32_t(kPartArmNotAsStated)) != 0;
       if (apart_N > kWorthAFlag_N) ++of.differs, of.unflagged += !flagged;
@@ -326,6 +358,19 @@ TEST(ShippedExercises, GiveOutNoEnergyThatTheWindowWouldCallAFault) {
   for (const char* name : kShipped) {
     for (const Seen& seen : seenOf(name, ""))
       EXPECT_EQ(seen.gave_out, 0) << name << ", " << seen.arm;
+  }
+}
+
+TEST(ShippedExercises, SayWhereAllWorkWent) {
+  for (const char* name : kShipped) {
+    for (const Seen& seen : seenOf(name, "")) {
+      std::printf("%-16s %-6s removal %.1f mJ, heat %.1f mJ, which fell by %.3f mJ at most\n", name,
+                  seen.arm.c_str(), 1e3 * seen.removal_J, 1e3 * seen.heat_J, 1e3 * seen.cooled_J);
+      EXPECT_LT(seen.unbalanced_J, 1e-9) << name << ", " << seen.arm;
+      EXPECT_NEAR(seen.removal_J, seen.voxels_J, 1e-9 + 1e-6 * seen.voxels_J) << name;
+      EXPECT_GT(seen.removal_J, 0.0) << name;
+      EXPECT_LT(seen.cooled_J, 0.02 * seen.heat_J + 1e-3) << name << ", " << seen.arm;
+    }
   }
 }
 
