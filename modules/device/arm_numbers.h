@@ -46,6 +46,9 @@ inline constexpr CapabilityNumber kCapabilityNumbers[] = {
     {{"latency_s", kLatency_s, Given::always,
       trLater("from a sample to the force that answers it, p99; what `bounded` goes by")},
      offsetof(TrephineCapabilities, latency_s)},
+    {{"friction_N", kDryFriction_N, Given::always,
+      trLater("what it takes to move it by hand: a weaker force is not felt; 0: not known")},
+     offsetof(TrephineCapabilities, friction_N)},
 };
 
 // `input_dof` beside these: 6, 3, or 0 for a pedal, which has a rate alone.

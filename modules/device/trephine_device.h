@@ -79,6 +79,7 @@ typedef struct TrephineCapabilities {
   double encoder_step_m;
   double rate_hz; /* of its samples: highest where the host paces it, the one it has with `wait` */
   double latency_s; /* from a sample to the force at the arm that answers it, p99, as measured */
+  double friction_N; /* what it takes to move it by hand, dry; 0: nothing is known of it */
 } TrephineCapabilities;
 
 typedef struct TrephineArmState {

@@ -59,6 +59,7 @@ static int capabilities(TrephineDevice* device, uint32_t arm, TrephineCapabiliti
   able->encoder_step_m = 0.0;
   able->rate_hz = 1000.0;
   able->latency_s = 0.0;
+  able->friction_N = 0.0;
   return TREPHINE_OK;
 }
 static int calibrate(TrephineDevice* device, uint32_t arm) {

@@ -20,7 +20,7 @@ struct Config {
   std::vector<std::string> names;
   double rate_hz = 1000.0;
   // As the maker's sheet of the Phantom Omni has them, as remembered; the library does not say.
-  double apparent_mass_kg = 0.045, encoder_step_m = 5.5e-5;
+  double apparent_mass_kg = 0.045, encoder_step_m = 5.5e-5, friction_N = 0.26;
   // The answer goes out in the frame of its sample, and the arm's bus takes a millisecond.
   double latency_s = 0.0015;
 };
@@ -30,6 +30,7 @@ constexpr NumberOf<Config> kConfigNumbers[] = {
     {"apparent_mass_kg", 1e-4, 100.0, &Config::apparent_mass_kg},
     {"encoder_step_m", 0.0, 0.01, &Config::encoder_step_m},
     {"latency_s", 0.0, 0.1, &Config::latency_s},
+    {"friction_N", 0.0, 10.0, &Config::friction_N},
 };
 
 // The maker's scheduler is one a process.
@@ -165,6 +166,7 @@ void TrephineDevice::capabilities(std::size_t arm, TrephineCapabilities& out) {
   out.encoder_step_m = config.encoder_step_m;
   out.rate_hz = config.rate_hz;
   out.latency_s = config.latency_s;
+  out.friction_N = config.friction_N;
 }
 
 int TrephineDevice::read(double, TrephineArmState* states) {

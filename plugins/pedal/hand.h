@@ -17,7 +17,8 @@ struct HandConfig {
   double dead_zone = 0.05;  // of the way to the end: a cap at rest is not quite at zero
 };
 
-// The arm in that hand: as resources/devices/omni.json has it, held firmly.
+// The arm in that hand: as resources/devices/omni.json has it but for its friction, which no
+// motor shows in a cap, held firmly.
 struct VirtualArm {
   simulated::ArmParameters parameters{0.045, 0.05, 0.000055, {0.16, 0.12, 0.07}, 3.3};
   simulated::Hand hand{{}, 600.0, 4.0};

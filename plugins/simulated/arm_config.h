@@ -62,6 +62,11 @@ inline constexpr ArmNumber kArmNumbers[] = {
     {"latency_s", "s", 0.0, 0.1, 1,
      [](ArmConfig& arm, const double* v) { arm.capabilities.latency_s = *v; },
      "stated to the host; this arm itself takes its force at once", true},
+    {"friction_N", "N", 0.0, 10.0, 1,
+     [](ArmConfig& arm, const double* v) {
+       arm.parameters.friction_N = arm.capabilities.friction_N = *v;
+     },
+     "the arm's own, dry: what it takes to move it", true},
     {"rate_hz", "Hz", 1.0, 1e6, 1,
      [](ArmConfig& arm, const double* v) { arm.capabilities.rate_hz = *v; },
      "a scene that asks for more is refused"},

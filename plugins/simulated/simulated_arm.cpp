@@ -25,6 +25,36 @@ double nearestStep(double value, double step) {
   return double(std::int64_t(steps < 0.0 ? steps - 0.5 : steps + 0.5)) * step;
 }
 
+// One substep of all axes, which the friction's direction couples; advance() has the rule.
+void stepWithFriction(const ArmParameters& arm, const Hand& hand, const Vector& force, double h,
+                      double inverse, ArmMotion& next) {
+  Vector push{};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    push[axis] =
+        2.0 * arm.mass_kg * next.velocity_m_s[axis] +
+        h * (force[axis] + hand.stiffness_N_per_m * (hand.rest_m[axis] - next.position_m[axis]));
+  }
+  const double length = std::sqrt(push[0] * push[0] + push[1] * push[1] + push[2] * push[2]);
+  if (length <= h * arm.friction_N) {
+    next.velocity_m_s = {};
+    return;
+  }
+  const double left = (1.0 - h * arm.friction_N / length) * inverse;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const double edge = 0.5 * arm.workspace_m[axis];
+    double& x = next.position_m[axis];
+    double& v = next.velocity_m_s[axis];
+    const double u = left * push[axis];
+    x += h * u;
+    v = 2.0 * u - v;
+    if (x > edge || x < -edge) {
+      x = x > edge ? edge : -edge;
+      v = 0.0;
+      next.at_limit = true;
+    }
+  }
+}
+
 }  // namespace
 
 ArmMotion advance(const ArmParameters& arm, const Hand& hand, const ArmMotion& motion,
@@ -39,7 +69,12 @@ ArmMotion advance(const ArmParameters& arm, const Hand& hand, const ArmMotion& m
   const double damping = hand.damping_Ns_per_m + arm.damping_Ns_per_m;
   // With the mean speed u = (v + v')/2 the rule reads
   //   2 m (u - v) = h [f + k (x_h - x - u h/2) - (b + c) u],  x' = x + h u,  v' = 2 u - v.
+  // and friction, along the mean speed too, shortens the right side, without u, by h F.
   const double inverse = 1.0 / (2.0 * m + h * damping + 0.5 * h * h * k);
+  if (arm.friction_N > 0.0) {
+    for (int i = 0; i < n; ++i) stepWithFriction(arm, hand, force, h, inverse, next);
+    return next;
+  }
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const double edge = 0.5 * arm.workspace_m[axis];
     double x = motion.position_m[axis];

@@ -1,9 +1,11 @@
 // The physics of one simulated arm in a hand. Pure: no clock, no device, no allocation.
 //
-// A point mass m at x [m], with the arm's own damping c, the hand's spring k and damper b that pull
-// it to rest at the hand's pose x_h, and the commanded force f held over the step:
-//     m x'' = f + k (x_h - x) - (b + c) x'
-// The three axes are independent. The hand's damper works against the arm's speed, not against the
+// A point mass m at x [m], with the arm's own damping c and dry friction F, the hand's spring k and
+// damper b that pull it to rest at the hand's pose x_h, and the commanded force f held over the
+// step:
+//     m x'' = f + k (x_h - x) - (b + c) x' - F x'/|x'|
+// At rest the friction takes whatever pulls, up to F. Without it the three axes are independent.
+// The hand's damper works against the arm's speed, not against the
 // speed relative to x_h: x_h is a rest pose that jumps from tick to tick and has no speed.
 #pragma once
 
@@ -19,6 +21,7 @@ struct ArmParameters {
   double encoder_step_m = 0.0;    // 0: reads exactly
   Vector workspace_m{};           // full extent around the origin
   double peak_force_N = 0.0;      // of the force's length
+  double friction_N = 0.0;        // F
 };
 
 // A light hand at the workspace's centre.
@@ -36,7 +39,7 @@ struct ArmMotion {
 
 // The motion after `dt_s` > 0 under a finite force. Integrated in substeps of at most dt/20 and 50
 // us by the implicit midpoint rule: second order, stable for any k and b, and without energy of its
-// own (for b = c = f = 0 it keeps kinetic plus spring energy to rounding). An axis that reaches the
+// own (for b = c = F = f = 0 it keeps kinetic plus spring energy to rounding). An axis that reaches the
 // edge of the workspace stops there.
 ArmMotion advance(const ArmParameters& arm, const Hand& hand, const ArmMotion& motion,
                   const Vector& force_N, double dt_s);

@@ -122,6 +122,7 @@ void TrephineDevice::capabilities(std::size_t, TrephineCapabilities& out) const 
   out.encoder_step_m = 6.5e-5;  // the coarsest count within the box
   out.rate_hz = 1000.0;
   out.latency_s = latency_s;
+  out.friction_N = 0.0;  // nobody has measured it
 }
 
 int TrephineDevice::read(double, TrephineArmState* states) {

@@ -19,10 +19,11 @@ inline Json omni() {
   return json ? *json : Json();
 }
 
-// The Omni with encoders that read exactly, for comparison with formulas.
+// The Omni with encoders that read exactly and without friction, for comparison with formulas.
 inline Json exactOmni() {
   Json json = omni();
   json["arm"]["encoder_step_m"]["value"] = 0.0;
+  json["arm"].erase("friction_N");
   return json;
 }
 

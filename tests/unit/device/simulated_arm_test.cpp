@@ -43,6 +43,49 @@ TEST(SimulatedArm, AFreeArmUnderConstantForceFollowsItsFormula) {
   EXPECT_LT(bench.position().y, -0.04);
 }
 
+Json withFriction(double friction_N) {
+  Json json = exactOmni();
+  json["arm"]["friction_N"] = {{"value", friction_N}, {"source", "this test"}, {"verified", true}};
+  return json;
+}
+
+TEST(SimulatedArm, ItsFrictionHoldsWhatIsWeakerAndTakesItsPartOfTheRestInAnyDirection) {
+  const Vec3 oblique = glm::normalize(Vec3(1.0, -2.0, 0.5));
+  for (const Vec3& along : {Vec3(1, 0, 0), Vec3(0, -1, 0), oblique}) {
+    Bench bench(withFriction(0.26));
+    ASSERT_TRUE(bench.device && bench.start());
+    EXPECT_EQ(bench.device->capabilities(0).friction_N, 0.26);
+    bench.hold(Vec3(0.0), 0.0, 0.0);
+    bench.push(0.259 * along);
+    for (int i = 0; i < 100; ++i) ASSERT_TRUE(bench.tick());
+    EXPECT_EQ(bench.position(), Vec3(0.0));
+    bench.push(0.36 * along);
+    for (int i = 1; i <= 100; ++i) {
+      ASSERT_TRUE(bench.tick());
+      const double t = i * kTick_s, f = 0.10;
+      const double expected = f / kPlant * (t + kMass / kPlant * std::expm1(-kPlant * t / kMass));
+      ASSERT_NEAR(glm::dot(bench.position(), along), expected, 1e-6) << "at " << t << " s";
+      ASSERT_LT(glm::length(bench.position() - expected * along), 1e-6);
+    }
+  }
+}
+
+TEST(SimulatedArm, AHandBringsAnArmWithFrictionNoNearerThanItsSpringOvercomesIt) {
+  Bench bench(withFriction(0.26));
+  ASSERT_TRUE(bench.device && bench.start());
+  const double k = 300.0;
+  bench.hold({0.010, 0.0, 0.0}, k, 2.0);
+  double last = 0.0;
+  for (int i = 0; i < 2000; ++i) {
+    ASSERT_TRUE(bench.tick());
+    last = bench.position().x;
+  }
+  EXPECT_LE(std::abs(last - 0.010), 0.26 / k + 1e-9);
+  EXPECT_GT(std::abs(last - 0.010), 1e-5);
+  ASSERT_TRUE(bench.tick());
+  EXPECT_EQ(bench.position().x, last) << "it rests";
+}
+
 // A mass let go at x0 = step from rest at the hand's pose 0.
 double oscillator(double step, double k, double damping, double t) {
   const double decay = damping / (2.0 * kMass);
