@@ -1,5 +1,7 @@
 #include "tissue/sourced_number.h"
 
+#include <cmath>
+
 #include "base/field.h"
 #include "base/tr.h"
 #include "base/utf8.h"
@@ -161,6 +163,18 @@ std::string confidenceWord(Confidence confidence) {
   return {};
 }
 
+namespace {
+// "outside the published 2.2 to 3.3 N, by a factor of 0.18", with three digits.
+std::string outsideWords(const SourcedNumber& number, const std::string& span) {
+  const double nearest = number.nearestPublished();
+  if (!(nearest > 0.0) || !(number.value > 0.0)) return tr("outside the published {}", span);
+  const double factor = number.value / nearest;
+  const double digits = std::pow(10.0, 2.0 - std::floor(std::log10(factor)));
+  return tr("outside the published {}, by a factor of {}", span,
+            plainNumber(std::round(factor * digits) / digits));
+}
+}  // namespace
+
 std::string provenanceWords(const SourcedNumber& number, std::string_view unit, double shown_per) {
   const std::string of_unit = (unit.empty() ? "" : " ") + std::string(unit);
   // Its own source says that a number is tuned.
@@ -171,7 +185,7 @@ std::string provenanceWords(const SourcedNumber& number, std::string_view unit, 
   if (!number.range) return known;
   const std::string span = spanWords(*number.range, shown_per) + of_unit;
   const std::string words =
-      number.isOutOfRange() ? tr("outside the published {}", span) : tr("published {}", span);
+      number.isOutOfRange() ? outsideWords(number, span) : tr("published {}", span);
   return known.empty() ? words : words + " (" + known + ")";
 }
 

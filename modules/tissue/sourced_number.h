@@ -2,6 +2,7 @@
 // sure it is, and under which condition it was measured. Pure.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <optional>
 #include <string>
@@ -44,6 +45,10 @@ struct SourcedNumber {
   // Of its own source a number is tuned, whether or not the file says so.
   Confidence confidence() const;
   bool isOutOfRange() const { return range && !(value >= range->low && value <= range->high); }
+  // The end of the range that lies nearest to the value; the value where there is no range.
+  double nearestPublished() const {
+    return range ? std::clamp(value, range->low, range->high) : value;
+  }
   // What two claim, not how their files put it.
   bool operator==(const SourcedNumber& other) const;
 };

@@ -20,7 +20,13 @@ PokeTab::PokeTab(Workstation& workstation, Messages& messages, WorkGuards& guard
       views_(&case_views.views()),
       view_(&case_views.view()),
       tissues_(tissues),
-      plot_(plot) {
+      plot_(plot),
+      forecast_(workstation, this) {
+  for (const auto changed : {&Workstation::exerciseChanged, &Workstation::armsAnswered}) {
+    connect(&workstation_, changed, this, &PokeTab::renewForecast);
+  }
+  connect(&forecast_, &PokeForecast::changed, this, &PokeTab::showForecast);
+  connect(&tissues_, &TissuePanel::chosenChanged, this, &PokeTab::showForecast);
   action_ = makeAction(*messages_.window(), Symbol::train, "poke", tr("Poke"), Qt::CTRL | Qt::Key_E,
                        tr("Feel the tissue with mouse or arm; nothing is cut"));
   action_->setCheckable(true);
@@ -52,6 +58,13 @@ PokeTab::PokeTab(Workstation& workstation, Messages& messages, WorkGuards& guard
 void PokeTab::show(bool here, bool in_front) {
   here_ = here;
   in_front_ = in_front;
+  forecast_.setShown(here && in_front);
+  refresh();
+}
+
+void PokeTab::showForecast() {
+  plot_.showForeseen(forecast_.of(tissues_.chosen()), forecast_.friction_N());
+  tissues_.setHidden(forecast_.hiddenWords(tissues_.chosen()));
   refresh();
 }
 
@@ -63,7 +76,7 @@ void PokeTab::refresh() {
   action_->setEnabled(poking || (ready && here_));
   action_->setChecked(poking);
   tissues_.showPoke(action_->isEnabled(), poking);
-    plot_.setVisible(in_front_ && (poking || !plot_.pokes().empty()));
+  plot_.setVisible(in_front_ && (poking || !plot_.pokes().empty() || !plot_.foreseen().empty()));
 }
 
 void PokeTab::toggle() {

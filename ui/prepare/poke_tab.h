@@ -6,6 +6,7 @@
 #include <QTimer>
 #include <optional>
 
+#include "ui/prepare/poke_forecast.h"
 #include "ui/tissue/poke_plot.h"
 #include "ui/tissue/tissue_panel.h"
 #include "ui/work/case_views.h"
@@ -21,6 +22,8 @@ class PokeTab : public QObject {
   QAction* action() const { return action_; }
   // `here`: its workspace is shown; `in_front`: so are the tissues.
   void show(bool here, bool in_front);
+  // Tissues, tools or arms have changed.
+  void renewForecast() { forecast_.renew(); }
 
  signals:
   void frontWanted();  // Prepare with the tissues
@@ -29,6 +32,7 @@ class PokeTab : public QObject {
   void refresh();
   void toggle();
   void showPokes(Session& session);
+  void showForecast();
 
   Workstation& workstation_;
   Messages& messages_;
@@ -40,6 +44,7 @@ class PokeTab : public QObject {
   PokePlot& plot_;
   QAction* action_;
   QTimer timer_;
+  PokeForecast forecast_;
   std::optional<ViewLayout> layout_before_;  // the poke
   bool here_ = false, in_front_ = false;
 };

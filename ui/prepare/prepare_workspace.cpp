@@ -76,6 +76,7 @@ void PrepareWorkspace::connectTabs() {
   connect(tissues_, &TissueTab::edited, this, [this] {
     structures_->noteTissues(true);
     thresholds_->follow();
+    poke_->renewForecast();
   });
   connect(tissues_, &TissueTab::setTaken, this, [this] {
     structures_->noteTissues(true);

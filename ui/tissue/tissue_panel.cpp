@@ -14,6 +14,7 @@ TissuePanel::TissuePanel(QWidget* parent) : QWidget(parent) {
   list_ = new TissueList(this);
   locked_words_ = problemLabel("tissuesLocked", this);
   felt_ = problemLabel("tissueFelt", this);
+  hidden_ = problemLabel("tissueHidden", this);
   auto* layout = tight(new QVBoxLayout(this), 10, {10, 10, 10, 10});
   sets_ = new TissueSetRow(this);
   connect(sets_, &TissueSetRow::renamed, this, [this](const std::string& name) {
@@ -29,6 +30,7 @@ TissuePanel::TissuePanel(QWidget* parent) : QWidget(parent) {
   layout->addWidget(poke_);
   layout->addWidget(list_);
   layout->addWidget(locked_words_);
+  layout->addWidget(hidden_);
   form_ = new TissueForm(this);
   form_->apply = [this](const Tissue& wanted, const QString& what) {
     TissueSet set = tissues_;
@@ -91,6 +93,11 @@ void TissuePanel::showFelt() {
   colours::setText(*felt_, mechanics.isBounded() ? colours::kQuiet : colours::kCaution);
   felt_->setText(current() ? mechanics.feltWords() : QString());
   felt_->setVisible(!felt_->text().isEmpty());
+}
+
+void TissuePanel::setHidden(const QString& words) {
+  hidden_->setText(words);
+  hidden_->setVisible(!words.isEmpty());
 }
 
 void TissuePanel::select(const std::string& id) {

@@ -49,6 +49,8 @@ class TissuePanel : public QWidget {
                      std::function<Impedance(const Tissue&)> demanded,
                      const std::vector<LawKind>& laws, RemovalKind removal,
                      ControllerKind in_force);
+  // What the arms' own friction hides of the chosen one, in lines; empty: nothing.
+  void setHidden(const QString& words);
   TissueSetRow& sets() { return *sets_; }
   void showPoke(bool possible, bool poking);
 
@@ -83,7 +85,7 @@ class TissuePanel : public QWidget {
   QPushButton* poke_;
   TissueList* list_;
   TissueForm* form_;
-  QLabel *locked_words_, *felt_;
+  QLabel *locked_words_, *felt_, *hidden_;
 };
 
 }  // namespace trephine

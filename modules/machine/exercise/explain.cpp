@@ -6,6 +6,7 @@
 #include <functional>
 #include <locale>
 #include <memory>
+#include <set>
 #include <sstream>
 
 #include "base/codes.h"
@@ -21,6 +22,7 @@
 #include "session/arm_devices.h"
 #include "session/operator_script.h"
 #include "session/run_report.h"
+#include "session/tissue_poke.h"
 #include "volume/case_memory.h"
 #include "volume/grid.h"
 #include "volume/phantom.h"
@@ -168,6 +170,29 @@ std::string numberWords(const TissueNumber& row, const SourcedNumber& number) {
   return known.empty() ? words : words + "; " + known;
 }
 
+// [{arm, tool, tissue, most_N, friction_N, felt, like:[tissues that it is not told apart from],
+// words: one that it is not felt, or one for each of `like`}]
+Json touchOf(const Exercise& exercise, const std::vector<ArmPokes>& pokes) {
+  Json touch = Json::array();
+  for (const ArmPokes& of : pokes) {
+    for (std::size_t t = 0; t < of.curves.size(); ++t) {
+      Json like = Json::array();
+      for (std::size_t other : notToldApart(of, t)) {
+        like.push_back(exercise.tissues.tissues[other].id);
+      }
+      touch.push_back({{"arm", exercise.arms[of.arm].name},
+                       {"tool", exercise.arms[of.arm].tool},
+                       {"tissue", exercise.tissues.tissues[t].id},
+                       {"most_N", of.curves[t].most_N},
+                       {"friction_N", of.friction_N},
+                       {"felt", isFeltThrough(of.curves[t], of.friction_N)},
+                       {"like", like},
+                       {"words", hiddenWords(exercise, of, t)}});
+    }
+  }
+  return touch;
+}
+
 }  // namespace
 
 Json usedNumbers(const Exercise& exercise) {
@@ -233,7 +258,7 @@ Result<Json> explainExercise(Exercise exercise, const std::vector<RecommendedSet
   double timed = 0.0;
   const auto time = [&](const std::string& part, const std::function<void()>& call) {
     if (progress.cancelled()) return 0.0;
-    progress.at(0.5 + 0.5 * timed++ / parts, tr("Timing {}", part));
+    progress.at(0.5 + 0.3 * timed++ / parts, tr("Timing {}", part));
     return medianNs(call);
   };
   for (std::size_t i = 0; i < exercise.arms.size(); ++i) {
@@ -338,6 +363,8 @@ Result<Json> explainExercise(Exercise exercise, const std::vector<RecommendedSet
   if (progress.cancelled())
     return Error{code::kCancelled, tr("The explanation was cancelled"), "", ""};
 
+  const Result<std::vector<ArmPokes>> pokes = pokesOf(exercise, rig, Progress(progress, 0.8, 1.0));
+  if (!pokes) return pokes.error();
   Json tissues = Json::array(), laws = Json::array();
   for (const Tissue& tissue : exercise.tissues.tissues) tissues.push_back(tissue.id);
   for (LawKind kind : exercise.laws) laws.push_back(nameOf(kLawNames, kind));
@@ -367,6 +394,7 @@ Result<Json> explainExercise(Exercise exercise, const std::vector<RecommendedSet
               {"arms", arms},
               {"warnings", *warnings},
               {"bounded", bounded},
+              {"touch", touchOf(exercise, *pokes)},
               {"journal_mb", journal_mb},
               {"cost", cost},
               {"tick_ns", tick_ns}};
@@ -375,6 +403,25 @@ Result<Json> explainExercise(Exercise exercise, const std::vector<RecommendedSet
   if (!settings.is_null()) answer["settings"] = settings;
   return answer;
 }
+
+namespace {
+// Two tissues that are not told apart are said once.
+std::vector<std::string> hiddenLines(const Json& touch) {
+  std::vector<std::string> lines;
+  std::set<std::array<std::string, 3>> said;
+  for (const Json& of : touch) {
+    const Json& words = of.at("words");
+    for (std::size_t n = 0; n < words.size(); ++n) {
+      std::array<std::string, 3> pair{of.at("arm"), of.at("tissue"), ""};
+      if (of.at("felt").get<bool>()) pair[2] = of.at("like").at(n).get<std::string>();
+      if (said.contains({pair[0], pair[2], pair[1]})) continue;
+      said.insert(pair);
+      lines.push_back(cleanUtf8(words.at(n).get<std::string>()));
+    }
+  }
+  return lines;
+}
+}  // namespace
 
 std::string explanationText(const Json& explained) {
   const auto word = [](const Json& j, const char* key) {
@@ -423,6 +470,17 @@ std::string explanationText(const Json& explained) {
         number(b, "stiffness_N_per_m"), number(b, "damping_felt_Ns_per_m"),
         number(b, "stiffness_felt_N_per_m"));
   }
+  std::string arm;
+  for (const Json& touch : explained.at("touch")) {
+    if (arm != word(touch, "arm")) {
+      arm = word(touch, "arm");
+      text += tr("  pushed into a block of each tissue at 10 mm/s, 12 mm deep, the {} arm's {} meets "
+                 "at most\n",
+                 arm, word(touch, "tool"));
+    }
+    add("    %8.2f N  %s\n", number(touch, "most_N"), word(touch, "tissue").c_str());
+  }
+  for (const std::string& line : hiddenLines(explained.at("touch"))) text += "  " + line + "\n";
   if (!explained.at("locks").empty()) {
     text += tr("  locked at this workstation or by the exercise: {}\n", list("locks"));
   }

@@ -19,7 +19,8 @@ namespace trephine {
 //     warnings:[{code, text}] as of a run of the exercise's own script in its own case: tools that
 //     start in tissue; null where it has no case or no script,
 //     settings:[{knob, setting, recommended}] where anything is `recommended` here,
-//     bounded:[what the arms do not show of a tissue, and what is felt], journal_mb, cost:[{part,
+//     bounded:[what the arms do not show of a tissue, and what is felt],
+//     touch:[{arm, tool, tissue, most_N, friction_N, felt, like, words}] (tissue_poke.h), journal_mb, cost:[{part,
 //     arm (null: any), ns_per_tick}], tick_ns}
 // Each part is timed alone (median of batches, about 0.1 s for all of them) on a small block of the
 // exercise's firmest tissue; tick_ns is a whole tick of all arms there, without the devices.

@@ -376,6 +376,36 @@ class PrepareGuiTest : public test::WindowTest {
     QVERIFY(tissues() == before);
   }
 
+  // Before anybody has touched it: what each tool would meet in the chosen tissue, and what the
+  // arms' own friction hides of it.
+  void theForceOfTheChosenTissueIsForeseenAndFollowsAnEdit() {
+    auto* plot = find<PokePlot>("pokePlot");
+    auto* hidden = find<QLabel>("tissueHidden");
+    const auto most = [&](const char* id) {
+      return !plot->foreseen().empty() &&
+                     plot->foreseen()[0].curve.tissue == std::int32_t(placeOf(id))
+                 ? plot->foreseen()[0].curve.most_N
+                 : -1.0;
+    };
+    panel().select("bone");
+    QTRY_VERIFY_WITH_TIMEOUT(plot->isVisible() && most("bone") > 0.5, kLong_ms);
+    QVERIFY(!hidden->isVisible());
+    keepGrab("prepare-foreseen-bone.png");
+    panel().select("brain");
+    const double soft_N = most("brain");
+    QVERIFY(soft_N > 0.0 && soft_N < 0.26);
+    QVERIFY(hidden->isVisible());
+    QVERIFY2(hidden->text().contains("its own friction") || hidden->text().contains("own friction"),
+             qPrintable(hidden->text()));
+    QVERIFY(plot->accessibleDescription().contains("computed"));
+    keepGrab("prepare-foreseen-brain.png");
+    enter("stiffness", "250");
+    QTRY_VERIFY_WITH_TIMEOUT(most("brain") > 2.0 * soft_N, kLong_ms);
+    QVERIFY(!hidden->text().contains("is not felt"));
+    workstation().undoEdit();
+    QTRY_VERIFY_WITH_TIMEOUT(most("brain") == soft_N, kLong_ms);
+  }
+
   // The force that a poke meets is the tissue's, an edit is felt while it goes on, and nothing is
   // cut.
   void aPokeTellsForceAgainstDepthAndAnEditIsFeltInIt() {

@@ -40,7 +40,7 @@ TEST(Explain, SaysOfEachNumberThatTheLawsUseWhereItComesFromAndWhatIsKnownOfIt) 
             Json::parse(R"json({"tissue": "soft", "number": "friction_N", "unit": "N", "value": 0.5,
                             "source": "a paper", "range": [0.2, 0.4], "confidence": "measured",
                             "condition": "pig, 37 degrees",
-                            "text": "Friction 0.5 N, from: a paper; outside the published 0.2 to 0.4 N (measured; pig, 37 degrees)"})json"));
+                            "text": "Friction 0.5 N, from: a paper; outside the published 0.2 to 0.4 N, by a factor of 1.25 (measured; pig, 37 degrees)"})json"));
   EXPECT_EQ(explainedOf(measuredExercise(), "stiffness_N_per_m"),
             Json::parse(R"({"tissue": "soft", "number": "stiffness_N_per_m", "unit": "N/m",
                             "value": 120.0, "source": "tuned here, uncited", "confidence": "tuned",
@@ -76,7 +76,7 @@ TEST(Explain, TellsAPersonTheSameInLines) {
   (*explained)["refused"] = nullptr;
   const std::string text = explanationText(*explained);
   for (const char* line :
-       {"    soft: Friction 0.5 N, from: a paper; outside the published 0.2 to 0.4 N (measured;",
+       {"    soft: Friction 0.5 N, from: a paper; outside the published 0.2 to 0.4 N, by a factor of 1.25 (measured;",
         "    bone: Friction 2 N, from: tuned here, uncited\n"}) {
     EXPECT_NE(text.find(line), std::string::npos) << text;
   }

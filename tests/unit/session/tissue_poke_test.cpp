@@ -1,0 +1,167 @@
+// What a tool meets in a block of a tissue, what was published of it, and what an arm's own friction
+// hides.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "base/system.h"
+#include "session/tissue_poke.h"
+
+namespace trephine {
+namespace {
+
+constexpr double kOmniFriction_N = 0.26;
+
+Exercise shipped(const char* name) {
+  return *readExercise(resourceFolder() / "scenes" / (std::string(name) + ".json"));
+}
+
+// Omnis with such a friction.
+Rig omnis(const Exercise& exercise, double friction_N) {
+  Rig rig = simulatedRig(exercise);
+  for (Rig::Arm& arm : rig.arms) {
+    arm.dynamics = ArmDynamics{0.045, 5.5e-5, 3.3, 0.0, 0.88, 0.0, friction_N};
+  }
+  return rig;
+}
+
+std::size_t placeOf(const Exercise& exercise, const char* tissue) {
+  const auto& all = exercise.tissues.tissues;
+  return std::size_t(std::ranges::find(all, tissue, &Tissue::id) - all.begin());
+}
+
+double forceAt(const PokeCurve& curve, double depth_mm) {
+  const auto at = std::ranges::find_if(
+      curve.points, [&](const PokePoint& p) { return p.depth_mm >= depth_mm; });
+  return at->demanded_N;
+}
+
+TEST(TissuePoke, AMembraneRisesToItsRuptureForceAndLetsGoAtOnce) {
+  const Exercise exercise = shipped("liver");
+  const Rig rig = omnis(exercise, kOmniFriction_N);
+  const std::size_t capsule = placeOf(exercise, "capsule");
+  for (std::size_t arm = 0; arm < exercise.arms.size(); ++arm) {
+    const PokeCurve curve = pokeOf(exercise, rig, arm, capsule);
+    const Tool& tool = exercise.findTool(exercise.arms[arm].tool)->tool;
+    const double rupture_N =
+        exercise.tissues.tissues[capsule].rupture_N->value * 2000.0 * tool.radius_m / 1.2;
+    double peak_N = 0.0, drop_N = 0.0;
+    for (std::size_t i = 1; i < curve.points.size(); ++i) {
+      peak_N = std::max(peak_N, curve.points[i].demanded_N);
+      drop_N = std::max(drop_N, curve.points[i - 1].demanded_N - curve.points[i].demanded_N);
+    }
+    EXPECT_NEAR(peak_N, rupture_N, 0.1 * rupture_N) << arm;
+    EXPECT_GT(drop_N, 0.5 * rupture_N) << arm << ": in one tick";
+    EXPECT_LE(curve.most_N, 3.3);
+  }
+}
+
+TEST(TissuePoke, ATissuesCurveDoesNotDependOnWhatElseTheExerciseHas) {
+  Exercise exercise = shipped("liver");
+  const Rig rig = omnis(exercise, kOmniFriction_N);
+  const std::size_t liver = placeOf(exercise, "liver");
+  const PokeCurve among = pokeOf(exercise, rig, 0, liver);
+  exercise.tissues.tissues = {exercise.tissues.tissues[liver]};
+  const PokeCurve alone = pokeOf(exercise, rig, 0, 0);
+  ASSERT_EQ(among.points.size(), alone.points.size());
+  for (std::size_t i = 0; i < among.points.size(); ++i) {
+    ASSERT_EQ(among.points[i].demanded_N, alone.points[i].demanded_N) << i;
+  }
+}
+
+TEST(TissuePoke, TheForceScaleOfAnArmIsInItsCurveAndInThePublishedBand) {
+  Exercise exercise = shipped("liver");
+  const std::size_t capsule = placeOf(exercise, "capsule");
+  const auto bands = publishedBands(exercise, 0, capsule);
+  const PokeCurve before = pokeOf(exercise, omnis(exercise, 0.0), 0, capsule);
+  exercise.arms[0].map.force_scale = 0.5;
+  const auto halved = publishedBands(exercise, 0, capsule);
+  const PokeCurve after = pokeOf(exercise, omnis(exercise, 0.0), 0, capsule);
+  ASSERT_FALSE(bands.empty());
+  ASSERT_EQ(bands.size(), halved.size());
+  for (std::size_t i = 0; i < bands.size(); ++i) {
+    EXPECT_DOUBLE_EQ(halved[i].high_to_N, 0.5 * bands[i].high_to_N);
+  }
+  EXPECT_NEAR(forceAt(after, 8.0), 0.5 * forceAt(before, 8.0), 0.02 * forceAt(before, 8.0));
+}
+
+TEST(TissuePoke, ThePublishedBandIsThatOfTheNumbersForThisToolsWidth) {
+  Exercise exercise = shipped("liver");
+  const std::size_t capsule = placeOf(exercise, "capsule");
+  Tissue& t = exercise.tissues.tissues[capsule];
+  t.rupture_N->range = SourcedNumber::Published{0.5, 2.0};
+  t.rupture_mm->range = SourcedNumber::Published{2.0, 6.0};
+  t.toughness_J_per_m2 = SourcedNumber{100.0, "this test"};
+  t.toughness_J_per_m2->range = SourcedNumber::Published{80.0, 120.0};
+  t.shaft_N_per_mm = SourcedNumber{0.01, "this test"};
+  t.shaft_N_per_mm->range.reset();
+  const double width_mm =
+      2000.0 * exercise.findTool(exercise.arms[0].tool)->tool.radius_m;
+  const auto bands = publishedBands(exercise, 0, capsule);
+  ASSERT_EQ(bands.size(), 2u);
+  EXPECT_EQ(bands[0].of, PublishedBand::Of::rupture);
+  EXPECT_DOUBLE_EQ(bands[0].low_from_N, 0.5 * width_mm / 1.2);
+  EXPECT_DOUBLE_EQ(bands[0].high_to_N, 2.0 * width_mm / 1.2);
+  EXPECT_EQ(bands[0].to_mm, 6.0);
+  EXPECT_EQ(bands[1].of, PublishedBand::Of::passing);
+  EXPECT_NEAR(bands[1].low_from_N, 80.0 * 1e-3 * width_mm, 1e-12);
+  EXPECT_NEAR(bands[1].high_to_N, 120.0 * 1e-3 * width_mm + 0.01 * 12.0, 1e-12);
+  // Nothing published, or no law that goes by it: no band.
+  t.rupture_N->range.reset();
+  t.toughness_J_per_m2->range.reset();
+  EXPECT_TRUE(publishedBands(exercise, 0, capsule).empty());
+  t.rupture_N->range = SourcedNumber::Published{0.5, 2.0};
+  exercise.laws = {LawKind::viscous};
+  EXPECT_TRUE(publishedBands(exercise, 0, capsule).empty());
+}
+
+PokeCurve steady(double newtons) {
+  PokeCurve curve;
+  for (int i = 0; i < 1200; ++i) curve.points.push_back({0.01 * i, newtons, newtons});
+  curve.most_N = newtons;
+  return curve;
+}
+
+TEST(TissuePoke, WhatAnArmsFrictionHidesIsNotFeltAndWhatDiffersByLessIsNotToldApart) {
+  EXPECT_FALSE(isFeltThrough(steady(0.2), 0.26));
+  EXPECT_TRUE(isFeltThrough(steady(0.3), 0.26));
+  EXPECT_TRUE(isFeltThrough(steady(0.001), 0.0)) << "not known: nothing is said";
+  EXPECT_FALSE(areToldApart(steady(0.3), steady(0.5), 0.26));
+  EXPECT_TRUE(areToldApart(steady(0.3), steady(0.6), 0.26));
+  // A click of a tenth of a millimetre is nothing that is felt as a tissue.
+  PokeCurve click = steady(0.1);
+  for (int i = 500; i < 510; ++i) click.points[std::size_t(i)].sent_N = 2.0;
+  EXPECT_FALSE(isFeltThrough(click, 0.26));
+}
+
+TEST(TissuePoke, OnAnOmniTheSentenceNamesWhatIsNotFelt) {
+  for (const char* name : {"liver", "cranium", "burr-hole"}) {
+    const Exercise exercise = shipped(name);
+    for (const double friction_N : {0.0, kOmniFriction_N, 5.0}) {
+      const auto pokes = *pokesOf(exercise, omnis(exercise, friction_N));
+      ASSERT_EQ(pokes.size(), exercise.arms.size());
+      for (const ArmPokes& of : pokes) {
+        for (std::size_t t = 0; t < of.curves.size(); ++t) {
+          const auto words = hiddenWords(exercise, of, t);
+          if (friction_N == 0.0) EXPECT_TRUE(words.empty()) << words.front();
+          if (friction_N == 5.0) {
+            ASSERT_EQ(words.size(), 1u) << "no arm gives 5 N";
+            EXPECT_NE(words[0].find("is not felt"), std::string::npos) << words[0];
+            EXPECT_NE(words[0].find(exercise.tissues.tissues[t].name), std::string::npos);
+          }
+          if (friction_N == kOmniFriction_N) {
+            std::printf("%-9s %-6s %-8s most %.2f N%s\n", name,
+                        exercise.arms[of.arm].tool.c_str(),
+                        exercise.tissues.tissues[t].id.c_str(), of.curves[t].most_N,
+                        words.empty() ? "" : (" | " + words.front()).c_str());
+          }
+        }
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace trephine
