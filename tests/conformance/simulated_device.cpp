@@ -1,5 +1,5 @@
-// The simulated arms as they ship, with encoders that read exactly, so that a force shows in how
-// far it moves the hand.
+// The simulated arms as they ship, with encoders that read exactly and without friction, so that a
+// force shows in how far it moves the hand.
 #include "base/json.h"
 #include "base/system.h"
 #include "test_device.h"
@@ -15,6 +15,7 @@ class SimulatedDevice : public TestDevice {
   bool prepare(Trouble trouble, double after_s) override {
     config_ = *readJsonFile(resourceFolder() / "devices" / "omni.json");
     config_["arm"]["encoder_step_m"]["value"] = 0.0;
+    config_["arm"].erase("friction_N");
     switch (trouble) {
       case Trouble::none:
         break;

@@ -55,13 +55,25 @@ void PokeForecast::compute() {
             });
 }
 
+// An arm before this one has the same tool and the same scales: its hand meets the same.
+bool PokeForecast::isLikeAnother(std::size_t arm) const {
+  const ExerciseArm& own = exercise_->arms[arm];
+  for (std::size_t i = 0; i < arm; ++i) {
+    const ExerciseArm& other = exercise_->arms[i];
+    if (other.tool == own.tool && other.map.force_scale == own.map.force_scale &&
+        other.map.motion_scale == own.map.motion_scale && other.max_force_N == own.max_force_N &&
+        pokes_[i].friction_N == pokes_[arm].friction_N) {
+      return true;
+    }
+  }
+  return false;
+}
+
 std::vector<ForeseenPoke> PokeForecast::of(std::size_t tissue) const {
   std::vector<ForeseenPoke> all;
-  std::vector<std::string> tools;
   for (const ArmPokes& pokes : pokes_) {
+    if (tissue >= pokes.curves.size() || isLikeAnother(pokes.arm)) continue;
     const ExerciseArm& arm = exercise_->arms[pokes.arm];
-    if (tissue >= pokes.curves.size() || std::ranges::count(tools, arm.tool)) continue;
-    tools.push_back(arm.tool);
     all.push_back({shownName(arm.tool), colours::ofArm(arm, pokes.arm), pokes.curves[tissue],
                    publishedBands(*exercise_, pokes.arm, tissue)});
   }
@@ -77,7 +89,7 @@ double PokeForecast::friction_N() const {
 QString PokeForecast::hiddenWords(std::size_t tissue) const {
   QStringList lines;
   for (const ArmPokes& pokes : pokes_) {
-    if (tissue >= pokes.curves.size()) continue;
+    if (tissue >= pokes.curves.size() || isLikeAnother(pokes.arm)) continue;
     for (const std::string& line : trephine::hiddenWords(*exercise_, pokes, tissue)) {
       lines << toQt(line) + '.';
     }

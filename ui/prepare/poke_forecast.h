@@ -23,7 +23,7 @@ class PokeForecast : public QObject {
   void setShown(bool shown);
   void renew();
   // Of the exercise as it was when they were computed; empty where there are none for this tissue.
-  // A tool that both arms have is there once.
+  // Arms that meet the same are there once.
   std::vector<ForeseenPoke> of(std::size_t tissue) const;
   double friction_N() const;  // the greatest of the arms'
   // What the arms' own friction hides of it, in lines.
@@ -34,6 +34,7 @@ class PokeForecast : public QObject {
 
  private:
   void compute();
+  bool isLikeAnother(std::size_t arm) const;
 
   Workstation& workstation_;
   BackgroundTask task_;

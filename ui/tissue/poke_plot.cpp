@@ -16,7 +16,7 @@ namespace {
 // A round number of steps that spans `most`.
 double roundUp(double most) {
   const double ten = std::pow(10.0, std::floor(std::log10(std::max(most, 1e-3))));
-  for (const double step : {1.0, 2.0, 3.0, 5.0, 7.0, 10.0}) {
+  for (const double step : {1.0, 1.5, 2.0, 3.0, 5.0, 7.0, 10.0}) {
     if (step * ten >= most) return step * ten;
   }
   return most;

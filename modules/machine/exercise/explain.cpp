@@ -270,6 +270,7 @@ Result<Json> explainExercise(Exercise exercise, const std::vector<RecommendedSet
          {"plugin", rig.arms[i].device.plugin},
          {"tool", arm.tool},
          {"other_tools", arm.other_tools},
+         {"force_scale", arm.map.fixed ? arm.map.fixed->force_scale : arm.map.force_scale},
          {"points", tool.points_m.size()},
          {"renderable", {{"b_max_Ns_per_m", most.b_max}, {"k_max_N_per_m", most.k_max}}}});
     const auto add = [&](const std::string& part, const std::function<void()>& call) {
@@ -459,6 +460,10 @@ std::string explanationText(const Json& explained) {
     add("  %s arm: %s, tool '%s' of %d points; shows at most %.3g N s/m and %.4g N/m\n",
         word(arm, "name").c_str(), word(arm, "plugin").c_str(), word(arm, "tool").c_str(),
         arm.at("points").get<int>(), number(most, "b_max_Ns_per_m"), number(most, "k_max_N_per_m"));
+    if (number(arm, "force_scale") != 1.0) {
+      text += tr("    shows forces {} times as strong as the tissue's\n",
+                 plainNumber(number(arm, "force_scale")));
+    }
     for (const Json& other : arm.at("other_tools")) {
       text += tr("    may be given the tool '{}'\n", cleanUtf8(other.get<std::string>()));
     }

@@ -15,7 +15,7 @@ namespace trephine {
 
 // -> {exercise, goal (of its card; null: none), case, rate_hz, controller, laws, removal, tissues,
 //     numbers (usedNumbers),
-//     arms:[{name, plugin, tool, other_tools, points, renderable}],
+//     arms:[{name, plugin, tool, other_tools, force_scale, points, renderable}],
 //     warnings:[{code, text}] as of a run of the exercise's own script in its own case: tools that
 //     start in tissue; null where it has no case or no script,
 //     settings:[{knob, setting, recommended}] where anything is `recommended` here,

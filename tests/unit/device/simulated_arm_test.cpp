@@ -130,7 +130,9 @@ TEST(SimulatedArm, AHandThatCarriesALoadGivesWayByForceOverStiffness) {
 }
 
 TEST(SimulatedArm, ReadsWholeEncoderSteps) {
-  Bench coarse(omni()), exact(exactOmni());
+  Json in_steps = exactOmni();
+  in_steps["arm"]["encoder_step_m"] = omni()["arm"]["encoder_step_m"];
+  Bench coarse(in_steps), exact(exactOmni());
   ASSERT_TRUE(coarse.device && exact.device && coarse.start() && exact.start());
   const double step = 0.055e-3;
   bool differs = false;

@@ -18,7 +18,7 @@ struct PointerTask {
   std::vector<std::vector<Pointed>> arms;  // the exercise's order
 };
 
-// A push goes in; then a touch of it holds the depth while the pointer goes round; a tool comes out
+// A push goes in, at the arm, of which its friction takes 0.26 N; then a touch of it holds the depth while the pointer goes round; a tool comes out
 // before it goes aside, or it cuts as much of that as it was late. A blade cuts what lies within
 // some 0.65 mm of it, and rows of voxels are 0.8 mm apart: the sides of the windows lie
 // between two rows, 0.3 to 0.5 mm from each, which are then both cut, and no other by a hand that
@@ -52,13 +52,13 @@ inline std::vector<Pointed> otherSide(std::vector<Pointed> path) {
 }
 inline const PointerTask kWindow{"cranium", {kLeftHalf, otherSide(kLeftHalf)}};
 inline const std::vector<Pointed> kSlice{
-    {0, 8, -60, 0},      {0.5, 8, -42, 0},   {1.0, 8, -42, 1.0}, {2.2, 8, -42, 0.2},
-    {9.0, 40, -42, 0.2}, {10.0, 40, -42, 0}, {11.5, 40, -60, 0}};
+    {0, 8, -60, 0},      {0.5, 8, -42, 0},   {1.0, 8, -42, 1.8}, {2.2, 8, -42, 0.5},
+    {9.0, 40, -42, 0.5}, {10.0, 40, -42, 0}, {11.5, 40, -60, 0}};
 inline const PointerTask kLiverOneArm{"liver-one-arm", {kSlice}};
 inline const PointerTask kLiver{"liver",
                                 {{{0, -5, -60, 0},
                                   {0.5, -5, -48, 0},
-                                  {1.0, -5, -48, 1.5},
+                                  {1.0, -5, -48, 2.5},
                                   {5.0, -5, -48, 0},
                                   {11.5, -5, -48, 0}},
                                  kSlice}};

@@ -18,6 +18,13 @@ Exercise shipped(const char* name) {
   return *readExercise(resourceFolder() / "scenes" / (std::string(name) + ".json"));
 }
 
+// Its arms show the tissue's own force.
+Exercise unscaled(const char* name) {
+  Exercise exercise = shipped(name);
+  for (ExerciseArm& arm : exercise.arms) arm.map.force_scale = 1.0;
+  return exercise;
+}
+
 // Omnis with such a friction.
 Rig omnis(const Exercise& exercise, double friction_N) {
   Rig rig = simulatedRig(exercise);
@@ -39,7 +46,7 @@ double forceAt(const PokeCurve& curve, double depth_mm) {
 }
 
 TEST(TissuePoke, AMembraneRisesToItsRuptureForceAndLetsGoAtOnce) {
-  const Exercise exercise = shipped("liver");
+  const Exercise exercise = unscaled("liver");
   const Rig rig = omnis(exercise, kOmniFriction_N);
   const std::size_t capsule = placeOf(exercise, "capsule");
   for (std::size_t arm = 0; arm < exercise.arms.size(); ++arm) {
@@ -59,7 +66,7 @@ TEST(TissuePoke, AMembraneRisesToItsRuptureForceAndLetsGoAtOnce) {
 }
 
 TEST(TissuePoke, ATissuesCurveDoesNotDependOnWhatElseTheExerciseHas) {
-  Exercise exercise = shipped("liver");
+  Exercise exercise = unscaled("liver");
   const Rig rig = omnis(exercise, kOmniFriction_N);
   const std::size_t liver = placeOf(exercise, "liver");
   const PokeCurve among = pokeOf(exercise, rig, 0, liver);
@@ -72,7 +79,7 @@ TEST(TissuePoke, ATissuesCurveDoesNotDependOnWhatElseTheExerciseHas) {
 }
 
 TEST(TissuePoke, TheForceScaleOfAnArmIsInItsCurveAndInThePublishedBand) {
-  Exercise exercise = shipped("liver");
+  Exercise exercise = unscaled("liver");
   const std::size_t capsule = placeOf(exercise, "capsule");
   const auto bands = publishedBands(exercise, 0, capsule);
   const PokeCurve before = pokeOf(exercise, omnis(exercise, 0.0), 0, capsule);
@@ -88,7 +95,7 @@ TEST(TissuePoke, TheForceScaleOfAnArmIsInItsCurveAndInThePublishedBand) {
 }
 
 TEST(TissuePoke, ThePublishedBandIsThatOfTheNumbersForThisToolsWidth) {
-  Exercise exercise = shipped("liver");
+  Exercise exercise = unscaled("liver");
   const std::size_t capsule = placeOf(exercise, "capsule");
   Tissue& t = exercise.tissues.tissues[capsule];
   t.rupture_N->range = SourcedNumber::Published{0.5, 2.0};

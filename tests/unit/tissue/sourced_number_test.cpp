@@ -173,11 +173,15 @@ TEST(Provenance, SaysWhatWasPublishedHowItIsKnownAndUnderWhichCondition) {
 
 TEST(Provenance, SaysThatAValueLiesOutsideOfWhatWasPublished) {
   SourcedNumber number = measured();
-  for (const double value : {2.1, 3.4}) {
+  for (const auto& [value, factor] : {std::pair(1.1, "0.5"), {3.4, "1.03"}}) {
     number.value = value;
     EXPECT_EQ(provenanceWords(number, "N", 1.0),
-              "outside the " + provenanceWords(measured(), "N", 1.0));
+              std::string("outside the published 2.2 to 3.3 N, by a factor of ") + factor +
+                  " (measured; human cadaver, access needle)");
   }
+  // No factor leads to nothing, or from it.
+  number.value = 0.0;
+  EXPECT_EQ(provenanceWords(number, "N", 1.0).find("factor"), std::string::npos);
   for (const double end : {2.2, 3.3}) {
     number.value = end;
     EXPECT_EQ(provenanceWords(number, "N", 1.0), provenanceWords(measured(), "N", 1.0));
