@@ -398,8 +398,8 @@ Vec3 BoundedController::bound(const ControllerInput& in) {
     // Rest is judged by the tissue's own force: the rendered one changes as the scales change.
     const double k = in.rendered.stiffness;
     const Vec3 elastic_N = k > 0.0 ? in.rendered.elastic_N * (tissue_stiffness_ / k) : Vec3(0.0);
-    const Vec3 crept_N = k > 0.0 && !before_12_ ? in.rendered.crept_N * (tissue_stiffness_ / k)
-                                                : Vec3(0.0);
+    const Vec3 crept_N =
+        k > 0.0 && !before_12_ ? in.rendered.crept_N * (tissue_stiffness_ / k) : Vec3(0.0);
     force_N = holdAtRest(elastic_N, crept_N, in.position_m, affordable_N);
     flag(kPartHold, force_N - affordable_N);
     if (!hold_.rests()) held_with_ = parts_ & kPartLearned;

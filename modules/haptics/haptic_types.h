@@ -138,12 +138,12 @@ struct ArmRecord {
   double hand_work_J = 0.0;     // the hand's on the tool so far, in the model's units (README.md)
   double stored_J = 0.0;        // of it in springs, which can give it back
   double cutting_credit_J = 0.0;  // work on tissue, not yet spent on removal
-  // Where the work went so far (README.md, "Removal"): min(hand_work_J, model_work_J) + motor_work_J
-  // = stored_J + removal_work_J + cutting_credit_J + heat_J.
-  double model_work_J = 0.0;    // what the model's own force takes from the tool's motion
-  double motor_work_J = 0.0;    // of a driven tool while it touches what it may cut
-  double removal_work_J = 0.0;  // that voxels cost
-  double heat_J = 0.0;          // all else: friction, damping, credit that faded
+  // Where the work went so far (README.md, "Removal"): min(hand_work_J, model_work_J) +
+  // motor_work_J = stored_J + removal_work_J + cutting_credit_J + heat_J.
+  double model_work_J = 0.0;           // what the model's own force takes from the tool's motion
+  double motor_work_J = 0.0;           // of a driven tool while it touches what it may cut
+  double removal_work_J = 0.0;         // that voxels cost
+  double heat_J = 0.0;                 // all else: friction, damping, credit that faded
   std::uint32_t controller_parts = 0;  // ControllerPart: which parts acted
   std::int32_t tissue_class = -1;
   std::int32_t points_in_tissue = 0;

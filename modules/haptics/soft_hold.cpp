@@ -303,8 +303,7 @@ void SoftHold::tell(const TissueField& tissue) {
   if (length_mm > kTiny_mm) {
     const double force_N = membraneForce_N(t, travel_mm);
     pull_.membrane_N = (-force_N / length_mm) * pressed_mm;
-    pull_.membrane_crept_N =
-        ((membraneForce_N(t, length_mm) - force_N) / length_mm) * pressed_mm;
+    pull_.membrane_crept_N = ((membraneForce_N(t, length_mm) - force_N) / length_mm) * pressed_mm;
   }
 }
 

@@ -126,7 +126,7 @@ Status openDevices(Exercise& exercise, Rig& rig, std::vector<LoopDevice>& device
       arm.max_force_N = std::min(arm.max_force_N, able.peak_force_N);
       moved.dynamics =
           ArmDynamics{able.apparent_mass_kg,   able.encoder_step_m, arm.max_force_N, delay_s,
-                      able.continuous_force_N, able.thermal_s,    able.friction_N};
+                      able.continuous_force_N, able.thermal_s,      able.friction_N};
     }
   }
   return {};

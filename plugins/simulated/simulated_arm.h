@@ -39,8 +39,8 @@ struct ArmMotion {
 
 // The motion after `dt_s` > 0 under a finite force. Integrated in substeps of at most dt/20 and 50
 // us by the implicit midpoint rule: second order, stable for any k and b, and without energy of its
-// own (for b = c = F = f = 0 it keeps kinetic plus spring energy to rounding). An axis that reaches the
-// edge of the workspace stops there.
+// own (for b = c = F = f = 0 it keeps kinetic plus spring energy to rounding). An axis that reaches
+// the edge of the workspace stops there.
 ArmMotion advance(const ArmParameters& arm, const Hand& hand, const ArmMotion& motion,
                   const Vector& force_N, double dt_s);
 

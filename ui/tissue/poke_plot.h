@@ -1,6 +1,6 @@
-// Force against depth of the pokes: what was demanded and what was sent, of the one that goes on and
-// the last three. Behind them, of the tissue that is chosen, what each tool would meet in a block of
-// it, and the published range of that force.
+// Force against depth of the pokes: what was demanded and what was sent, of the one that goes on
+// and the last three. Behind them, of the tissue that is chosen, what each tool would meet in a
+// block of it, and the published range of that force.
 #pragma once
 
 #include <QColor>

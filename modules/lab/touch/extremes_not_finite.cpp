@@ -92,7 +92,8 @@ Outcome refusedTools() {
 }
 
 Outcome refusedCapabilities() {
-  if (Status usual = tryToOpen(omniCapabilities()); !usual) return {usual.error().sentence(), false};
+  if (Status usual = tryToOpen(omniCapabilities()); !usual)
+    return {usual.error().sentence(), false};
   Refusals refusals;
   for (double value : kNotFinite) {
     for (auto field : {&TrephineCapabilities::peak_force_N, &TrephineCapabilities::apparent_mass_kg,

@@ -248,10 +248,10 @@ Status skinToKidney(const Shipped& shipped, TissueMeasurement& out) {
   const double path_mm = 60.0;
   Result<TissueTrace> trace = runStroke(
       softStroke({{tissueOf(set, "skin"), 4.0},
-                    {tissueOf(set, "fat"), 18.0},
-                    {tissueOf(set, "muscle"), 26.0},
-                    {tissueOf(set, "kidney"), 20.0}},
-                   needleOf(1.27), {Vec3(0.1, 0.1, 2.0), Vec3(0.1, 0.1, -path_mm)}, kSpeed_mm_s));
+                  {tissueOf(set, "fat"), 18.0},
+                  {tissueOf(set, "muscle"), 26.0},
+                  {tissueOf(set, "kidney"), 20.0}},
+                 needleOf(1.27), {Vec3(0.1, 0.1, 2.0), Vec3(0.1, 0.1, -path_mm)}, kSpeed_mm_s));
   if (!trace) return trace.error();
   const TissueSample& peak = peakOf(part(*trace, 0.0, 14.0 / kSpeed_mm_s));
   std::vector<std::pair<double, double>> path;
@@ -273,7 +273,7 @@ Status duraPuncture(const Shipped& shipped, TissueMeasurement& out) {
   const TissueSet& set = shipped.cranium;
   Result<TissueTrace> trace =
       runStroke(softStroke({{tissueOf(set, "dura"), 0.5}, {tissueOf(set, "brain"), 20.0}},
-                             needleOf(0.9), {Vec3(0.1, 0.1, 1.0), Vec3(0.1, 0.1, -10.0)}, 3.3));
+                           needleOf(0.9), {Vec3(0.1, 0.1, 1.0), Vec3(0.1, 0.1, -10.0)}, 3.3));
   if (!trace) return trace.error();
   const double first_mm = -firstTouch_mm(trace->samples);
   const TissueSample& peak = peakOf(trace->samples);
@@ -285,10 +285,7 @@ Status duraPuncture(const Shipped& shipped, TissueMeasurement& out) {
                          "estimate of the comparison after PLOS ONE 2021 "
                          "(10.1371/journal.pone.0247346)",
                          "derived"));
-  out.curves.push_back({"A6",
-                        "A spinal needle 0.9 mm wide through dura of 0.5 mm",
-                        "travel",
-                        "mm",
+  out.curves.push_back({"A6", "A spinal needle 0.9 mm wide through dura of 0.5 mm", "travel", "mm",
                         overDepth(trace->samples)});
   return {};
 }
@@ -327,7 +324,7 @@ Status brainStrokes(const Shipped& shipped, TissueMeasurement& out) {
                          NumberUse::predicted, kSource, "measured"));
   TissueStroke press =
       softStroke(brain, *makeTool({ToolKind::burr, 30.0, 32, 3.0, 8}),
-                   {{0.1, 0.1, 1}, {0.1, 0.1, -3}, {0.1, 0.1, -3.0001}}, kSpeed_mm_s);
+                 {{0.1, 0.1, 1}, {0.1, 0.1, -3}, {0.1, 0.1, -3.0001}}, kSpeed_mm_s);
   press.wide_mm = 36.0;
   Result<TissueTrace> pressed = runStroke(press);
   if (!pressed) return pressed.error();
@@ -424,8 +421,8 @@ Status burrByPush(const Shipped& shipped, TissueMeasurement& out) {
                          {}, BandKind::estimate, NumberUse::predicted, kEstimated, "estimate"));
   out.rows.push_back(row("A9", "rate at 5 N", "mm3/s", rates[2], 3.0, 30.0, BandKind::estimate,
                          NumberUse::predicted, kEstimated, "estimate"));
-  out.curves.push_back(
-      {"A9", "Rate of a burr by push", "push", "N", curve, 3.0, 30.0, "rate at 5 N, estimated", "rate", "mm3/s"});
+  out.curves.push_back({"A9", "Rate of a burr by push", "push", "N", curve, 3.0, 30.0,
+                        "rate at 5 N, estimated", "rate", "mm3/s"});
   return {};
 }
 
@@ -454,8 +451,8 @@ Status energyOfBurr(const Shipped& shipped, TissueMeasurement& out) {
     out.rows.push_back(row("A10", quantity.c_str(), "", ours, 0.9, 1.1, BandKind::estimate,
                            NumberUse::predicted, kEstimated, "estimate"));
   }
-  out.curves.push_back(
-      {"A10", "Energy by volume on three grids", "voxel", "mm", curve, 0.9, 1.1, "10 %", "energy by volume / u", ""});
+  out.curves.push_back({"A10", "Energy by volume on three grids", "voxel", "mm", curve, 0.9, 1.1,
+                        "10 %", "energy by volume / u", ""});
   return {};
 }
 
@@ -479,11 +476,8 @@ Status burrThroughVault(const Shipped& shipped, TissueMeasurement& out) {
   A11("thrust in the diploe, of that in the outer table", diploe_N / outer_N, 0.5);
   A11("thrust in the inner table, of that in the outer one", inner_N / outer_N, 1.0);
   A11("thrust a radius after breakthrough, of that in the outer table", through_N / outer_N, 0.1);
-  out.curves.push_back({"A11",
-                        "A burr through the vault at 1 mm/s",
-                        "travel",
-                        "mm",
-                        overDepth(trace->samples)});
+  out.curves.push_back(
+      {"A11", "A burr through the vault at 1 mm/s", "travel", "mm", overDepth(trace->samples)});
   return {};
 }
 

@@ -37,8 +37,8 @@ struct ScaledForce {
   double published = 0.0, shipped = 0.0;
 };
 
-// What an experiment is drawn as, mostly the force along the way over the arm's travel, and the band
-// that was published for it.
+// What an experiment is drawn as, mostly the force along the way over the arm's travel, and the
+// band that was published for it.
 struct TissueCurve {
   std::string experiment, title;
   std::string x_title = "travel", x_unit = "mm";

@@ -479,9 +479,10 @@ std::string explanationText(const Json& explained) {
   for (const Json& touch : explained.at("touch")) {
     if (arm != word(touch, "arm")) {
       arm = word(touch, "arm");
-      text += tr("  pushed into a block of each tissue at 10 mm/s, 12 mm deep, the {} arm's {} meets "
-                 "at most\n",
-                 arm, word(touch, "tool"));
+      text +=
+          tr("  pushed into a block of each tissue at 10 mm/s, 12 mm deep, the {} arm's {} meets "
+             "at most\n",
+             arm, word(touch, "tool"));
     }
     add("    %8.2f N  %s\n", number(touch, "most_N"), word(touch, "tissue").c_str());
   }

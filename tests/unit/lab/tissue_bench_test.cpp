@@ -44,7 +44,7 @@ TEST(Dura, GivesWayOnceToEachNeedleInTheTickInWhichItsTipGoesThrough) {
                                         << mm_per_s << " mm/s");
         const Vec3 top(0.13, 0.07, 1.0), bottom(0.13, 0.07, -12.0);
         auto trace = runStroke(softStroke({{dura, thick_mm}, {brain, 20.0}}, needleOf(width_mm),
-                                        {top, bottom, top, bottom}, mm_per_s));
+                                          {top, bottom, top, bottom}, mm_per_s));
         ASSERT_TRUE(trace) << trace.error().sentence();
         const std::size_t leg = std::size_t(1000.0 * 13.0 / mm_per_s);
         const std::vector<TissueSample> in(trace->samples.begin(),
@@ -74,7 +74,7 @@ TEST(Needle, FeelsTheSameWhateverTheNumberOfItsPoints) {
   for (int points : {1, 8, 31, 120}) {
     SCOPED_TRACE(points);
     auto trace = runStroke(softStroke({{capsule, 1.0}, {liver, 40.0}}, needleOf(1.2, points),
-                                    {{0.1, 0.1, 1}, {0.1, 0.1, -30}, {0.1, 0.1, 1}}, 5.0));
+                                      {{0.1, 0.1, 1}, {0.1, 0.1, -30}, {0.1, 0.1, 1}}, 5.0));
     ASSERT_TRUE(trace);
     if (reference.empty()) reference = trace->samples;
     double sum = 0.0, difference = 0.0;
@@ -98,7 +98,7 @@ TEST(Blade, CutsTheSameWithEveryArmGridAndRate) {
     SCOPED_TRACE(testing::Message()
                  << c.spacing_mm << " mm, " << c.rate_hz << " Hz, " << c.peak_N << " N");
     TissueStroke stroke = softStroke({{liver, 20.0}}, blade,
-                                   {{-8, 0.1, 1}, {-8, 0.1, -8}, {8, 0.1, -8}, {8, 0.1, 1}}, 8.0);
+                                     {{-8, 0.1, 1}, {-8, 0.1, -8}, {8, 0.1, -8}, {8, 0.1, 1}}, 8.0);
     stroke.wide_mm = 36.0;
     stroke.spacing_mm = c.spacing_mm;
     stroke.rate_hz = c.rate_hz;
@@ -143,8 +143,8 @@ TEST(SoftTissue, TakesTheWorkThatItsCutsCostAndGivesNoneOut) {
   for (int run = 0; run < 16; ++run) {
     SCOPED_TRACE(run);
     const Tool tool = run % 2 ? needleOf(1.2) : *makeTool({ToolKind::blade, 16.0, 16, 0.6});
-    TissueStroke stroke =
-        softStroke({{capsule, 1.0}, {liver, 7.0}, {vessel, 4.0}, {liver, 10.0}}, tool, {{}, {}}, 1.0);
+    TissueStroke stroke = softStroke({{capsule, 1.0}, {liver, 7.0}, {vessel, 4.0}, {liver, 10.0}},
+                                     tool, {{}, {}}, 1.0);
     stroke.laws.push_back(LawKind::relaxation);
     stroke.way = wander(random, stroke.seconds);
     stroke.wide_mm = 30.0;
@@ -244,8 +244,8 @@ TEST(Shaft, IsHeldAgainstEveryMotionAndNeverPushedOut) {
     SCOPED_TRACE(cut);
     Tissue parted = liver;
     parted.cuttable = cut;
-    auto trace =
-        runStroke(softStroke({{capsule, 1.0}, {parted, 40.0}}, needleOf(1.2), {top, bottom, top}, 5.0));
+    auto trace = runStroke(
+        softStroke({{capsule, 1.0}, {parted, 40.0}}, needleOf(1.2), {top, bottom, top}, 5.0));
     ASSERT_TRUE(trace);
     const std::size_t leg = trace->samples.size() / 2;
     // After the spring has turned round.

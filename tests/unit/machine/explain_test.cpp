@@ -75,9 +75,9 @@ TEST(Explain, TellsAPersonTheSameInLines) {
   (*explained)["locks"] = Json::array();
   (*explained)["refused"] = nullptr;
   const std::string text = explanationText(*explained);
-  for (const char* line :
-       {"    soft: Friction 0.5 N, from: a paper; outside the published 0.2 to 0.4 N, by a factor of 1.25 (measured;",
-        "    bone: Friction 2 N, from: tuned here, uncited\n"}) {
+  for (const char* line : {"    soft: Friction 0.5 N, from: a paper; outside the published 0.2 to "
+                           "0.4 N, by a factor of 1.25 (measured;",
+                           "    bone: Friction 2 N, from: tuned here, uncited\n"}) {
     EXPECT_NE(text.find(line), std::string::npos) << text;
   }
 }

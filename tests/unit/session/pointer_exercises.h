@@ -18,11 +18,11 @@ struct PointerTask {
   std::vector<std::vector<Pointed>> arms;  // the exercise's order
 };
 
-// A push goes in, at the arm, of which its friction takes 0.26 N; then a touch of it holds the depth while the pointer goes round; a tool comes out
-// before it goes aside, or it cuts as much of that as it was late. A blade cuts what lies within
-// some 0.65 mm of it, and rows of voxels are 0.8 mm apart: the sides of the windows lie
-// between two rows, 0.3 to 0.5 mm from each, which are then both cut, and no other by a hand that
-// is a little aside.
+// A push goes in, at the arm, of which its friction takes 0.26 N; then a touch of it holds the
+// depth while the pointer goes round; a tool comes out before it goes aside, or it cuts as much of
+// that as it was late. A blade cuts what lies within some 0.65 mm of it, and rows of voxels are 0.8
+// mm apart: the sides of the windows lie between two rows, 0.3 to 0.5 mm from each, which are then
+// both cut, and no other by a hand that is a little aside.
 inline const PointerTask kBurrHole{"burr-hole",
                                    {{{0, 20, 20, 0},
                                      {0.5, 0, 0, 0},

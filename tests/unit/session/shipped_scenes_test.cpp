@@ -8,10 +8,10 @@
 
 #include "base/file.h"
 #include "base/system.h"
-#include "haptics/bounded_controller.h"
+#include "case/placement.h"
 #include "exercise/entry_point.h"
 #include "exercise/exercise_structures.h"
-#include "case/placement.h"
+#include "haptics/bounded_controller.h"
 #include "session/energy_watch.h"
 #include "session/run_report.h"
 #include "session/session.h"
@@ -175,8 +175,8 @@ std::vector<Seen> see(const Recorded& run) {
       of.touched += arm.tissue_class >= 0;
       const double in_J = std::min(arm.hand_work_J, arm.model_work_J) + arm.motor_work_J;
       of.unbalanced_J = std::max(
-          of.unbalanced_J, std::abs(in_J - arm.stored_J - arm.removal_work_J -
-                                    arm.cutting_credit_J - arm.heat_J));
+          of.unbalanced_J,
+          std::abs(in_J - arm.stored_J - arm.removal_work_J - arm.cutting_credit_J - arm.heat_J));
       of.heat_J = std::max(of.heat_J, arm.heat_J);
       of.cooled_J = std::max(of.cooled_J, of.heat_J - arm.heat_J);
       const double apart_N = glm::length(arm.sent_N - arm.demanded_N);

@@ -1,5 +1,7 @@
-// What a tool meets in a block of a tissue, what was published of it, and what an arm's own friction
-// hides.
+// What a tool meets in a block of a tissue, what was published of it, and what an arm's own
+// friction hides.
+#include "session/tissue_poke.h"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -7,7 +9,6 @@
 #include <cstdio>
 
 #include "base/system.h"
-#include "session/tissue_poke.h"
 
 namespace trephine {
 namespace {
@@ -40,8 +41,8 @@ std::size_t placeOf(const Exercise& exercise, const char* tissue) {
 }
 
 double forceAt(const PokeCurve& curve, double depth_mm) {
-  const auto at = std::ranges::find_if(
-      curve.points, [&](const PokePoint& p) { return p.depth_mm >= depth_mm; });
+  const auto at = std::ranges::find_if(curve.points,
+                                       [&](const PokePoint& p) { return p.depth_mm >= depth_mm; });
   return at->demanded_N;
 }
 
@@ -104,8 +105,7 @@ TEST(TissuePoke, ThePublishedBandIsThatOfTheNumbersForThisToolsWidth) {
   t.toughness_J_per_m2->range = SourcedNumber::Published{80.0, 120.0};
   t.shaft_N_per_mm = SourcedNumber{0.01, "this test"};
   t.shaft_N_per_mm->range.reset();
-  const double width_mm =
-      2000.0 * exercise.findTool(exercise.arms[0].tool)->tool.radius_m;
+  const double width_mm = 2000.0 * exercise.findTool(exercise.arms[0].tool)->tool.radius_m;
   const auto bands = publishedBands(exercise, 0, capsule);
   ASSERT_EQ(bands.size(), 2u);
   EXPECT_EQ(bands[0].of, PublishedBand::Of::rupture);
@@ -159,8 +159,7 @@ TEST(TissuePoke, OnAnOmniTheSentenceNamesWhatIsNotFelt) {
             EXPECT_NE(words[0].find(exercise.tissues.tissues[t].name), std::string::npos);
           }
           if (friction_N == kOmniFriction_N) {
-            std::printf("%-9s %-6s %-8s most %.2f N%s\n", name,
-                        exercise.arms[of.arm].tool.c_str(),
+            std::printf("%-9s %-6s %-8s most %.2f N%s\n", name, exercise.arms[of.arm].tool.c_str(),
                         exercise.tissues.tissues[t].id.c_str(), of.curves[t].most_N,
                         words.empty() ? "" : (" | " + words.front()).c_str());
           }

@@ -322,7 +322,8 @@ TEST_F(KnownNumbersTest, ANumberOutsideOfWhatWasPublishedSaysSo) {
   panel_.setTissues(set);
   panel_.select("bone");
   EXPECT_EQ(known("friction").text(),
-            "outside the published 2.2 to 3.3 N, by a factor of 1.36 (measured; human cadaver, access needle)");
+            "outside the published 2.2 to 3.3 N, by a factor of 1.36 (measured; human cadaver, "
+            "access needle)");
   EXPECT_EQ(known("friction").palette().color(QPalette::WindowText), colours::kCaution);
   EXPECT_NE(known("relaxes by").palette().color(QPalette::WindowText), colours::kCaution);
 }
