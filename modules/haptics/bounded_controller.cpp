@@ -122,7 +122,6 @@ void LearntScale::inAir(double period_s) {
 BoundedController::BoundedController(const ArmDynamics& arm, double period_s, int touch_version)
     : T_(period_s),
       before_11_(touch_version < 11),
-      before_12_(touch_version < 12),
       arm_(arm),
       tolerance_J_(unseenEnergy_J(arm.encoder_step_m)),
       estimator_(arm_, period_s),
@@ -398,9 +397,7 @@ Vec3 BoundedController::bound(const ControllerInput& in) {
     // Rest is judged by the tissue's own force: the rendered one changes as the scales change.
     const double k = in.rendered.stiffness;
     const Vec3 elastic_N = k > 0.0 ? in.rendered.elastic_N * (tissue_stiffness_ / k) : Vec3(0.0);
-    const Vec3 crept_N =
-        k > 0.0 && !before_12_ ? in.rendered.crept_N * (tissue_stiffness_ / k) : Vec3(0.0);
-    force_N = holdAtRest(elastic_N, crept_N, in.position_m, affordable_N);
+    force_N = hold_.hold(elastic_N, tissue_stiffness_, in.position_m, affordable_N);
     flag(kPartHold, force_N - affordable_N);
     if (!hold_.rests()) held_with_ = parts_ & kPartLearned;
     parts_ |= held_with_;
@@ -415,18 +412,6 @@ Vec3 BoundedController::bound(const ControllerInput& in) {
   if (check_.notAsStated()) parts_ |= kPartArmNotAsStated;
   watchForce(force_N, in.touching);
   return force_N;
-}
-
-// What time takes from the springs goes on while the force is held: it does not go by the samples,
-// so that it gives nothing out, and the hold ends without a step.
-Vec3 BoundedController::holdAtRest(const Vec3& elastic_N, const Vec3& crept_N,
-                                   const Vec3& position_m, const Vec3& force_N) {
-  if (crept_N == Vec3(0.0)) return hold_.hold(elastic_N, tissue_stiffness_, position_m, force_N);
-  const double whole_N = glm::length(elastic_N);
-  const double share = whole_N > 0.0 ? std::min(1.0, glm::length(force_N) / whole_N) : 0.0;
-  const Vec3 shown_N = share * crept_N;
-  return hold_.hold(elastic_N - crept_N, tissue_stiffness_, position_m, force_N - shown_N) +
-         shown_N;
 }
 
 }  // namespace trephine

@@ -62,8 +62,7 @@ struct LearntScale {
 class BoundedController {
  public:
   // Everything in device metres and newtons. `touch_version` below 11: without credit that comes
-  // back at rest and without damping before a learnt scale is felt; below 12: what is held at rest
-  // does not relax.
+  // back at rest and without damping before a learnt scale is felt.
   BoundedController(const ArmDynamics& arm, double period_s, int touch_version = kTouchVersion);
 
   // What the laws shall render of a tissue with this impedance at the arm.
@@ -122,14 +121,12 @@ class BoundedController {
   Ahead ahead() const;
   Vec3 render(const ControllerInput& in, const Ahead& at);
   Vec3 limitToCredit(const Vec3& force_N, const Ahead& at);
-  Vec3 holdAtRest(const Vec3& elastic_N, const Vec3& crept_N, const Vec3& position_m,
-                  const Vec3& force_N);
   void watchForce(const Vec3& force_N, bool touching);
   double mass_kg() const { return arm_.apparent_mass_kg / check_.lighter(); }
   void flag(ControllerPart part, const Vec3& difference_N);
 
   double T_;
-  bool before_11_, before_12_;  // of touch
+  bool before_11_;      // of touch
   ArmDynamics arm_;     // as stated
   Impedance most_;      // what this arm renders
   double tolerance_J_;  // energy that an encoder cannot see

@@ -17,7 +17,6 @@ struct ContactForce {
   Vec3 damped_rotation_N{0.0};   // sum of damping_i (omega x r_i), of the points about the tip
   Vec3 torque_Nm{0.0};           // about the tip, at the sampled position and velocity
   Vec3 elastic_torque_Nm{0.0};   // the springs' part of it
-  Vec3 crept_N{0.0};  // by which elastic_N is another than if no spring had crept: by time alone
 
   // In the direction in which it is stiffest: where solid tissue stops a tool, soft tissue acts
   // only across that.

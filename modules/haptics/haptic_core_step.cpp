@@ -52,7 +52,6 @@ ContactForce atDevice(const ContactForce& patient, const WorkspaceMap& map) {
   ContactForce device = patient;
   device.elastic_N = map.forceToDevice(patient.elastic_N);
   device.damped_rotation_N = map.forceToDevice(patient.damped_rotation_N);
-  device.crept_N = map.forceToDevice(patient.crept_N);
   device.stored_J = patient.stored_J * (map.force_scale / map.motion_scale);
   device.stiffness = at_arm * patient.stiffest();
   device.damping = patient.damping * at_arm;

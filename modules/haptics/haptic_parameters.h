@@ -53,8 +53,7 @@ struct HapticParameters {
   //  9: springs of dry friction beside the proxy's pull (laws/coulomb.h), and spheres for a driven
   //     tool thinner than a voxel's diagonal that its neighbours' rows hold (solid_surface.h);
   // 10: `bounded` without what version 11 added to it (bounded_controller.h), and the surface
-  //     around a tool searched anew once any voxel goes (solid_surface.h);
-  // 11: a force that is held at rest does not relax (bounded_controller.h).
+  //     around a tool searched anew once any voxel goes (solid_surface.h).
   int touch_version = kTouchVersion;
 };
 

@@ -289,7 +289,6 @@ void SoftHold::tell(const TissueField& tissue) {
   if (pulls_mm != Vec3(0.0) || in_tissue_ > 0 || enclosed_) {
     pull_.stiffness = kCling_N_per_m;
     pull_.force_N = -0.001 * kCling_N_per_m * pulls_mm;
-    pull_.crept_N = 0.001 * kCling_N_per_m * crept_mm_;
     pull_.cutting = !laws_.friction ? 1.0 : !laws_.cutting ? 0.0 : cutting_share_;
     pull_.friction = 1.0 - pull_.cutting;
   }
@@ -301,9 +300,7 @@ void SoftHold::tell(const TissueField& tissue) {
   pull_.membrane_stiffness = membraneStiffness_N_per_m(t, travel_mm);
   pull_.membrane_J = membraneEnergy_J(t, travel_mm);
   if (length_mm > kTiny_mm) {
-    const double force_N = membraneForce_N(t, travel_mm);
-    pull_.membrane_N = (-force_N / length_mm) * pressed_mm;
-    pull_.membrane_crept_N = ((membraneForce_N(t, length_mm) - force_N) / length_mm) * pressed_mm;
+    pull_.membrane_N = (-membraneForce_N(t, travel_mm) / length_mm) * pressed_mm;
   }
 }
 

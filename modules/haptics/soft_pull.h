@@ -33,12 +33,10 @@ struct SoftPull {
   double cutting = 0.0, friction = 0.0;
   // The tool is sharp, and what parts for it resists by its toughness: it does not push it out.
   bool parts = false;
-  Vec3 crept_N{0.0};  // by which force_N is another than without relaxation
   // Of the membrane that holds the tip.
   Vec3 membrane_N{0.0};
   double membrane_stiffness = 0.0;  // N/m, at this travel; 0: there is none
   double membrane_J = 0.0;          // stored
-  Vec3 membrane_crept_N{0.0};
 
   // Adds the part `of` that one spring, as the arm is shown `share` of its stiffness.
   void addSpring(double share, double of, ContactForce& out) const {
@@ -48,7 +46,6 @@ struct SoftPull {
     out.elastic_N += k * stretch_m;
     out.stiffness += k;
     out.stored_J += 0.5 * k * glm::dot(stretch_m, stretch_m);
-    out.crept_N += share * of * crept_N;
   }
 };
 

@@ -34,7 +34,6 @@ struct MembraneLaw {
     out.elastic_N += in.share.stiffness * in.soft.membrane_N;
     out.stiffness += in.share.stiffness * in.soft.membrane_stiffness;
     out.stored_J += in.share.stiffness * in.soft.membrane_J;
-    out.crept_N += in.share.stiffness * in.soft.membrane_crept_N;
   }
   void forget() {}
 };
