@@ -118,8 +118,8 @@ void HapticCore::tick(const TickInput& input, const Command* commands, std::size
   if (!journal_.busy()) tissue_.recount();
   if (!paused_ && ++ticks_ % second_ticks_ == 0) journal_.mark(credits());
   // The journal lets as many voxels be erased in this tick as it is asked for here.
-  may_remove_ =
-      (input.journal & kJournalRoom) && journal_.hasRoom(arms_.size() * Removal::kMostVoxels);
+  may_remove_ = parameters_.removes && (input.journal & kJournalRoom) &&
+                journal_.hasRoom(arms_.size() * Removal::kMostVoxels);
   for (std::size_t i = 0; i < command_count; ++i) apply(commands[i], input.tick);
 
   followLateness(input);

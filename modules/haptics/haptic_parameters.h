@@ -40,6 +40,7 @@ struct HapticParameters {
   // Not 0: the seed paper's rule of touch, by points alone (contact.h), and its removal: the voxel
   // of each point that touches goes at once. A bit for each class of tissue that is touched.
   std::uint32_t touch_by_points = 0;
+  bool removes = true;  // false: tissue is felt as it is, and none of it goes
   ControllerKind controller = ControllerKind::bounded;  // controllers.h
   TissueTable tissues;
   // Of the journal of cuts (volume/carve_journal.h), by which they are undone: in memory, 8 bytes

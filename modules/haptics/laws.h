@@ -114,6 +114,7 @@ struct LawTraits {
   std::optional<LawKind> stands_in_for;
   bool stops_at_solid = false;
   bool each_alone = false;
+  bool shares_spring = false;  // all such laws pull by one spring together
 };
 
 template <class L, class... Laws>
@@ -132,6 +133,7 @@ constexpr LawTraits traitsOf() {
     traits.stands_in_for = kindOf<typename L::StandsInFor>(AllLaws{});
   }
   if constexpr (requires { L::kEachAlone; }) traits.each_alone = L::kEachAlone;
+  if constexpr (requires { L::kSharesSpring; }) traits.shares_spring = L::kSharesSpring;
   if constexpr (requires { L::kStopsAtSolid; }) traits.stops_at_solid = L::kStopsAtSolid;
   return traits;
 }
@@ -220,12 +222,19 @@ inline bool acts(const std::vector<LawKind>& laws, LawKind law, const TissueClas
 // Damping and stiffness that these laws together demand of a tissue.
 inline Impedance demandedOf(const std::vector<LawKind>& laws, const TissueClass& tissue) {
   Impedance sum;
+  double shared = 0.0;
   for (LawKind law : laws) {
     if (!acts(laws, law, tissue)) continue;
-    const Impedance demanded = kLawTraits[std::size_t(law)].impedance(tissue);
+    const detail::LawTraits& traits = kLawTraits[std::size_t(law)];
+    const Impedance demanded = traits.impedance(tissue);
     sum.damping += demanded.damping;
-    sum.stiffness += demanded.stiffness;
+    if (traits.shares_spring) {
+      shared = std::max(shared, demanded.stiffness);
+    } else {
+      sum.stiffness += demanded.stiffness;
+    }
   }
+  sum.stiffness += shared;
   return sum;
 }
 

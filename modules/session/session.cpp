@@ -48,15 +48,6 @@ void warnOfAbsentLabels(const TissueSet& tissues, const LabelMap* labels) {
   }
 }
 
-// Nothing of it can be paid for, and it is felt as it is: a sharp tool parts what could be cut.
-TissueSet tooToughToCut(TissueSet tissues) {
-  for (Tissue& tissue : tissues.tissues) {
-    tissue.toughness_J_per_m2.reset();
-    tissue.cutting_J_per_mm3 = SourcedNumber{kMechanicsRange.high, kOwnSource};
-  }
-  return tissues;
-}
-
 // Writes into the log what the meter, which takes each event before it, warns of.
 class WarningLog : public RecordSink {
  public:
@@ -111,8 +102,6 @@ Status Session::set(const Placement& placed, const SessionOptions& options) {
   landmarks_ = placed.landmarks;
   exercise_ = placed.exercise;
   if (options.poke) {
-    exercise_.tissues = tooToughToCut(std::move(exercise_.tissues));
-    exercise_.removal = RemovalKind::work;
     poke_curves_ = std::make_unique<PokeCurves>(exercise_.arms.size(), exercise_.rate_hz);
     sinks_.push_back(poke_curves_.get());
   }
@@ -140,7 +129,9 @@ Status Session::set(const Placement& placed, const SessionOptions& options) {
                  b.tissue, b.arm, b.demanded.damping, b.demanded.stiffness, b.felt.damping,
                  b.felt.stiffness);
   }
-  core_ = std::make_unique<HapticCore>(hapticParameters(exercise_, rig_), *grid_->takeWriter());
+  HapticParameters parameters = hapticParameters(exercise_, rig_);
+  parameters.removes = !options.poke;
+  core_ = std::make_unique<HapticCore>(parameters, *grid_->takeWriter());
   const std::filesystem::path beside = options.recording.parent_path();
   const Result<std::filesystem::path> journal_folder = beside.empty() ? temporaryFolder() : beside;
   if (!journal_folder) return journal_folder.error();
@@ -413,8 +404,7 @@ bool Session::setController(ControllerKind kind) {
   return loop_->commands().push({CommandKind::controller, std::int32_t(kind), {}});
 }
 
-Status Session::setTissues(const TissueSet& wanted) {
-  const TissueSet tissues = isPoke() ? tooToughToCut(wanted) : wanted;
+Status Session::setTissues(const TissueSet& tissues) {
   if (Status valid = validate(tissues, "tissues"); !valid) return valid;
   if (Status known = checkLabels(tissues, grid_->labels().get()); !known) return known;
   // Voxels are counted by a tissue's place in the set, so the places stay.

@@ -15,19 +15,24 @@ namespace trephine {
 
 namespace {
 
-constexpr std::int16_t kHu = 100;  // of the block
-constexpr double kSpacing_mm = 0.5, kWide_mm = 24.0, kAbove_mm = 3.0, kBelow_mm = 8.0;
-constexpr double kLasts_mm = 0.2;  // a shorter force is a click that nobody names
+constexpr std::int16_t kHu = 100;                                    // of the block
+constexpr double kWide_mm = 24.0, kAbove_mm = 3.0, kBelow_mm = 8.0;  // beside the tool's radius
+constexpr double kMostRate_hz = 2000.0;  // the tissue's curve is the same; it takes longer
+constexpr double kLasts_mm = 0.2;        // a shorter force is a click that nobody names
+constexpr double kShifted_mm = 1.0;
+constexpr int kShifts = 10;  // each way
 
-Grid block() {
+// Wide and deep enough for a tool of this radius.
+Grid block(double radius_mm) {
   Volume volume;
   GridGeometry& g = volume.geometry;
-  const auto count = [](double mm) { return int(std::lround(mm / kSpacing_mm)); };
-  const int deep = count(kPokeDepth_mm + kBelow_mm);
-  g.size = {count(kWide_mm), count(kWide_mm), deep + count(kAbove_mm)};
-  g.spacing_mm = Vec3(kSpacing_mm);
+  const double spacing_mm = std::max(0.5, 0.1 * radius_mm), wide_mm = kWide_mm + 4.0 * radius_mm;
+  const auto count = [=](double mm) { return int(std::ceil(mm / spacing_mm)); };
+  const int deep = count(kPokeDepth_mm + kBelow_mm + radius_mm);
+  g.size = {count(wide_mm), count(wide_mm), deep + count(kAbove_mm + 2.0 * radius_mm)};
+  g.spacing_mm = Vec3(spacing_mm);
   // The face of the topmost voxels of tissue lies on z = 0.
-  g.origin_mm = {-0.5 * kWide_mm, -0.5 * kWide_mm, -(deep - 0.5) * kSpacing_mm};
+  g.origin_mm = {-0.5 * wide_mm, -0.5 * wide_mm, -(deep - 0.5) * spacing_mm};
   volume.hu.assign(g.voxelCount(), kAirHu);
   std::fill_n(volume.hu.begin(),
               std::size_t(g.size[0]) * std::size_t(g.size[1]) * std::size_t(deep), kHu);
@@ -72,7 +77,16 @@ Ends endsOf(const std::optional<SourcedNumber>& number) {
 }  // namespace
 
 PokeCurve pokeOf(const Exercise& exercise, const Rig& rig, std::size_t arm, std::size_t tissue) {
-  const Exercise one = withOne(exercise, tissue);
+  PokeCurve curve;
+  curve.arm = arm;
+  curve.tissue = std::int32_t(tissue);
+  curve.ended = true;
+  const std::string& id = exercise.tissues.tissues[tissue].id;
+  const auto& pushing = exercise.touch_by_points;
+  if (!pushing.empty() && !std::ranges::count(pushing, id)) return curve;  // it meets nothing
+  Exercise one = withOne(exercise, tissue);
+  if (!pushing.empty()) one.touch_by_points = {id};
+  one.rate_hz = std::min(one.rate_hz, kMostRate_hz);
   HapticParameters parameters = hapticParameters(one, rig);
   ArmParameters own = parameters.arms[arm];
   own.map = scalesOf(exercise.arms[arm]);
@@ -80,15 +94,14 @@ PokeCurve pokeOf(const Exercise& exercise, const Rig& rig, std::size_t arm, std:
   parameters.journal_voxels = 1u << 16;
   parameters.journal_strokes = 16;
   parameters.journal_seconds = 16;
-  Grid grid = block();
+  const double radius_mm = 1000.0 * own.tool.radius_m;
+  Grid grid = block(radius_mm);
   HapticCore core(parameters, *grid.takeWriter());
-  PokeCurve curve;
-  curve.arm = arm;
-  curve.tissue = std::int32_t(tissue);
   TickInput input;
   TickRecord record;
   const double step_mm = kPokeSpeed_mm_s * parameters.period_s;
-  for (double z_mm = kAbove_mm; z_mm > -kPokeDepth_mm; z_mm -= step_mm, ++input.tick) {
+  for (double z_mm = kAbove_mm + 2.0 * radius_mm; z_mm > -kPokeDepth_mm;
+       z_mm -= step_mm, ++input.tick) {
     input.journal = core.journalState();
     input.arms[0] = {Vec3(0.0, 0.0, 1e-3 * z_mm / own.map.motion_scale), Quat(1, 0, 0, 0), 0,
                      TREPHINE_ARM_CALIBRATED};
@@ -99,7 +112,6 @@ PokeCurve pokeOf(const Exercise& exercise, const Rig& rig, std::size_t arm, std:
     curve.points.push_back({-z_mm, glm::length(now.demanded_N), sent_N});
     curve.most_N = std::max(curve.most_N, sent_N);
   }
-  curve.ended = true;
   return curve;
 }
 
@@ -176,12 +188,21 @@ bool isFeltThrough(const PokeCurve& curve, double friction_N) {
 }
 
 bool areToldApart(const PokeCurve& one, const PokeCurve& other, double friction_N) {
+  if (friction_N <= 0.0) return true;
   const std::size_t points = std::min(one.points.size(), other.points.size());
-  return friction_N <= 0.0 || lengthWhere_mm(points, [&](std::size_t i) {
-                                const double apart_N =
-                                    one.points[i].sent_N - other.points[i].sent_N;
-                                return std::abs(apart_N) > friction_N;
-                              }) > kLasts_mm;
+  if (points == 0) return false;
+  const auto most = std::ptrdiff_t(kShifted_mm / kPokeDepth_mm * double(points));
+  const std::ptrdiff_t step = std::max<std::ptrdiff_t>(1, most / kShifts);
+  for (std::ptrdiff_t shift = -most; shift <= most; shift += step) {
+    const double apart_mm = lengthWhere_mm(points, [&](std::size_t i) {
+      const std::ptrdiff_t at = std::ptrdiff_t(i) + shift;
+      if (at < 0 || at >= std::ptrdiff_t(points)) return false;
+      const double apart_N = one.points[i].sent_N - other.points[std::size_t(at)].sent_N;
+      return std::abs(apart_N) > friction_N;
+    });
+    if (apart_mm <= kLasts_mm) return false;
+  }
+  return true;
 }
 
 std::vector<std::size_t> notToldApart(const ArmPokes& pokes, std::size_t tissue) {
@@ -203,18 +224,23 @@ std::vector<std::string> hiddenWords(const Exercise& exercise, const ArmPokes& p
   std::vector<std::string> lines;
   const auto fixed = [](double newtons) { return plainNumber(0.01 * std::round(100.0 * newtons)); };
   const std::string& arm = exercise.arms[pokes.arm].name;
-  const auto nameOf = [&](std::size_t t) { return exercise.tissues.tissues[t].name; };
+  const auto nameOf = [&](std::size_t t) {
+    const Tissue& of = exercise.tissues.tissues[t];
+    const bool blank = of.name.find_first_not_of(' ') == std::string::npos;
+    return blank ? of.id : of.name;
+  };
   const PokeCurve& own = pokes.curves[tissue];
   if (!isFeltThrough(own, pokes.friction_N)) {
     lines.push_back(
-        tr("{}: at most {} N at the {} arm, and that arm's own friction is {} N: it is not felt",
+        tr("{}: at most {} N in a poke at the {} arm, which is lost in that arm's own friction, "
+           "stated as {} N",
            nameOf(tissue), fixed(own.most_N), arm, fixed(pokes.friction_N)));
     return lines;
   }
   for (std::size_t other : notToldApart(pokes, tissue)) {
     lines.push_back(
-        tr("{} and {} differ by less than the {} arm's own friction of {} N: they are "
-           "not told apart by touch",
+        tr("{} and {} are hard to tell apart at the {} arm: in a poke they differ by less than "
+           "that arm's own friction, stated as {} N",
            nameOf(tissue), nameOf(other), arm, fixed(pokes.friction_N)));
   }
   return lines;

@@ -54,9 +54,9 @@ Status checkTogether(const std::string& file, const std::string& field, const Ti
   const double relaxes = valueOf(t.relaxation_share), within_s = valueOf(t.relaxation_s);
   if ((relaxes > 0.0) != (within_s > 0.0)) {
     return bad(file, field + (relaxes > 0.0 ? ".relaxation_share" : ".relaxation_s"),
-               tr("'{}' relaxes by {} within {} s: one of the two is missing", t.id,
+               tr("'{}' relaxes by {} within {} s: one of the two is 0 or missing", t.id,
                   exactNumber(relaxes), exactNumber(within_s)),
-               tr("Give both, relaxation_share and relaxation_s, or none"));
+               tr("Give both above 0, relaxation_share and relaxation_s, or none"));
   }
   return {};
 }
@@ -65,7 +65,9 @@ void readMechanics(JsonReader mechanics, Tissue& tissue) {
   for (const TissueNumber& number : kTissueNumbers) {
     const FieldRow row = number.row();
     if (row.given == Given::may_be && !mechanics.has(row.key)) continue;
-    number.set(tissue, readSourced(mechanics.object(row.key), row.range));
+    // As it stands: what contradicts another is refused, and takes no place of it.
+    const SourcedNumber read = readSourced(mechanics.object(row.key), row.range);
+    std::visit([&](auto member) { tissue.*member = read; }, number.in_set);
   }
   readFields(mechanics, kCuttingFields, tissue);
   if (mechanics.has("solid")) tissue.solid = mechanics.boolean("solid", false);

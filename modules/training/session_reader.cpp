@@ -184,6 +184,33 @@ struct SessionReader::File {
   }
 };
 
+// The first field that a table of this version has to have and has not, or of another kind or
+// shape; empty where there is none.
+std::string lackingColumn(hid_t table, std::span<const RecordField> fields, int version) {
+  const hid_t type = H5Dget_type(table);
+  std::string lacks;
+  for (const RecordField& field : fields) {
+    if (field.since > version || !lacks.empty()) continue;
+    const bool compound = H5Tget_class(type) == H5T_COMPOUND;
+    const int place = compound ? H5Tget_member_index(type, field.name) : -1;
+    bool fits = place >= 0;
+    if (fits) {
+      const hid_t member = H5Tget_member_type(type, unsigned(place));
+      const hid_t element = field.count > 1 && H5Tget_class(member) == H5T_ARRAY
+                                ? H5Tget_super(member)
+                                : H5Tcopy(member);
+      const bool real = field.type == RecordField::Type::f64;
+      fits = H5Tget_class(element) == (real ? H5T_FLOAT : H5T_INTEGER) &&
+             H5Tget_size(member) == field.count * H5Tget_size(element);
+      H5Tclose(element);
+      H5Tclose(member);
+    }
+    if (!fits) lacks = field.name;
+  }
+  H5Tclose(type);
+  return lacks;
+}
+
 // By the byte "file consistency flags" of HDF5's superblock, versions 2 and 3. A recorder writes
 // four times a second.
 bool isBeingWritten(const std::filesystem::path& recording) {
@@ -294,6 +321,13 @@ Result<std::unique_ptr<SessionReader>> SessionReader::open(const std::filesystem
   const bool tables = !apart || f.tissue_tables >= 0;
   if (f.ticks < 0 || f.carves < 0 || f.events < 0 || !tables || f.arms.empty()) {
     return f.bad(tr("The recording is incomplete: its tables are damaged"));
+  }
+  for (hid_t arm : f.arms) {
+    const std::string lacks = lackingColumn(arm, armFields(), version);
+    if (!lacks.empty()) {
+      return f.bad(tr("The recording is damaged: an arm's table has no '{}' as its version has it",
+                      lacks));
+    }
   }
   hsize_t count = rowCount(f.ticks), most = count;
   for (hid_t arm : f.arms) {

@@ -25,16 +25,25 @@ double nearestStep(double value, double step) {
   return double(std::int64_t(steps < 0.0 ? steps - 0.5 : steps + 0.5)) * step;
 }
 
-// One substep of all axes, which the friction's direction couples; advance() has the rule.
+// One substep of all axes, which the friction's direction couples; advance() has the rule. What
+// presses an axis against the edge of the workspace moves nothing and overcomes no friction.
 void stepWithFriction(const ArmParameters& arm, const Hand& hand, const Vector& force, double h,
                       double inverse, ArmMotion& next) {
   Vector push{};
+  double sum = 0.0;
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    push[axis] =
-        2.0 * arm.mass_kg * next.velocity_m_s[axis] +
-        h * (force[axis] + hand.stiffness_N_per_m * (hand.rest_m[axis] - next.position_m[axis]));
+    const double x = next.position_m[axis];
+    const double edge = 0.5 * arm.workspace_m[axis];
+    double& p = push[axis];
+    p = 2.0 * arm.mass_kg * next.velocity_m_s[axis] +
+        h * (force[axis] + hand.stiffness_N_per_m * (hand.rest_m[axis] - x));
+    if ((x >= edge && p > 0.0) || (x <= -edge && p < 0.0)) {
+      p = 0.0;
+      next.at_limit = true;
+    }
+    sum += p * p;
   }
-  const double length = std::sqrt(push[0] * push[0] + push[1] * push[1] + push[2] * push[2]);
+  const double length = std::sqrt(sum);
   if (length <= h * arm.friction_N) {
     next.velocity_m_s = {};
     return;
@@ -44,6 +53,10 @@ void stepWithFriction(const ArmParameters& arm, const Hand& hand, const Vector& 
     const double edge = 0.5 * arm.workspace_m[axis];
     double& x = next.position_m[axis];
     double& v = next.velocity_m_s[axis];
+    if (push[axis] == 0.0) {
+      v = 0.0;
+      continue;
+    }
     const double u = left * push[axis];
     x += h * u;
     v = 2.0 * u - v;

@@ -38,8 +38,8 @@ QString foreseenWords(const ForeseenPoke& of) {
   Confidence weakest = Confidence::unstated;
   for (const PublishedBand& band : of.bands) weakest = std::max(weakest, band.confidence);
   const QString how = toQt(confidenceWord(weakest));
-  return how.isEmpty() ? PokePlot::tr("%1; shaded: published").arg(words)
-                       : PokePlot::tr("%1; shaded: published (%2)").arg(words, how);
+  return how.isEmpty() ? PokePlot::tr("%1; shaded: published, for it").arg(words)
+                       : PokePlot::tr("%1; shaded: published, for it (%2)").arg(words, how);
 }
 
 }  // namespace
@@ -51,7 +51,8 @@ PokePlot::PokePlot(QWidget* parent) : QWidget(parent) {
       tr("Solid: the force that the arm was sent; dashed: what the tissue demanded. Depth is "
          "how far the hand has gone along the tool: where bone stops the tool, it is the "
          "hand that goes on. Thin: what each tool would meet in a block of the chosen tissue at "
-         "10 mm/s; shaded: the published range of that force."));
+         "10 mm/s; shaded: the published range of that "
+         "force, for the tool's width and the arm's scale of force."));
   setSizePolicy(QSizePolicy::Expanding, QSizePolicy::Preferred);
 }
 

@@ -21,6 +21,7 @@ struct CuttingLaw {
                                        &TickNumbers::cutting_J_per_mm3};
 
   static constexpr bool kEachAlone = true;
+  static constexpr bool kSharesSpring = true;  // SoftPull's
 
   explicit CuttingLaw(std::size_t /*points*/ = 1) {}
   static Impedance impedance(const TissueClass& tissue) {

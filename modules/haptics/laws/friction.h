@@ -20,6 +20,7 @@ struct FrictionLaw {
                                        &TickNumbers::friction_coefficient};
 
   static constexpr bool kEachAlone = true;
+  static constexpr bool kSharesSpring = true;  // SoftPull's
 
   explicit FrictionLaw(std::size_t /*points*/ = 1) {}
   static Impedance impedance(const TissueClass& tissue) {

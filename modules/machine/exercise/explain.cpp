@@ -185,7 +185,10 @@ Json touchOf(const Exercise& exercise, const std::vector<ArmPokes>& pokes) {
                        {"tissue", exercise.tissues.tissues[t].id},
                        {"most_N", of.curves[t].most_N},
                        {"friction_N", of.friction_N},
-                       {"felt", isFeltThrough(of.curves[t], of.friction_N)},
+                       {"felt", of.friction_N > 0.0
+                                    ? Json(isFeltThrough(of.curves[t], of.friction_N))
+                                    : Json(nullptr)},
+                       {"at_limit", of.curves[t].most_N >= 0.999 * exercise.arms[of.arm].max_force_N},
                        {"like", like},
                        {"words", hiddenWords(exercise, of, t)}});
     }
@@ -414,7 +417,7 @@ std::vector<std::string> hiddenLines(const Json& touch) {
     const Json& words = of.at("words");
     for (std::size_t n = 0; n < words.size(); ++n) {
       std::array<std::string, 3> pair{of.at("arm"), of.at("tissue"), ""};
-      if (of.at("felt").get<bool>()) pair[2] = of.at("like").at(n).get<std::string>();
+      if (of.at("felt") == true) pair[2] = of.at("like").at(n).get<std::string>();
       if (said.contains({pair[0], pair[2], pair[1]})) continue;
       said.insert(pair);
       lines.push_back(cleanUtf8(words.at(n).get<std::string>()));
@@ -484,7 +487,8 @@ std::string explanationText(const Json& explained) {
              "at most\n",
              arm, word(touch, "tool"));
     }
-    add("    %8.2f N  %s\n", number(touch, "most_N"), word(touch, "tissue").c_str());
+    add("    %8.2f N  %s%s\n", number(touch, "most_N"), word(touch, "tissue").c_str(),
+        touch.at("at_limit") == true ? tr(", all that the arm gives").c_str() : "");
   }
   for (const std::string& line : hiddenLines(explained.at("touch"))) text += "  " + line + "\n";
   if (!explained.at("locks").empty()) {

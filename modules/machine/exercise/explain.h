@@ -20,7 +20,8 @@ namespace trephine {
 //     start in tissue; null where it has no case or no script,
 //     settings:[{knob, setting, recommended}] where anything is `recommended` here,
 //     bounded:[what the arms do not show of a tissue, and what is felt],
-//     touch:[{arm, tool, tissue, most_N, friction_N, felt, like, words}] (tissue_poke.h),
+//     touch:[{arm, tool, tissue, most_N, friction_N, felt (null: not known),
+//     at_limit, like, words}] (tissue_poke.h),
 //     journal_mb, cost:[{part, arm (null: any), ns_per_tick}], tick_ns}
 // Each part is timed alone (median of batches, about 0.1 s for all of them) on a small block of the
 // exercise's firmest tissue; tick_ns is a whole tick of all arms there, without the devices.

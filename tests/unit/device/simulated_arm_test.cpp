@@ -70,6 +70,26 @@ TEST(SimulatedArm, ItsFrictionHoldsWhatIsWeakerAndTakesItsPartOfTheRestInAnyDire
   }
 }
 
+TEST(SimulatedArm, WhatPressesItAgainstItsEdgeOvercomesNoFrictionAlongTheEdge) {
+  Bench bench(withFriction(0.26));
+  ASSERT_TRUE(bench.device && bench.start());
+  bench.hold(Vec3(0.0), 0.0, 0.0);
+  bench.push({2.0, 0.0, 0.0});
+  for (int i = 0; i < 1000; ++i) ASSERT_TRUE(bench.tick());
+  EXPECT_EQ(bench.position().x, 0.08);
+  const double y = bench.position().y;
+  bench.push({1.0, 0.2, 0.0});
+  for (int i = 0; i < 500; ++i) ASSERT_TRUE(bench.tick());
+  EXPECT_EQ(bench.position().y, y) << "0.2 N is less than its friction";
+  EXPECT_TRUE(bench.states[0].flags & TREPHINE_ARM_AT_LIMIT);
+  bench.push({0.1, 0.0, 0.0});
+  ASSERT_TRUE(bench.tick());
+  EXPECT_TRUE(bench.states[0].flags & TREPHINE_ARM_AT_LIMIT) << "it rests there";
+  bench.push({1.0, 0.3, 0.0});
+  for (int i = 0; i < 500; ++i) ASSERT_TRUE(bench.tick());
+  EXPECT_GT(bench.position().y, y + 0.001);
+}
+
 TEST(SimulatedArm, AHandBringsAnArmWithFrictionNoNearerThanItsSpringOvercomesIt) {
   Bench bench(withFriction(0.26));
   ASSERT_TRUE(bench.device && bench.start());

@@ -216,6 +216,17 @@ TEST(TissueSet, FindsATissueByItsId) {
   EXPECT_EQ(set.find("Bone"), nullptr);
 }
 
+TEST(TissueSet, AFileThatSaysBothCostsOfCuttingIsRefusedByNameAndValue) {
+  test::TemporaryFolder folder;
+  Json json = toJson(head());
+  json["tissues"][1]["mechanics"]["toughness_J_per_m2"] = {{"value", 75.8}, {"source", "a paper"}};
+  ASSERT_TRUE(writeTextFile(folder / "t.json", json.dump()).ok());
+  const auto read = readTissueSet(folder / "t.json");
+  ASSERT_FALSE(read.ok());
+  EXPECT_PART(read.error().where, "tissues[1].mechanics.toughness_J_per_m2");
+  EXPECT_PART(read.error().what, "75.8 J/m\u00b2");
+}
+
 TEST(TissueSet, SaysWhatCuttingCostsByVolumeOrByAreaAndNotByBoth) {
   const Error both = errorAfter([](TissueSet& s) {
     s.tissues[1].toughness_J_per_m2 = SourcedNumber{75.8, "a paper"};

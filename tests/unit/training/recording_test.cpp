@@ -224,6 +224,57 @@ TEST(Recording, OfAnOlderVersionIsRefusedByName) {
   H5Fclose(file);
 }
 
+// The table of an arm written anew without a column, or with whole numbers in it.
+void writeArmAnew(const std::filesystem::path& path, const char* column, bool whole, int version) {
+  const hid_t file = H5Fopen(path.c_str(), H5F_ACC_RDWR, H5P_DEFAULT);
+  const hid_t old = H5Dopen2(file, "arm0", H5P_DEFAULT), type = H5Dget_type(old);
+  const hid_t other = H5Tcreate(H5T_COMPOUND, H5Tget_size(type));
+  for (int i = 0; i < H5Tget_nmembers(type); ++i) {
+    char* name = H5Tget_member_name(type, unsigned(i));
+    const hid_t member = H5Tget_member_type(type, unsigned(i));
+    const std::size_t offset = H5Tget_member_offset(type, unsigned(i));
+    if (name != std::string(column)) H5Tinsert(other, name, offset, member);
+    if (name == std::string(column) && whole) H5Tinsert(other, name, offset, H5T_NATIVE_INT64);
+    H5Tclose(member);
+    H5free_memory(name);
+  }
+  const hid_t space = H5Dget_space(old), plist = H5Dget_create_plist(old);
+  std::vector<char> rows(std::size_t(H5Sget_simple_extent_npoints(space)) * H5Tget_size(type));
+  H5Dread(old, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, rows.data());
+  H5Dclose(old);
+  H5Ldelete(file, "arm0", H5P_DEFAULT);
+  const hid_t made = H5Dcreate2(file, "arm0", other, space, H5P_DEFAULT, plist, H5P_DEFAULT);
+  H5Dwrite(made, other, H5S_ALL, H5S_ALL, H5P_DEFAULT, rows.data());
+  const hid_t at = H5Aopen(file, "version", H5P_DEFAULT);
+  H5Awrite(at, H5T_NATIVE_INT, &version);
+  H5Aclose(at);
+  H5Pclose(plist);
+  H5Sclose(space);
+  H5Dclose(made);
+  H5Tclose(other);
+  H5Tclose(type);
+  H5Fclose(file);
+}
+
+TEST(Recording, WithoutAColumnOfItsVersionIsDamagedAndAnOlderOneWithoutItIsNot) {
+  test::TemporaryFolder folder;
+  recordRun(folder / "a.h5", 500);
+  for (const auto& [column, whole] : {std::pair("heat_J", false), {"heat_J", true},
+                                      {"sent_N", false}}) {
+    std::filesystem::copy_file(folder / "a.h5", folder / "b.h5", std::filesystem::copy_options::overwrite_existing);
+    writeArmAnew(folder / "b.h5", column, whole, kRecordingVersion);
+    const auto opened = SessionReader::open(folder / "b.h5");
+    ASSERT_FALSE(opened.ok()) << column;
+    EXPECT_EQ(opened.error().code.str(), "BAD_RECORDING");
+    EXPECT_NE(opened.error().what.find(column), std::string::npos) << opened.error().what;
+  }
+  std::filesystem::copy_file(folder / "a.h5", folder / "b.h5", std::filesystem::copy_options::overwrite_existing);
+  writeArmAnew(folder / "b.h5", "heat_J", false, 11);
+  const auto older = SessionReader::open(folder / "b.h5");
+  ASSERT_TRUE(older.ok()) << older.error().sentence();
+  EXPECT_TRUE(replay(**older, slab())->identical) << "what it does not say is not compared";
+}
+
 TEST(Recording, KeepsWhichArmWasClutchedAndWhereItsMapTurned) {
   test::TemporaryFolder folder;
   const Exercise exercise = exerciseWithOneArm();
