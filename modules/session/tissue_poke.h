@@ -14,9 +14,9 @@
 namespace trephine {
 
 // At 10 mm/s, 12 mm deep, by the arm as it is on this rig: the tool that it has at first, pushed
-// along itself into a block of this tissue by a hand that nothing stops, at 2 kHz at most. Forces at
-// the arm. No points where the exercise touches by points, and none of them meets this tissue. About
-// 30 ms. `arm` and `tissue`: places in the exercise.
+// along itself into a block of this tissue by a hand that nothing stops, at 2 kHz at most. Forces
+// at the arm. No points where the exercise touches by points, and none of them meets this tissue.
+// About 30 ms. `arm` and `tissue`: places in the exercise.
 PokeCurve pokeOf(const Exercise& exercise, const Rig& rig, std::size_t arm, std::size_t tissue);
 constexpr double kPokeSpeed_mm_s = 10.0, kPokeDepth_mm = 12.0;
 
@@ -46,10 +46,10 @@ Result<std::vector<ArmPokes>> pokesOf(const Exercise& exercise, const Rig& rig,
                                       const Progress& progress = Progress());
 
 // A stated rule, and no measure of what people perceive: a force that does not exceed the arm's
-// friction over 0.2 mm of the way is lost in it (a hand at rest meets nothing, a moving one a little
-// more drag). Two tissues are told apart where their forces differ by more than it over 0.2 mm,
-// however one is shifted against the other by up to 1 mm: no hand knows where a tissue began. True
-// where the friction is not known.
+// friction over 0.2 mm of the way is lost in it (a hand at rest meets nothing, a moving one a
+// little more drag). Two tissues are told apart where their forces differ by more than it over 0.2
+// mm, however one is shifted against the other by up to 1 mm: no hand knows where a tissue began.
+// True where the friction is not known.
 bool isFeltThrough(const PokeCurve& curve, double friction_N);
 bool areToldApart(const PokeCurve& one, const PokeCurve& other, double friction_N);
 

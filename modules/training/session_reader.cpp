@@ -325,8 +325,8 @@ Result<std::unique_ptr<SessionReader>> SessionReader::open(const std::filesystem
   for (hid_t arm : f.arms) {
     const std::string lacks = lackingColumn(arm, armFields(), version);
     if (!lacks.empty()) {
-      return f.bad(tr("The recording is damaged: an arm's table has no '{}' as its version has it",
-                      lacks));
+      return f.bad(
+          tr("The recording is damaged: an arm's table has no '{}' as its version has it", lacks));
     }
   }
   hsize_t count = rowCount(f.ticks), most = count;

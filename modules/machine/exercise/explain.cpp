@@ -180,17 +180,17 @@ Json touchOf(const Exercise& exercise, const std::vector<ArmPokes>& pokes) {
       for (std::size_t other : notToldApart(of, t)) {
         like.push_back(exercise.tissues.tissues[other].id);
       }
-      touch.push_back({{"arm", exercise.arms[of.arm].name},
-                       {"tool", exercise.arms[of.arm].tool},
-                       {"tissue", exercise.tissues.tissues[t].id},
-                       {"most_N", of.curves[t].most_N},
-                       {"friction_N", of.friction_N},
-                       {"felt", of.friction_N > 0.0
-                                    ? Json(isFeltThrough(of.curves[t], of.friction_N))
-                                    : Json(nullptr)},
-                       {"at_limit", of.curves[t].most_N >= 0.999 * exercise.arms[of.arm].max_force_N},
-                       {"like", like},
-                       {"words", hiddenWords(exercise, of, t)}});
+      touch.push_back(
+          {{"arm", exercise.arms[of.arm].name},
+           {"tool", exercise.arms[of.arm].tool},
+           {"tissue", exercise.tissues.tissues[t].id},
+           {"most_N", of.curves[t].most_N},
+           {"friction_N", of.friction_N},
+           {"felt",
+            of.friction_N > 0.0 ? Json(isFeltThrough(of.curves[t], of.friction_N)) : Json(nullptr)},
+           {"at_limit", of.curves[t].most_N >= 0.999 * exercise.arms[of.arm].max_force_N},
+           {"like", like},
+           {"words", hiddenWords(exercise, of, t)}});
     }
   }
   return touch;

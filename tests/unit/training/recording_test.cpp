@@ -259,16 +259,18 @@ void writeArmAnew(const std::filesystem::path& path, const char* column, bool wh
 TEST(Recording, WithoutAColumnOfItsVersionIsDamagedAndAnOlderOneWithoutItIsNot) {
   test::TemporaryFolder folder;
   recordRun(folder / "a.h5", 500);
-  for (const auto& [column, whole] : {std::pair("heat_J", false), {"heat_J", true},
-                                      {"sent_N", false}}) {
-    std::filesystem::copy_file(folder / "a.h5", folder / "b.h5", std::filesystem::copy_options::overwrite_existing);
+  for (const auto& [column, whole] :
+       {std::pair("heat_J", false), {"heat_J", true}, {"sent_N", false}}) {
+    std::filesystem::copy_file(folder / "a.h5", folder / "b.h5",
+                               std::filesystem::copy_options::overwrite_existing);
     writeArmAnew(folder / "b.h5", column, whole, kRecordingVersion);
     const auto opened = SessionReader::open(folder / "b.h5");
     ASSERT_FALSE(opened.ok()) << column;
     EXPECT_EQ(opened.error().code.str(), "BAD_RECORDING");
     EXPECT_NE(opened.error().what.find(column), std::string::npos) << opened.error().what;
   }
-  std::filesystem::copy_file(folder / "a.h5", folder / "b.h5", std::filesystem::copy_options::overwrite_existing);
+  std::filesystem::copy_file(folder / "a.h5", folder / "b.h5",
+                             std::filesystem::copy_options::overwrite_existing);
   writeArmAnew(folder / "b.h5", "heat_J", false, 11);
   const auto older = SessionReader::open(folder / "b.h5");
   ASSERT_TRUE(older.ok()) << older.error().sentence();
