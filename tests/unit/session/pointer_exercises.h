@@ -52,13 +52,13 @@ inline std::vector<Pointed> otherSide(std::vector<Pointed> path) {
 }
 inline const PointerTask kWindow{"cranium", {kLeftHalf, otherSide(kLeftHalf)}};
 inline const std::vector<Pointed> kSlice{
-    {0, 8, -60, 0},      {0.5, 8, -42, 0},   {1.0, 8, -42, 1.8}, {2.2, 8, -42, 0.5},
-    {9.0, 40, -42, 0.5}, {10.0, 40, -42, 0}, {11.5, 40, -60, 0}};
+    {0, 8, -60, 0},      {0.5, 8, -42, 0},   {1.0, 8, -42, 1.25}, {2.2, 8, -42, 0.45},
+    {9.0, 40, -42, 0.45}, {10.0, 40, -42, 0}, {11.5, 40, -60, 0}};
 inline const PointerTask kLiverOneArm{"liver-one-arm", {kSlice}};
 inline const PointerTask kLiver{"liver",
                                 {{{0, -5, -60, 0},
                                   {0.5, -5, -48, 0},
-                                  {1.0, -5, -48, 2.5},
+                                  {1.0, -5, -48, 1.8},
                                   {5.0, -5, -48, 0},
                                   {11.5, -5, -48, 0}},
                                  kSlice}};
