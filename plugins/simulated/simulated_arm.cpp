@@ -25,6 +25,17 @@ double nearestStep(double value, double step) {
   return double(std::int64_t(steps < 0.0 ? steps - 0.5 : steps + 0.5)) * step;
 }
 
+// One axis goes on for `h` at the mean speed `u`, and stops at the workspace's edge.
+void moveAxis(double u, double h, double edge, double& x, double& v, bool& at_limit) {
+  x += h * u;
+  v = 2.0 * u - v;
+  if (x > edge || x < -edge) {
+    x = x > edge ? edge : -edge;
+    v = 0.0;
+    at_limit = true;
+  }
+}
+
 // One substep of all axes, which the friction's direction couples; advance() has the rule. What
 // presses an axis against the edge of the workspace moves nothing and overcomes no friction.
 void stepWithFriction(const ArmParameters& arm, const Hand& hand, const Vector& force, double h,
@@ -57,14 +68,7 @@ void stepWithFriction(const ArmParameters& arm, const Hand& hand, const Vector& 
       v = 0.0;
       continue;
     }
-    const double u = left * push[axis];
-    x += h * u;
-    v = 2.0 * u - v;
-    if (x > edge || x < -edge) {
-      x = x > edge ? edge : -edge;
-      v = 0.0;
-      next.at_limit = true;
-    }
+    moveAxis(left * push[axis], h, edge, x, v, next.at_limit);
   }
 }
 
@@ -94,14 +98,7 @@ ArmMotion advance(const ArmParameters& arm, const Hand& hand, const ArmMotion& m
     double v = motion.velocity_m_s[axis];
     for (int i = 0; i < n; ++i) {
       const double pull = force[axis] + k * (hand.rest_m[axis] - x);
-      const double u = (2.0 * m * v + h * pull) * inverse;
-      x += h * u;
-      v = 2.0 * u - v;
-      if (x > edge || x < -edge) {
-        x = x > edge ? edge : -edge;
-        v = 0.0;
-        next.at_limit = true;
-      }
+      moveAxis((2.0 * m * v + h * pull) * inverse, h, edge, x, v, next.at_limit);
     }
     next.position_m[axis] = x;
     next.velocity_m_s[axis] = v;
